@@ -1,0 +1,1 @@
+//! The C boundary and nothing else: checks, conversion, panic and error handling.

@@ -1,0 +1,108 @@
+//! What can go wrong, said in one way everywhere: a stable status code and a sentence that names the parameter
+//! and the accepted range.
+
+use std::fmt;
+
+/// Status of a call. The numbers are ABI: they never change and are never reused.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Status {
+    /// The call did what it says.
+    Ok = 0,
+    /// More steps are due than one update may take; call again. Not an error.
+    Pending = 1,
+    /// A parameter is missing, not finite or outside its range; the message names it.
+    InvalidArgument = -1,
+    /// A handle is dead, foreign or of another kind.
+    BadHandle = -2,
+    /// A parent was destroyed while it has live children.
+    InUse = -3,
+    /// This device, tier or build cannot do what was asked; the message names the feature.
+    Unsupported = -4,
+    /// No adapter or driver serves the request.
+    NoAdapter = -5,
+    /// The GPU device is lost; create a new device and context.
+    DeviceLost = -6,
+    /// Memory on the host or the GPU ran out.
+    OutOfMemory = -7,
+    /// A panic was caught inside an earlier call; only destroy works on this device.
+    Poisoned = -8,
+    /// The native queue or GL context already belongs to another device.
+    AlreadyWrapped = -9,
+    /// A text (METAR report, planet file, plan) does not parse; the message gives line and column.
+    Parse = -10,
+    /// A file could not be read or written.
+    Io = -11,
+    /// The surface must be configured again (resized or lost).
+    SurfaceOutdated = -12,
+    /// Calls came in an order that the API forbids (stages of a frame, dates before the last update).
+    WrongOrder = -13,
+    /// The host aborted a long operation through its callback.
+    Aborted = -14,
+    /// A fault inside Welkin; the message says where.
+    Internal = -15,
+}
+
+/// A failed call: the status and a sentence for the person who reads the log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Error {
+    /// Stable code.
+    pub status: Status,
+    /// Names the parameter and the accepted range.
+    pub message: String,
+}
+
+/// Result of every fallible call of the crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// An error of `status` with a ready sentence.
+    pub fn new(status: Status, message: impl Into<String>) -> Self {
+        Self { status, message: message.into() }
+    }
+
+    /// A parameter outside its range: `visibility_m must be in [1, 1e6] m, got -3`.
+    pub fn range(name: &str, accepted: &str, got: impl fmt::Display) -> Self {
+        Self::new(Status::InvalidArgument, format!("{name} must be {accepted}, got {got}"))
+    }
+
+    /// A feature that this device, tier or build does not have.
+    pub fn unsupported(what: impl Into<String>) -> Self {
+        Self::new(Status::Unsupported, what)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Checks that a parameter is finite and lies in `[lo, hi]`, or says so by name.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] with the name, the range and the unit.
+pub fn check_range(name: &str, value: f64, lo: f64, hi: f64, unit: &str) -> Result<()> {
+    if value.is_finite() && (lo..=hi).contains(&value) {
+        return Ok(());
+    }
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    Err(Error::range(name, &format!("in [{lo}, {hi}]{unit}"), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn range_check_names_parameter_range_and_unit() {
+        assert!(check_range("visibility_m", 5.0, 1.0, 1e6, "m").is_ok());
+        for bad in [f64::NAN, f64::INFINITY, 0.5, 2e6] {
+            let e = check_range("visibility_m", bad, 1.0, 1e6, "m").unwrap_err();
+            assert_eq!(e.status, Status::InvalidArgument);
+            assert!(e.message.contains("visibility_m") && e.message.contains("[1, 1000000] m"), "{}", e.message);
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Visibility and fog drawn into the host's picture from its depth.

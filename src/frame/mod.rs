@@ -1,0 +1,1 @@
+//! The order of passes, composition and the frame's report.

@@ -1,0 +1,1 @@
+//! Devices, surfaces, targets, shader assembly, timing and readback.

@@ -1,0 +1,17 @@
+//! Welkin: weather for simulators, drawn into the host's own picture.
+//!
+//! This is the crate's front door. A Rust host creates a [`gpu::Device`], says what the weather is
+//! ([`weather::Weather`]), and records into its own targets through [`frame`]. C and C++ hosts use the same
+//! nouns and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
+#![deny(missing_docs, unsafe_op_in_unsafe_fn)]
+
+pub mod capi;
+pub mod error;
+pub mod fog;
+pub mod frame;
+pub mod gpu;
+pub mod scene;
+pub mod sky;
+pub mod weather;
+
+pub use error::{Error, Result, Status};

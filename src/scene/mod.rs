@@ -1,0 +1,1 @@
+//! Cameras, depth conventions and world frames: where things are.

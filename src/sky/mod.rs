@@ -1,0 +1,1 @@
+//! The sky from below the ground's level to space.
