@@ -1,1 +1,32 @@
-fn main() {}
+//! Gathers `shaders/**/*.wgsl` into one table of the crate, so that the library carries its shaders and a new
+//! file needs no registration.
+use std::{fs, io::Write, path::Path, path::PathBuf};
+
+fn gather(dir: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(dir).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            gather(&path, found);
+        } else if path.extension().is_some_and(|e| e == "wgsl") {
+            found.push(path);
+        }
+    }
+}
+
+fn main() {
+    println!("cargo:rerun-if-changed=shaders");
+    let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR"));
+    let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("shader_table.rs");
+    let mut found = Vec::new();
+    gather(&root.join("shaders"), &mut found);
+    found.sort();
+    let mut file = fs::File::create(out).expect("OUT_DIR is writable");
+    writeln!(file, "pub(super) static SHADERS: &[(&str, &str)] = &[").expect("write");
+    for path in found {
+        println!("cargo:rerun-if-changed={}", path.display());
+        let name = path.strip_prefix(root.join("shaders")).expect("below shaders/");
+        let name = name.to_string_lossy().replace('\\', "/");
+        writeln!(file, "    ({name:?}, include_str!({:?})),", path.display().to_string()).expect("write");
+    }
+    writeln!(file, "];").expect("write");
+}

@@ -1,1 +1,12 @@
-//! Devices, surfaces, targets, shader assembly, timing and readback.
+//! Devices, surfaces, targets, shader assembly, timing and readback: everything that touches wgpu's edges.
+//!
+//! A [`Device`] is one native queue or GL context, however it came to us: made here (headless or for a window),
+//! adopted from an OpenGL or Vulkan host, or handed over by a Rust host. The rooms of the effects see only
+//! `wgpu` objects and never ask whose they are.
+
+pub mod pass;
+pub mod readback;
+pub mod shader;
+
+mod device;
+pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};

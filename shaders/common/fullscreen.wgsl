@@ -1,0 +1,15 @@
+// One triangle that covers the target. `uv` has (0, 0) at the top left, as WebGPU's textures do.
+
+struct FullscreenVarying {
+    @builtin(position) position: vec4f,
+    @location(0) uv: vec2f,
+}
+
+@vertex
+fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> FullscreenVarying {
+    let uv = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
+    var out: FullscreenVarying;
+    out.uv = uv;
+    out.position = vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 0.0, 1.0);
+    return out;
+}

@@ -1,0 +1,295 @@
+//! The device: one queue, its caps, its faults, and the way into a host's context.
+
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
+};
+
+use crate::error::{Error, Result, Status};
+
+/// What a device can do, as the host may ask before it creates anything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Caps {
+    /// Which native interface serves it.
+    pub backend: wgpu::Backend,
+    /// The adapter's own name.
+    pub adapter_name: String,
+    /// The driver's own name and version.
+    pub driver: String,
+    /// 0 = no compute (GL 3.3 to 4.2, macOS GL), 1 = compute.
+    pub tier: u32,
+    /// A driver that computes on the CPU.
+    pub software: bool,
+    /// Largest edge of a 2-D texture, pixels.
+    pub max_texture_size: u32,
+}
+
+/// How to make an own device.
+#[derive(Clone, Debug)]
+pub struct DeviceOptions {
+    /// Which native interfaces may serve; `noop` draws nothing and needs no GPU.
+    pub backends: wgpu::Backends,
+    /// Use no compute shaders even where there are any: how a GL 3.3 host would draw.
+    pub force_tier0: bool,
+    /// Take the software driver.
+    pub force_software: bool,
+}
+
+impl Default for DeviceOptions {
+    fn default() -> Self {
+        let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12 | wgpu::Backends::GL;
+        Self { backends, force_tier0: false, force_software: false }
+    }
+}
+
+/// What a host-owned device needs round every batch of GPU calls: making its context current, fences, state.
+pub trait HostBinding: Send + Sync {
+    /// Called before the first GPU call of a batch.
+    ///
+    /// # Errors
+    /// Whatever keeps the host's context from being entered.
+    fn enter(&self) -> Result<()>;
+    /// Called after the last one; must not fail.
+    fn leave(&self);
+}
+
+/// Proof that the host's context is current; leaves it when dropped.
+#[must_use = "the host's context is left when this is dropped"]
+pub struct Entered<'a>(Option<&'a dyn HostBinding>);
+
+impl Drop for Entered<'_> {
+    fn drop(&mut self) {
+        if let Some(binding) = self.0 {
+            binding.leave();
+        }
+    }
+}
+
+#[derive(Default)]
+struct Faults {
+    first: Mutex<Option<Error>>,
+    lost: AtomicBool,
+}
+
+/// One native queue or GL context with what was found out about it. Shared by contexts and views.
+pub struct Device {
+    /// Kept alive for surfaces and for the order of destruction.
+    pub instance: wgpu::Instance,
+    /// The physical device.
+    pub adapter: wgpu::Adapter,
+    /// The logical device.
+    pub device: wgpu::Device,
+    /// Its one queue.
+    pub queue: wgpu::Queue,
+    caps: Caps,
+    faults: Arc<Faults>,
+    binding: Option<Box<dyn HostBinding>>,
+}
+
+impl Device {
+    /// Makes an own device, without a window.
+    ///
+    /// # Errors
+    /// [`Status::NoAdapter`] if no driver serves the request.
+    pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
+        let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
+        desc.backends = options.backends;
+        desc.flags = wgpu::InstanceFlags::empty();
+        desc.backend_options.noop.enable = options.backends.contains(wgpu::Backends::NOOP);
+        Self::from_instance(wgpu::Instance::new(desc), options, None)
+    }
+
+    /// Makes an own device on `instance` that can present to `surface`, if one is given.
+    ///
+    /// # Errors
+    /// [`Status::NoAdapter`] if no driver serves the request.
+    pub fn from_instance(
+        instance: wgpu::Instance,
+        options: &DeviceOptions,
+        surface: Option<&wgpu::Surface<'_>>,
+    ) -> Result<Arc<Self>> {
+        let request = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            force_fallback_adapter: options.force_software,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&request))
+            .map_err(|e| Error::new(Status::NoAdapter, format!("no graphics adapter serves this request: {e}")))?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter, options)))
+            .map_err(|e| Error::new(Status::NoAdapter, format!("the adapter gives no device: {e}")))?;
+        Self::adopt(instance, adapter, device, queue, options.force_tier0, None)
+    }
+
+    /// Takes over ready wgpu objects: a Rust host's own, or those made round a GL or Vulkan host's handles.
+    ///
+    /// # Errors
+    /// [`Status::Unsupported`] if the device lacks a format that Welkin needs.
+    pub fn adopt(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        force_tier0: bool,
+        binding: Option<Box<dyn HostBinding>>,
+    ) -> Result<Arc<Self>> {
+        let info = adapter.get_info();
+        let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+            && device.limits().max_compute_workgroup_size_x > 0;
+        let caps = Caps {
+            backend: info.backend,
+            adapter_name: info.name.clone(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            tier: u32::from(compute && !force_tier0),
+            software: info.device_type == wgpu::DeviceType::Cpu || info.name.contains("llvmpipe"),
+            max_texture_size: device.limits().max_texture_dimension_2d,
+        };
+        let faults = Arc::new(Faults::default());
+        watch(&device, &faults);
+        Ok(Arc::new(Self { instance, adapter, device, queue, caps, faults, binding }))
+    }
+
+    /// What this device can do.
+    pub fn caps(&self) -> &Caps {
+        &self.caps
+    }
+
+    /// Makes the host's context current for as long as the answer lives; does nothing for own devices.
+    ///
+    /// # Errors
+    /// Whatever keeps the host's context from being entered, and [`Status::DeviceLost`].
+    pub fn enter(&self) -> Result<Entered<'_>> {
+        if self.is_lost() {
+            return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
+        }
+        if let Some(binding) = &self.binding {
+            binding.enter()?;
+        }
+        Ok(Entered(self.binding.as_deref()))
+    }
+
+    /// Whether the native device is gone.
+    pub fn is_lost(&self) -> bool {
+        self.faults.lost.load(Ordering::Acquire)
+    }
+
+    /// The first GPU fault since the last call, if any: wgpu reports them here instead of panicking.
+    pub fn take_fault(&self) -> Option<Error> {
+        self.faults.first.lock().map_or(None, |mut f| f.take())
+    }
+
+    /// Fails with the first GPU fault since the last check.
+    ///
+    /// # Errors
+    /// The fault.
+    pub fn check(&self) -> Result<()> {
+        self.take_fault().map_or(Ok(()), Err)
+    }
+
+    /// Destroys the native device as a driver crash would; for tests of the lost path.
+    pub fn simulate_loss(&self) {
+        self.faults.lost.store(true, Ordering::Release);
+        self.device.destroy();
+    }
+
+    /// Assembles shader file `name` and hands it to the driver.
+    ///
+    /// # Errors
+    /// [`Status::Internal`] if an include is missing.
+    pub fn shader(&self, name: &str) -> Result<wgpu::ShaderModule> {
+        let text = super::shader::assemble(name)?;
+        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        }))
+    }
+
+    /// Submits, and waits until the GPU has finished. For queries, tests and measurements, not for frames.
+    ///
+    /// # Errors
+    /// [`Status::DeviceLost`], or the first GPU fault.
+    pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
+        self.queue.submit([encoder.finish()]);
+        self.wait()
+    }
+
+    /// Waits until the GPU has finished what was submitted.
+    ///
+    /// # Errors
+    /// [`Status::DeviceLost`], or the first GPU fault.
+    pub fn wait(&self) -> Result<()> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|e| Error::new(Status::DeviceLost, format!("waiting for the GPU failed: {e}")))?;
+        self.check()
+    }
+}
+
+/// The features and limits Welkin asks for: the adapter's own, so that a host's large targets fit.
+fn device_descriptor(adapter: &wgpu::Adapter, options: &DeviceOptions) -> wgpu::DeviceDescriptor<'static> {
+    let mut limits = adapter.limits();
+    if options.force_tier0 {
+        limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(limits);
+    }
+    wgpu::DeviceDescriptor {
+        label: Some("welkin"),
+        required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+        required_limits: limits,
+        ..Default::default()
+    }
+}
+
+/// Turns uncaptured errors and loss into values that calls return: nothing panics or prints.
+fn watch(device: &wgpu::Device, faults: &Arc<Faults>) {
+    let sink = faults.clone();
+    device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+        let status = match &e {
+            wgpu::Error::OutOfMemory { .. } => Status::OutOfMemory,
+            _ => Status::Internal,
+        };
+        log::error!("GPU fault: {e}");
+        if let Ok(mut first) = sink.first.lock() {
+            first.get_or_insert_with(|| Error::new(status, format!("GPU fault: {e}")));
+        }
+    }));
+    let sink = Arc::downgrade(faults);
+    device.set_device_lost_callback(move |reason, text| {
+        if let Some(sink) = sink.upgrade()
+            && reason != wgpu::DeviceLostReason::Destroyed
+        {
+            log::error!("device lost: {text}");
+            sink.lost.store(true, Ordering::Release);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_noop_device_exists_everywhere() {
+        let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..Default::default() };
+        let device = Device::headless(&options).unwrap();
+        assert_eq!(device.caps().backend, wgpu::Backend::Noop);
+    }
+
+    #[test]
+    fn a_fault_is_a_value_and_a_lost_device_says_so() {
+        let device = Device::headless(&DeviceOptions::default()).unwrap();
+        device.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 0, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        assert_eq!(device.check().unwrap_err().status, Status::Internal);
+        assert!(device.check().is_ok());
+        device.simulate_loss();
+        assert_eq!(device.enter().err().unwrap().status, Status::DeviceLost);
+    }
+}

@@ -1,0 +1,83 @@
+//! Reading textures back to the CPU, for queries, probes, tests and pictures. Waits for the GPU: never in a frame.
+
+use half::f16;
+
+use super::Device;
+use crate::error::{Error, Result, Status};
+
+/// Bytes of one texel of the formats that can be read back.
+fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
+    use wgpu::TextureFormat as F;
+    match format {
+        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb | F::R32Float | F::Rg16Float => Ok(4),
+        F::Rgba16Float => Ok(8),
+        F::Rgba32Float => Ok(16),
+        other => Err(Error::unsupported(format!("reading back a texture of format {other:?}"))),
+    }
+}
+
+/// The raw bytes of mip 0 of a 2-D texture (or of `layer` of an array), rows packed.
+///
+/// # Errors
+/// [`Status::Unsupported`] for other formats, [`Status::DeviceLost`] or a GPU fault.
+pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>> {
+    let (width, height) = (texture.width(), texture.height());
+    let row = width * texel_bytes(texture.format())?;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded) * u64::from(height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            aspect: wgpu::TextureAspect::All,
+        },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+        },
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+    );
+    device.queue.submit([encoder.finish()]);
+    let (done, answer) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |r| {
+        let _ = done.send(r);
+    });
+    device.wait()?;
+    match answer.try_recv() {
+        Ok(Ok(())) => {}
+        _ => return Err(Error::new(Status::DeviceLost, "the GPU did not give a texture back")),
+    }
+    let map = |e| Error::new(Status::Internal, format!("mapping a readback buffer failed: {e}"));
+    let view = buffer.get_mapped_range(..).map_err(map)?;
+    Ok(view.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+}
+
+/// The texels of mip 0 as RGBA in f32; missing channels are 0, a missing alpha 1; 8-bit ones are divided by 255
+/// and not linearised.
+///
+/// # Errors
+/// As [`bytes`].
+pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
+    use wgpu::TextureFormat as F;
+    let raw = bytes(device, texture, 0)?;
+    let h = |b: &[u8], i: usize| f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
+    let s = |b: &[u8], i: usize| f32::from_le_bytes([b[4 * i], b[4 * i + 1], b[4 * i + 2], b[4 * i + 3]]);
+    let u = |b: u8| f32::from(b) / 255.0;
+    let size = texel_bytes(texture.format())? as usize;
+    let texel = |b: &[u8]| match texture.format() {
+        F::Rgba16Float => [h(b, 0), h(b, 1), h(b, 2), h(b, 3)],
+        F::Rg16Float => [h(b, 0), h(b, 1), 0.0, 1.0],
+        F::Rgba32Float => [s(b, 0), s(b, 1), s(b, 2), s(b, 3)],
+        F::R32Float => [s(b, 0), 0.0, 0.0, 1.0],
+        F::Bgra8Unorm | F::Bgra8UnormSrgb => [u(b[2]), u(b[1]), u(b[0]), u(b[3])],
+        _ => [u(b[0]), u(b[1]), u(b[2]), u(b[3])],
+    };
+    Ok(raw.chunks_exact(size).map(texel).collect())
+}

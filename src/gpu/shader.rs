@@ -1,0 +1,143 @@
+//! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each, nothing else.
+//!
+//! Variants come from `override` constants and entry points, never from a preprocessor. Every assembled shader is
+//! validated by naga in a test ([`names`] lists them), and every uniform's offsets are compared with naga's
+//! ([`struct_layout`]).
+
+use crate::error::{Error, Result, Status};
+
+mod table {
+    include!(concat!(env!("OUT_DIR"), "/shader_table.rs"));
+}
+
+/// Names of all shader files below `shaders/`, such as `sky/lookup.wgsl`.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    table::SHADERS.iter().map(|(name, _)| *name)
+}
+
+fn source(name: &str) -> Option<&'static str> {
+    table::SHADERS.binary_search_by_key(&name, |(n, _)| n).ok().map(|i| table::SHADERS[i].1)
+}
+
+/// The text of shader `name` with its includes put before it, each once, in order of first mention.
+///
+/// # Errors
+/// [`Status::Internal`] if a file is missing or includes form a cycle; the message names the chain.
+pub fn assemble(name: &str) -> Result<String> {
+    assemble_from(name, &|n| source(n).map(str::to_owned))
+}
+
+/// As [`assemble`], from another set of files: `lookup` gives a file's text.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_from(name: &str, lookup: &dyn Fn(&str) -> Option<String>) -> Result<String> {
+    let mut done = Vec::new();
+    let mut out = String::new();
+    append(name, lookup, &mut Vec::new(), &mut done, &mut out)?;
+    Ok(out)
+}
+
+fn append(
+    name: &str,
+    lookup: &dyn Fn(&str) -> Option<String>,
+    chain: &mut Vec<String>,
+    done: &mut Vec<String>,
+    out: &mut String,
+) -> Result<()> {
+    if done.iter().any(|d| d == name) {
+        return Ok(());
+    }
+    let path = || chain.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(" -> ");
+    if chain.iter().any(|c| c == name) {
+        return Err(Error::new(Status::Internal, format!("shader include forms a cycle: {}", path())));
+    }
+    let Some(text) = lookup(name) else {
+        return Err(Error::new(Status::Internal, format!("shader file is missing: {}", path())));
+    };
+    chain.push(name.to_owned());
+    for line in text.lines() {
+        if let Some(rest) = line.strip_prefix("//!include ") {
+            append(rest.trim().trim_matches('"'), lookup, chain, done, out)?;
+        }
+    }
+    chain.pop();
+    out.push_str(&format!("// ---- {name}\n"));
+    for line in text.lines().filter(|l| !l.starts_with("//!include ")) {
+        out.push_str(line);
+        out.push('\n');
+    }
+    done.push(name.to_owned());
+    Ok(())
+}
+
+/// Size in bytes and (member, offset) list of a WGSL struct, as naga lays it out.
+///
+/// # Errors
+/// [`Status::Internal`] if the text does not parse or has no such struct.
+pub fn struct_layout(wgsl: &str, name: &str) -> Result<(u32, Vec<(String, u32)>)> {
+    let module =
+        wgpu::naga::front::wgsl::parse_str(wgsl).map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))?;
+    for (_, ty) in module.types.iter() {
+        if let (Some(n), wgpu::naga::TypeInner::Struct { members, span }) = (&ty.name, &ty.inner)
+            && n == name
+        {
+            let list = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect();
+            return Ok((*span, list));
+        }
+    }
+    Err(Error::new(Status::Internal, format!("no struct {name} in this shader")))
+}
+
+/// Parses and validates an assembled shader as a strict implementation would.
+///
+/// # Errors
+/// [`Status::Internal`] with naga's report, lines and carets included.
+pub fn validate(wgsl: &str) -> Result<()> {
+    use wgpu::naga::{front::wgsl, valid};
+    let module = wgsl::parse_str(wgsl).map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))?;
+    valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty())
+        .validate(&module)
+        .map(|_| ())
+        .map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn files<'a>(set: &'a [(&'a str, &'a str)]) -> impl Fn(&str) -> Option<String> + 'a {
+        move |n| set.iter().find(|(k, _)| *k == n).map(|(_, v)| (*v).to_owned())
+    }
+
+    #[test]
+    fn every_shader_assembles_and_validates() {
+        for name in names() {
+            let text = assemble(name).unwrap();
+            validate(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        }
+    }
+
+    #[test]
+    fn an_include_comes_first_and_once() {
+        let set = [("a", "//!include \"b\"\n//!include \"c\"\nA"), ("b", "//!include \"c\"\nB"), ("c", "C")];
+        let text = assemble_from("a", &files(&set)).unwrap();
+        let order: Vec<&str> = text.lines().filter(|l| !l.starts_with("//")).collect();
+        assert_eq!(order, ["C", "B", "A"]);
+    }
+
+    #[test]
+    fn cycles_and_missing_files_are_named() {
+        let set = [("a", "//!include \"b\""), ("b", "//!include \"a\"")];
+        assert!(assemble_from("a", &files(&set)).unwrap_err().message.contains("a -> b -> a"));
+        assert!(assemble_from("x", &files(&set)).unwrap_err().message.contains("missing: x"));
+    }
+
+    #[test]
+    fn layout_and_validation_see_faults() {
+        let text = "struct S { a: f32, b: vec3f, } @group(0) @binding(0) var<uniform> s: S;";
+        assert_eq!(struct_layout(text, "S").unwrap(), (32, vec![("a".into(), 0), ("b".into(), 16)]));
+        assert!(struct_layout(text, "T").is_err());
+        assert!(validate("fn f() -> f32 { return 1u; }").is_err());
+    }
+}
