@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn a_fault_is_a_value_and_a_lost_device_says_so() {
         let device = Device::headless(&DeviceOptions::default()).unwrap();
-        device.device.create_texture(&wgpu::TextureDescriptor {
+        let _ = device.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width: 0, height: 1, depth_or_array_layers: 1 },
             mip_level_count: 1,

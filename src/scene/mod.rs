@@ -1,1 +1,10 @@
 //! Cameras, depth conventions and world frames: where things are.
+//!
+//! The host's coordinates stay its own; rooms obtain up, altitude, north and place only through
+//! [`WorldFrame::frame_at`]. Positions are f64 in the host's frame, everything on the GPU is camera-relative.
+
+mod camera;
+mod world;
+
+pub use camera::Camera;
+pub use world::{Axes, LocalFrame, Place, WorldFrame, WorldKind};

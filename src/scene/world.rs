@@ -1,0 +1,206 @@
+//! World frames: from the host's coordinates to up, north, altitude and place.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Result, check_range};
+
+/// Semi-major axis of the WGS 84 ellipsoid, m (NIMA TR8350.2, 2000).
+const WGS84_A: f64 = 6_378_137.0;
+/// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
+const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
+
+/// A place on the Earth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Geodetic latitude, degrees north, [-90, 90].
+    pub latitude_deg: f64,
+    /// Longitude, degrees east, [-360, 360].
+    pub longitude_deg: f64,
+    /// Height above the ellipsoid, taken as height above mean sea level, m, [-1e4, 1e9].
+    pub altitude_m: f64,
+}
+
+impl Place {
+    /// Refuses what is not a place, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("latitude_deg", self.latitude_deg, -90.0, 90.0, "deg")?;
+        check_range("longitude_deg", self.longitude_deg, -360.0, 360.0, "deg")?;
+        check_range("altitude_m", self.altitude_m, -1e4, 1e9, "m")
+    }
+
+    /// Earth-centred coordinates on WGS 84, m.
+    pub fn to_ecef(&self) -> DVec3 {
+        let (sp, cp) = self.latitude_deg.to_radians().sin_cos();
+        let (sl, cl) = self.longitude_deg.to_radians().sin_cos();
+        let n = WGS84_A / (1.0 - WGS84_E2 * sp * sp).sqrt();
+        let r = (n + self.altitude_m) * cp;
+        DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
+    }
+
+    /// The place of Earth-centred coordinates, by Bowring's iteration (Bowring 1976); within 1e-6 m of the inverse
+    /// from the centre's neighbourhood (1 km) to 1e9 m.
+    pub fn from_ecef(p: DVec3) -> Self {
+        let rho = p.x.hypot(p.y);
+        let longitude = p.y.atan2(p.x);
+        let mut latitude = p.z.atan2(rho * (1.0 - WGS84_E2));
+        for _ in 0..8 {
+            let s = latitude.sin();
+            let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
+            latitude = (p.z + WGS84_E2 * n * s).atan2(rho);
+        }
+        let (s, c) = latitude.sin_cos();
+        let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
+        let altitude = rho * c + p.z * s - WGS84_A * WGS84_A / n;
+        Self { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m: altitude }
+    }
+
+    /// Rows east, north, up at this place, in Earth-centred axes.
+    fn ecef_to_enu(&self) -> DMat3 {
+        let (sp, cp) = self.latitude_deg.to_radians().sin_cos();
+        let (sl, cl) = self.longitude_deg.to_radians().sin_cos();
+        let east = DVec3::new(-sl, cl, 0.0);
+        let north = DVec3::new(-sp * cl, -sp * sl, cp);
+        let up = DVec3::new(cp * cl, cp * sl, sp);
+        DMat3::from_cols(east, north, up).transpose()
+    }
+}
+
+/// Which of the host's axes point where, in flat and tangent worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Axes {
+    /// x east, y north, z up.
+    #[default]
+    ZUp,
+    /// x east, y up, z south: the usual axes of OpenGL worlds.
+    YUp,
+}
+
+/// How the host's world lies on the planet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum WorldKind {
+    /// A plane: altitude is the up coordinate plus the origin's, up is the same everywhere.
+    #[default]
+    Flat,
+    /// East-north-up at the origin's place with the curved planet below.
+    Tangent,
+    /// Earth-centred, Earth-fixed (WGS 84); axes and origin do not matter.
+    Ecef,
+}
+
+/// The host's world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldFrame {
+    /// Flat, tangent or Earth-centred.
+    pub kind: WorldKind,
+    /// Axes of flat and tangent worlds.
+    pub axes: Axes,
+    /// Where the host's (0, 0, 0) lies.
+    pub origin: Place,
+    /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360].
+    pub grid_bearing_deg: f64,
+}
+
+impl Default for WorldFrame {
+    fn default() -> Self {
+        let origin = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
+        Self { kind: WorldKind::Flat, axes: Axes::ZUp, origin, grid_bearing_deg: 0.0 }
+    }
+}
+
+/// What a point of the host's world knows of the planet below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalFrame {
+    /// Latitude, longitude and altitude of the point.
+    pub place: Place,
+    /// Turns the host's axes into (east, north, up) at the point.
+    pub world_to_enu: DMat3,
+}
+
+impl WorldFrame {
+    /// Refuses what is not a frame, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        self.origin.validate()?;
+        check_range("grid_bearing_deg", self.grid_bearing_deg, -360.0, 360.0, "deg")
+    }
+
+    /// Up, north, altitude and place at `position` of the host's world.
+    pub fn frame_at(&self, position: DVec3) -> LocalFrame {
+        match self.kind {
+            WorldKind::Flat => {
+                let to_enu = self.axes_to_enu();
+                let mut place = self.origin;
+                place.altitude_m += (to_enu * position).z;
+                LocalFrame { place, world_to_enu: to_enu }
+            }
+            WorldKind::Tangent => {
+                let to_origin = self.axes_to_enu();
+                let origin_rows = self.origin.ecef_to_enu();
+                let ecef = self.origin.to_ecef() + origin_rows.transpose() * (to_origin * position);
+                let place = Place::from_ecef(ecef);
+                LocalFrame { place, world_to_enu: place.ecef_to_enu() * origin_rows.transpose() * to_origin }
+            }
+            WorldKind::Ecef => {
+                let place = Place::from_ecef(position);
+                LocalFrame { place, world_to_enu: place.ecef_to_enu() }
+            }
+        }
+    }
+
+    /// Host axes to (east, north, up), grid bearing included.
+    fn axes_to_enu(&self) -> DMat3 {
+        let axes = match self.axes {
+            Axes::ZUp => DMat3::IDENTITY,
+            Axes::YUp => DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y),
+        };
+        // A grid whose north points east of true north turns its vectors clockwise.
+        DMat3::from_rotation_z(-self.grid_bearing_deg.to_radians()) * axes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ecef_round_trip_from_ground_to_space() {
+        for lat in [-90.0, -45.0, 0.0, 36.6, 89.9] {
+            for alt in [-400.0, 0.0, 9000.0, 2e5, 1e7] {
+                let p = Place { latitude_deg: lat, longitude_deg: -84.2, altitude_m: alt };
+                let q = Place::from_ecef(p.to_ecef());
+                assert!((q.altitude_m - alt).abs() < 1e-6 * (1.0 + alt.abs() * 1e-6), "{p:?} {q:?}");
+                assert!((q.latitude_deg - lat).abs() < 1e-10);
+            }
+        }
+        // Greenwich on the equator lies one semi-major axis from the centre.
+        let p = Place { latitude_deg: 0.0, longitude_deg: 0.0, altitude_m: 0.0 };
+        assert_eq!(p.to_ecef(), DVec3::new(WGS84_A, 0.0, 0.0));
+    }
+
+    #[test]
+    fn tangent_world_curves_away_and_flat_does_not() {
+        let mut w = WorldFrame { kind: WorldKind::Tangent, ..Default::default() };
+        let far = DVec3::new(0.0, 50e3, 0.0);
+        let drop = w.frame_at(far).place.altitude_m;
+        assert!((drop - 50e3f64.powi(2) / (2.0 * 6.372e6)).abs() < 2.0, "{drop}");
+        let tilt = (w.frame_at(far).world_to_enu * DVec3::Z).y;
+        assert!((tilt + 50e3 / 6.37e6).abs() < 2e-4, "up at the origin leans back south of the far up: {tilt}");
+        w.kind = WorldKind::Flat;
+        assert_eq!(w.frame_at(far).place.altitude_m, 0.0);
+    }
+
+    #[test]
+    fn axes_and_grid_bearing_turn_into_east_north_up() {
+        let y_up = WorldFrame { axes: Axes::YUp, ..Default::default() };
+        assert_eq!(y_up.frame_at(DVec3::ZERO).world_to_enu * DVec3::NEG_Z, DVec3::Y);
+        assert_eq!(y_up.frame_at(DVec3::new(0.0, 7.0, 0.0)).place.altitude_m, 7.0);
+        let turned = WorldFrame { grid_bearing_deg: 90.0, ..Default::default() };
+        let north_axis = turned.frame_at(DVec3::ZERO).world_to_enu * DVec3::Y;
+        assert!((north_axis - DVec3::X).length() < 1e-12, "grid north of bearing 90 points east: {north_axis}");
+    }
+}
