@@ -1,0 +1,380 @@
+//! What the sky needs to know of a planet: its air, its ground and its sun, with units and accepted ranges.
+//!
+//! A [`Planet`] is plain data. Everything that walks over its fields (range checks, the planet file, the hash that
+//! names cached tables) reads one list, [`FIELDS`], so that a new field cannot be forgotten in one of them.
+
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+use super::planet_file;
+use crate::error::{Error, Result, Status};
+
+/// Gas: scatters without absorbing, density falling exponentially with altitude.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rayleigh {
+    /// Scattering coefficient at altitude 0 per wavelength, 1/m, `[0, 10]`.
+    pub scattering_per_m: [f64; 3],
+    /// Altitude over which the density falls by e, m, `[0, 1e6]`; 0 means that there is no gas above the ground.
+    pub scale_height_m: f64,
+}
+
+/// Haze: scatters with a forward peak (Cornette and Shanks 1992) and absorbs, density falling exponentially.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mie {
+    /// Scattering coefficient at altitude 0 per wavelength, 1/m, `[0, 10]`, not above the extinction.
+    pub scattering_per_m: [f64; 3],
+    /// Extinction coefficient (scattering + absorption) at altitude 0 per wavelength, 1/m, `[0, 10]`.
+    pub extinction_per_m: [f64; 3],
+    /// Altitude over which the density falls by e, m, `[0, 1e6]`; 0 means that there is no haze above the ground.
+    pub scale_height_m: f64,
+    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; positive scatters forward, away from the sun.
+    pub asymmetry_g: f64,
+}
+
+/// Ozone: absorbs without scattering. A tent: 1 at the centre, falling linearly to 0 at the half width on both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Absorption {
+    /// Extinction coefficient at the centre per wavelength, 1/m, `[0, 10]`.
+    pub extinction_per_m: [f64; 3],
+    /// Altitude of the centre, m, `[0, 1e6]`.
+    pub center_altitude_m: f64,
+    /// Distance from the centre to where the layer ends, m, `[0, 1e6]`; 0 means that there is no layer.
+    pub half_width_m: f64,
+}
+
+/// A planet with its air, ground and sun. Fields are public plain data: call [`Planet::check`] after setting them by
+/// hand; every function of the crate that takes a planet does so too.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Planet {
+    /// The three wavelengths that are carried through, nm, each in `[200, 4000]`. The order is the order of every
+    /// other triple; Welkin's own colours expect red, green, blue but any order is right for radiances.
+    pub wavelengths_nm: [f64; 3],
+    /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`.
+    /// Radiances are in W m^-2 sr^-1 nm^-1 with it; `sky::spectral` turns them into luminous colours. With 1 they
+    /// are radiances per unit irradiance.
+    pub solar_irradiance: [f64; 3],
+    /// Half the angle that the sun's disc subtends, degrees, `[0, 10]`; 0 is a point.
+    pub sun_angular_radius_deg: f64,
+    /// Radius of the ground's sphere (altitude 0), m, `[1e3, 1e9]`.
+    pub bottom_radius_m: f64,
+    /// Radius where the air ends, m, above the bottom radius, at most 2e9. The air's density is cut to 0 there.
+    pub top_radius_m: f64,
+    /// Share of light that the ground reflects, the same in all directions (Lambert), per wavelength, `[0, 1]`.
+    pub ground_albedo: [f64; 3],
+    /// Gas.
+    pub rayleigh: Rayleigh,
+    /// Haze.
+    pub mie: Mie,
+    /// Ozone.
+    pub absorption: Absorption,
+}
+
+/// One line of a planet file: where it stands, what it means, what it accepts, and where it lives in [`Planet`].
+pub(crate) struct Field {
+    pub section: &'static str,
+    pub key: &'static str,
+    pub unit: &'static str,
+    pub range: (f64, f64),
+    pub get: fn(&Planet) -> &[f64],
+    pub set: fn(&mut Planet) -> &mut [f64],
+}
+
+macro_rules! field {
+    ($section:literal, $key:literal, $unit:literal, $range:expr, triple $($path:ident).+) => {
+        Field { section: $section, key: $key, unit: $unit, range: $range, get: |p| &p.$($path).+, set: |p| &mut p.$($path).+ }
+    };
+    ($section:literal, $key:literal, $unit:literal, $range:expr, one $($path:ident).+) => {
+        Field { section: $section, key: $key, unit: $unit, range: $range,
+            get: |p| std::slice::from_ref(&p.$($path).+), set: |p| std::slice::from_mut(&mut p.$($path).+) }
+    };
+}
+
+/// Every field of a planet, in the order of its file.
+#[rustfmt::skip]
+pub(crate) const FIELDS: [Field; 15] = [
+    field!("", "wavelengths_nm", "nm", (200.0, 4000.0), triple wavelengths_nm),
+    field!("", "solar_irradiance", "W m^-2 nm^-1", (0.0, 1e6), triple solar_irradiance),
+    field!("", "sun_angular_radius_deg", "deg", (0.0, 10.0), one sun_angular_radius_deg),
+    field!("", "bottom_radius_m", "m", (1e3, 1e9), one bottom_radius_m),
+    field!("", "top_radius_m", "m", (1e3, 2e9), one top_radius_m),
+    field!("", "ground_albedo", "1", (0.0, 1.0), triple ground_albedo),
+    field!("rayleigh", "scattering_per_m", "1/m", (0.0, 10.0), triple rayleigh.scattering_per_m),
+    field!("rayleigh", "scale_height_m", "m", (0.0, 1e6), one rayleigh.scale_height_m),
+    field!("mie", "scattering_per_m", "1/m", (0.0, 10.0), triple mie.scattering_per_m),
+    field!("mie", "extinction_per_m", "1/m", (0.0, 10.0), triple mie.extinction_per_m),
+    field!("mie", "scale_height_m", "m", (0.0, 1e6), one mie.scale_height_m),
+    field!("mie", "asymmetry_g", "1", (-0.9999, 0.9999), one mie.asymmetry_g),
+    field!("absorption", "extinction_per_m", "1/m", (0.0, 10.0), triple absorption.extinction_per_m),
+    field!("absorption", "center_altitude_m", "m", (0.0, 1e6), one absorption.center_altitude_m),
+    field!("absorption", "half_width_m", "m", (0.0, 1e6), one absorption.half_width_m),
+];
+
+impl Field {
+    /// Name as the planet file says it: `mie.asymmetry_g`.
+    pub fn name(&self) -> String {
+        if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
+    }
+
+    /// What the field accepts, with its unit.
+    pub fn accepted(&self) -> String {
+        let (lo, hi) = self.range;
+        let unit = if self.unit == "1" { String::new() } else { format!(" {}", self.unit) };
+        let each = if (self.get)(&Planet::earth()).len() == 3 { "three numbers, each " } else { "" };
+        format!("{each}in [{lo:?}, {hi:?}]{unit}")
+    }
+
+    fn check(&self, planet: &Planet) -> Result<()> {
+        match (self.get)(planet).iter().find(|v| !(v.is_finite() && (self.range.0..=self.range.1).contains(*v))) {
+            None => Ok(()),
+            Some(bad) => Err(Error::range(&self.name(), &self.accepted(), bad)),
+        }
+    }
+}
+
+impl Planet {
+    /// The Earth on a clear day.
+    ///
+    /// - Wavelengths 680, 550, 440 nm: see `sky::spectral` for the colour error that they leave.
+    /// - Gas: [`rayleigh_scattering_per_m`] (Bodhaine et al. 1999) at 15 C and 1013.25 hPa; the scale height is the one
+    ///   that gives the vertical optical depth of the same paper.
+    /// - Haze: a clean continental air, extinction 2.5e-5/m at 550 nm (a meteorological optical range of 82 km
+    ///   with the gas), wavelength exponent 1.3 (Angstrom 1929), single-scattering albedo 0.95, g = 0.76, 1.2 km.
+    /// - Ozone: 300 Dobson units in a tent from 10 to 40 km, cross-sections of Serdyuchenko et al. 2014 at 233 K.
+    /// - Sun: spectral irradiance of ASTM G173 (extraterrestrial) at 1 au, W m^-2 nm^-1; the disc at 1 au.
+    /// - Ground: grey, albedo 0.15 (land without snow). Radius: IUGG mean, 6371.0 km; the air is cut at 100 km.
+    pub fn earth() -> Self {
+        let wavelengths_nm = [680.0, 550.0, 440.0];
+        let haze = wavelengths_nm.map(|nm: f64| 2.5e-5 * (nm / 550.0).powf(-1.3));
+        Self {
+            wavelengths_nm,
+            solar_irradiance: wavelengths_nm.map(super::spectral::solar_irradiance),
+            sun_angular_radius_deg: 0.26656,
+            bottom_radius_m: 6_371_000.0,
+            top_radius_m: 6_471_000.0,
+            ground_albedo: [0.15; 3],
+            rayleigh: Rayleigh {
+                scattering_per_m: wavelengths_nm.map(rayleigh_scattering_per_m),
+                scale_height_m: EARTH_RAYLEIGH_SCALE_HEIGHT_M,
+            },
+            mie: Mie {
+                scattering_per_m: haze.map(|b| 0.95 * b),
+                extinction_per_m: haze,
+                scale_height_m: 1200.0,
+                asymmetry_g: 0.76,
+            },
+            absorption: Absorption {
+                extinction_per_m: wavelengths_nm
+                    .map(|nm| 300.0 * DOBSON_UNIT_PER_M2 / 15_000.0 * super::spectral::ozone_cross_section_m2(nm)),
+                center_altitude_m: 25_000.0,
+                half_width_m: 15_000.0,
+            },
+        }
+    }
+
+    /// The air of this planet with everything in it thinner or thicker by `factor` (1 = as it is).
+    pub fn with_air_scaled(mut self, factor: f64) -> Self {
+        for list in [
+            &mut self.rayleigh.scattering_per_m,
+            &mut self.mie.scattering_per_m,
+            &mut self.mie.extinction_per_m,
+            &mut self.absorption.extinction_per_m,
+        ] {
+            list.iter_mut().for_each(|v| *v *= factor);
+        }
+        self
+    }
+
+    /// Thickness of the air, m.
+    pub fn thickness_m(&self) -> f64 {
+        self.top_radius_m - self.bottom_radius_m
+    }
+
+    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`).
+    ///
+    /// # Errors
+    /// [`Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the wrong
+    /// kind; [`Status::InvalidArgument`] for a value that is not finite or out of range. The message names the key, its
+    /// unit and the accepted range.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        planet_file::parse(text)
+    }
+
+    /// Writes the planet as a planet file that [`Planet::from_toml`] reads back bit for bit.
+    pub fn to_toml(&self) -> String {
+        let mut out = String::new();
+        let mut section = "";
+        for field in &FIELDS {
+            if field.section != section {
+                section = field.section;
+                let _ = write!(out, "\n[{section}]\n");
+            }
+            let values: Vec<String> = (field.get)(self).iter().map(|v| format!("{v:?}")).collect();
+            let value = if values.len() == 1 { values[0].clone() } else { format!("[{}]", values.join(", ")) };
+            let _ = writeln!(out, "{} = {value}  # {}", field.key, field.accepted());
+        }
+        out
+    }
+
+    /// Checks every field against its range and the fields against each other.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`]; the message names the key, its unit and the accepted range.
+    pub fn check(&self) -> Result<()> {
+        FIELDS.iter().try_for_each(|f| f.check(self))?;
+        if self.top_radius_m <= self.bottom_radius_m {
+            let accepted = format!("above bottom_radius_m = {:?} m", self.bottom_radius_m);
+            return Err(Error::range("top_radius_m", &accepted, self.top_radius_m));
+        }
+        for (s, e) in self.mie.scattering_per_m.iter().zip(self.mie.extinction_per_m) {
+            if *s > e * (1.0 + 1e-12) {
+                let accepted = format!("at most mie.extinction_per_m = {e:?} 1/m (extinction contains scattering)");
+                return Err(Error::range("mie.scattering_per_m", &accepted, s));
+            }
+        }
+        Ok(())
+    }
+
+    /// A number that names this planet: equal for equal fields, the same on every machine and in every version in which
+    /// the fields mean the same. For the names of cached tables. (FNV-1a, 64 bits, over the fields' bits.)
+    pub fn hash(&self) -> u64 {
+        let mut h: u64 = 0xcbf2_9ce4_8422_2325;
+        let mut eat = |bytes: &[u8]| {
+            for b in bytes {
+                h = (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3);
+            }
+        };
+        for field in &FIELDS {
+            eat(field.name().as_bytes());
+            for v in (field.get)(self) {
+                // + 0.0 makes -0 and 0, which mean the same, one number.
+                eat(&(v + 0.0).to_bits().to_le_bytes());
+            }
+        }
+        h
+    }
+}
+
+/// Molecules in a vertical column of 1 Dobson unit, 1/m^2 (Loschmidt's number times 10 um).
+pub const DOBSON_UNIT_PER_M2: f64 = 2.687e20;
+/// Number density of air at 15 C and 1013.25 hPa, 1/m^3 (Bodhaine et al. 1999, section 3).
+pub const AIR_DENSITY_15C_PER_M3: f64 = 2.546_899e25;
+/// Scale height with which the density at 15 C gives Bodhaine's vertical optical depth: his column of
+/// 2.1520e29 molecules/m^2 over [`AIR_DENSITY_15C_PER_M3`].
+pub const EARTH_RAYLEIGH_SCALE_HEIGHT_M: f64 = 2.1520e29 / AIR_DENSITY_15C_PER_M3;
+
+/// The fraction of Bodhaine et al. 1999, equations 29 and 30; wavelength in um.
+fn bodhaine_fraction(um: f64) -> f64 {
+    let l2 = um * um;
+    (1.045_599_6 - 341.290_61 / l2 - 0.902_308_50 * l2) / (1.0 + 0.002_705_988_9 / l2 - 85.968_563 * l2)
+}
+
+/// Vertical Rayleigh optical depth of the Earth's air at sea level, 45 N, 1013.25 hPa (Bodhaine et al. 1999, eq. 30).
+/// Wavelength in nm, meant for 250 to 1000; the fit is used as it is outside.
+pub fn rayleigh_optical_depth(wavelength_nm: f64) -> f64 {
+    0.002_152_0 * bodhaine_fraction(wavelength_nm * 1e-3)
+}
+
+/// Rayleigh scattering coefficient of air at 15 C and 1013.25 hPa, 1/m: the cross-section of Bodhaine et al. 1999,
+/// eq. 29, times [`AIR_DENSITY_15C_PER_M3`]. Wavelength in nm, meant for 250 to 1000.
+pub fn rayleigh_scattering_per_m(wavelength_nm: f64) -> f64 {
+    bodhaine_fraction(wavelength_nm * 1e-3) * 1e-32 * AIR_DENSITY_15C_PER_M3
+}
+
+/// An error of a planet file at a place in its text.
+pub(crate) fn file_error(text: &str, at: usize, status: Status, message: &str) -> Error {
+    let before = &text[..at.min(text.len())];
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    Error::new(status, format!("planet file, line {line}, column {column}: {message}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_is_in_the_list_and_changes_the_hash() {
+        // 9 triples and 9 single numbers stand in the struct; the list must reach each of them.
+        let numbers: usize = FIELDS.iter().map(|f| (f.get)(&Planet::earth()).len()).sum();
+        assert_eq!(numbers * 8, std::mem::size_of::<Planet>());
+        let earth = Planet::earth();
+        let mut seen = std::collections::BTreeSet::from([earth.hash()]);
+        for field in &FIELDS {
+            for i in 0..(field.get)(&earth).len() {
+                let mut other = earth;
+                (field.set)(&mut other)[i] += 1e-9;
+                assert!(seen.insert(other.hash()), "{} [{i}] does not change the hash", field.name());
+            }
+        }
+    }
+
+    #[test]
+    fn hash_is_the_same_on_every_machine() {
+        // Names of cached tables: a change of this number says that old caches are not read any more.
+        assert_eq!(golden().hash(), 0x03d2_538b_fb47_2cc1);
+    }
+
+    #[test]
+    fn rayleigh_follows_bodhaine() {
+        // Bodhaine et al. 1999, equation 30, and the coefficient at 15 C, computed apart.
+        let table = [
+            (400.0, 0.36021, 42.64),
+            (440.0, 0.24261, 28.72),
+            (500.0, 0.14335, 16.97),
+            (550.0, 0.09707, 11.49),
+            (600.0, 0.06809, 8.06),
+            (650.0, 0.04918, 5.82),
+            (680.0, 0.04096, 4.85),
+            (700.0, 0.03642, 4.31),
+        ];
+        for (nm, tau, beta) in table {
+            assert!((rayleigh_optical_depth(nm) - tau).abs() < 6e-6, "{nm}");
+            // The table's coefficients are rounded to 0.01 and come from a density 2.5e-4 higher.
+            assert!((rayleigh_scattering_per_m(nm) * 1e6 - beta).abs() < 5e-3 + 2.5e-4 * beta, "{nm}");
+            let column = rayleigh_scattering_per_m(nm) * EARTH_RAYLEIGH_SCALE_HEIGHT_M;
+            assert!((column / rayleigh_optical_depth(nm) - 1.0).abs() < 1e-12);
+        }
+        assert!((EARTH_RAYLEIGH_SCALE_HEIGHT_M - 8450.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn fields_are_checked_against_range_and_each_other() {
+        assert!(Planet::earth().check().is_ok());
+        for field in &FIELDS {
+            for bad in [f64::NAN, f64::INFINITY, field.range.0 - 1.0, field.range.1 + 1.0 + field.range.1.abs()] {
+                let mut planet = Planet::earth();
+                (field.set)(&mut planet)[0] = bad;
+                let e = planet.check().unwrap_err();
+                assert!(e.message.contains(&field.name()) && e.message.contains(&field.accepted()), "{}", e.message);
+            }
+        }
+        let inside_out = Planet { top_radius_m: 6.3e6, ..Planet::earth() };
+        assert!(inside_out.check().unwrap_err().message.contains("top_radius_m must be above bottom_radius_m"));
+        let mut glowing = Planet::earth();
+        glowing.mie.scattering_per_m[1] *= 2.0;
+        assert!(glowing.check().unwrap_err().message.contains("mie.scattering_per_m must be at most"));
+        let mut flat = Planet::earth();
+        (flat.rayleigh.scale_height_m, flat.mie.scale_height_m) = (0.0, 1e6);
+        assert!(flat.check().is_ok());
+    }
+
+    fn golden() -> Planet {
+        Planet::from_toml(include_str!("../../examples/data/planet_golden.toml")).unwrap()
+    }
+
+    #[test]
+    fn file_is_read_and_written_bit_for_bit() {
+        let planet = golden();
+        assert_eq!(planet.wavelengths_nm, [440.0, 520.0, 600.0]);
+        assert_eq!(planet.mie.asymmetry_g, 0.8);
+        assert_eq!(planet.absorption.half_width_m, 15000.0);
+        for p in [planet, Planet::earth(), Planet::earth().with_air_scaled(1e4 / 3.0)] {
+            assert_eq!(Planet::from_toml(&p.to_toml()).unwrap(), p, "{}", p.to_toml());
+        }
+    }
+}
