@@ -4,7 +4,9 @@
 //! [`WorldFrame::frame_at`]. Positions are f64 in the host's frame, everything on the GPU is camera-relative.
 
 mod camera;
+pub mod depth;
 mod world;
 
 pub use camera::Camera;
+pub use depth::{ClipSpace, DepthKind, DepthMapping, DepthUniform, ViewRays};
 pub use world::{Axes, LocalFrame, Place, WorldFrame, WorldKind};

@@ -1,0 +1,84 @@
+// From a depth sample and a pixel to a ray and metres along it. The f64 twin and the derivation are in
+// src/scene/depth.rs; the constants come from there, formed in f64.
+
+// Stands for "nothing was drawn here".
+const RANGE_SKY: f32 = 1e12;
+
+struct DepthUniform {
+    // Ray origin at the picture's centre and its change per unit of ndc, camera-relative world axes, m.
+    origin: vec3f,
+    // e = turn_offset + turn_scale * depth is 0 at the far end (logarithmic: at the near one).
+    turn_offset: f32,
+    origin_dx: vec3f,
+    turn_scale: f32,
+    origin_dy: vec3f,
+    // 0 perspective, 1 parallel rays, 2 logarithmic.
+    kind: u32,
+    // Unnormalised ray direction, likewise; clip w counts along it.
+    direction: vec3f,
+    // Plane distance per unit of clip w.
+    plane_scale: f32,
+    direction_dx: vec3f,
+    // ln(c far + 1) of logarithmic depth.
+    log_far: f32,
+    direction_dy: vec3f,
+    // 1/c of logarithmic depth, m.
+    inverse_c: f32,
+    // Affine in ndc: perspective w = scale / (e - pole), parallel t = (e - pole) * scale.
+    pole: vec3f,
+    scale: f32,
+}
+
+struct ViewRay {
+    origin: vec3f,
+    // Unit.
+    direction: vec3f,
+    // Metres along the ray per unit of clip w.
+    slant: f32,
+}
+
+fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
+    let origin = u.origin + ndc.x * u.origin_dx + ndc.y * u.origin_dy;
+    let d = u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
+    let slant = length(d);
+    return ViewRay(origin, d / slant, slant);
+}
+
+// e^x - 1 without cancellation at small x >= 0.
+fn depth_expm1(x: f32) -> f32 {
+    let series = x * (1.0 + x * (0.5 + x * (0.16666667 + x * (0.041666667 + x * 0.008333333))));
+    return select(exp(x) - 1.0, series, x < 0.125);
+}
+
+fn depth_is_nan(x: f32) -> bool {
+    // Compilers may assume that no NaN comes and fold x != x; the bits cannot be argued with.
+    return (bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u;
+}
+
+// Clip w, or metres if rays are parallel; RANGE_SKY for the far end, what lies beyond, and NaN.
+fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
+    let turned = u.turn_offset + u.turn_scale * depth;
+    let pole = u.pole.x + ndc.x * u.pole.y + ndc.y * u.pole.z;
+    let far = select(turned <= 0.0, turned >= 1.0, u.kind == 2u);
+    if depth_is_nan(depth) || far || (u.kind == 0u && turned <= pole) {
+        return RANGE_SKY;
+    }
+    let e = clamp(turned, 0.0, 1.0);
+    var w: f32;
+    switch u.kind {
+        case 0u: { w = u.scale / (e - pole); }
+        case 1u: { w = (e - pole) * u.scale; }
+        default: { w = depth_expm1(e * u.log_far) * u.inverse_c; }
+    }
+    return clamp(w, 0.0, RANGE_SKY);
+}
+
+// Metres along the pixel's ray.
+fn view_range(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
+    return min(view_depth(u, depth, ndc) * view_ray(u, ndc).slant, RANGE_SKY);
+}
+
+// Metres from the camera's plane.
+fn view_plane(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
+    return min(view_depth(u, depth, ndc) * u.plane_scale, RANGE_SKY);
+}

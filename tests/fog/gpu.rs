@@ -1,0 +1,137 @@
+//! Runs WGSL functions of the library on the GPU over a list of inputs: one texel a case, 32-bit floats.
+
+use std::sync::{Arc, OnceLock};
+
+use welkin::gpu::{Device, DeviceOptions, pass, readback, shader};
+
+/// The device all tests of this file share.
+pub fn device() -> &'static Arc<Device> {
+    static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
+    DEVICE.get_or_init(|| Device::headless(&DeviceOptions::default()).expect("a graphics adapter"))
+}
+
+const WIDTH: u32 = 64;
+
+fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::Texture {
+    device().device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform
+/// `u` of type `uniform_type`; `include` is the library's shader file under test.
+pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let d = device();
+    let height = (inputs.len() as u32).div_ceil(WIDTH);
+    let mut padded = inputs.to_vec();
+    padded.resize((WIDTH * height) as usize, inputs[0]);
+    let source = float_texture(WIDTH, height, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST);
+    d.queue.write_texture(
+        source.as_image_copy(),
+        bytemuck::cast_slice(&padded),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH * 16), rows_per_image: None },
+        source.size(),
+    );
+    let target = float_texture(WIDTH, height, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
+    let buffer = d.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: uniform.len() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    d.queue.write_buffer(&buffer, 0, uniform);
+    let layout = layout();
+    let pipeline = pipeline(&layout, include, body, uniform_type);
+    let group = d.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&source.create_view(&Default::default())),
+            },
+        ],
+    });
+    let mut encoder = d.device.create_command_encoder(&Default::default());
+    pass::draw(&mut encoder, "evaluate", &pipeline, &[&group], &target.create_view(&Default::default()));
+    d.submit_and_wait(encoder).expect("the pass runs");
+    let mut out = readback::rgba(d, &target).expect("readback");
+    out.truncate(inputs.len());
+    out
+}
+
+fn layout() -> wgpu::BindGroupLayout {
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    device().device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[
+            entry(
+                0,
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ),
+            entry(
+                1,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+            ),
+        ],
+    })
+}
+
+fn pipeline(layout: &wgpu::BindGroupLayout, include: &str, body: &str, uniform_type: &str) -> wgpu::RenderPipeline {
+    let d = device();
+    let library = shader::assemble(include).expect("the library's shader assembles");
+    let vertex = shader::assemble("common/fullscreen.wgsl").expect("assembles");
+    let text = format!(
+        "{library}\n{vertex}\n@group(0) @binding(0) var<uniform> u: {uniform_type};\n\
+         @group(0) @binding(1) var inputs: texture_2d<f32>;\n{body}\n\
+         @fragment fn evaluate(@builtin(position) p: vec4f) -> @location(0) vec4f {{\n\
+           return answer(textureLoad(inputs, vec2i(p.xy), 0));\n}}\n"
+    );
+    let module = d.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    });
+    let groups = [Some(layout)];
+    d.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&d.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        })),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("fullscreen_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("evaluate"),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::TextureFormat::Rgba32Float.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

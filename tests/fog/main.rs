@@ -1,0 +1,5 @@
+//! Visibility, fog and depth: the drawn functions against their f64 twins, and both against the published truths.
+
+mod cameras;
+mod depth;
+mod gpu;
