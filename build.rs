@@ -1,5 +1,10 @@
 //! Gathers `shaders/**/*.wgsl` into one table of the crate, so that the library carries its shaders and a new
-//! file needs no registration.
+//! file needs no registration. Writes the C header and the boundary's tables from `src/capi`.
+#[path = "build/abi.rs"]
+mod abi;
+#[path = "build/header.rs"]
+mod header;
+
 use std::{fs, io::Write, path::Path, path::PathBuf};
 
 fn gather(dir: &Path, found: &mut Vec<PathBuf>) {
@@ -29,4 +34,20 @@ fn main() {
         writeln!(file, "    ({name:?}, include_str!({:?})),", path.display().to_string()).expect("write");
     }
     writeln!(file, "];").expect("write");
+    write_capi(&root);
+}
+
+/// `OUT_DIR/welkin.h` (a test holds the committed one against it) and what `src/capi/layout.rs` includes.
+fn write_capi(root: &Path) {
+    println!("cargo:rerun-if-changed=build");
+    let out = PathBuf::from(std::env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let capi = root.join("src/capi");
+    let model = abi::read(&capi);
+    let write = |name: &str, text: String| fs::write(out.join(name), text).expect("OUT_DIR is writable");
+    write("abi_table.rs", abi::write_table(&model));
+    for section in &model.sections {
+        write(&format!("init_{}.rs", section.module), abi::write_inits(section));
+    }
+    let version = std::env::var("CARGO_PKG_VERSION").expect("cargo sets the version");
+    write("welkin.h", header::write(&model, &capi, &out, &root.join("cbindgen.toml"), &version));
 }

@@ -1,1 +1,25 @@
 //! The C boundary and nothing else: checks, conversion, panic and error handling.
+//!
+//! Each `pub mod` below is one section of `include/welkin.h`, in this order; its `//!` text is the section's article.
+//! `build.rs` writes the header from them (cbindgen does the declarations). The private modules are the machinery
+//! that every call shares.
+#![allow(dead_code, reason = "sections that use the rest of the machinery follow")]
+#![allow(non_camel_case_types, reason = "the names are C's")]
+#![allow(clippy::missing_safety_doc, reason = "the safety rules are the header's: see `manual`")]
+
+pub mod device;
+pub mod manual;
+pub mod status;
+
+mod boundary;
+mod device_cell;
+mod handles;
+mod input;
+mod layout;
+mod log_sink;
+
+#[doc(hidden)]
+pub mod abi;
+
+/// Most places or rays in one batch query: bounds the time of one call.
+const MAX_BATCH: usize = 65_536;

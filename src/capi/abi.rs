@@ -1,0 +1,39 @@
+//! What the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
+
+use super::layout::{FUNCTIONS, Kind, STRUCTS};
+
+/// The header as it should be committed.
+pub const HEADER: &str = include_str!(concat!(env!("OUT_DIR"), "/welkin.h"));
+
+/// Every exported function.
+pub fn functions() -> &'static [&'static str] {
+    FUNCTIONS
+}
+
+/// Every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
+pub fn structs() -> Vec<(&'static str, usize, usize, Vec<(&'static str, usize, usize)>)> {
+    let fields = |s: &'static super::layout::StructInfo| {
+        s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect()
+    };
+    STRUCTS.iter().map(|s| (s.name, s.size, s.align, fields(s))).collect()
+}
+
+/// Calls `wk_x_init` of the struct `name` on `bytes`, which are aligned for any struct.
+pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
+    assert!(struct_size as usize <= size_of_val(bytes), "the buffer holds the struct");
+    // SAFETY: `bytes` is writable and holds `struct_size` bytes.
+    unsafe { super::layout::init_by_name(name, bytes.as_mut_ptr().cast(), struct_size) }
+}
+
+/// Every float of every struct: struct, field, its offset, whether it is 8 bytes wide, element count.
+pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
+    let mut found = Vec::new();
+    for s in STRUCTS {
+        for f in s.fields {
+            if matches!(f.kind, Kind::F32 | Kind::F64) {
+                found.push((s.name, f.name, f.offset, matches!(f.kind, Kind::F64), f.count));
+            }
+        }
+    }
+    found
+}

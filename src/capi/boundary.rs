@@ -1,0 +1,102 @@
+//! What surrounds every call: no panic crosses, every failure leaves a status and a sentence of its thread, and a
+//! device in which something panicked answers no further calls.
+
+use std::{
+    any::Any,
+    cell::{Cell, RefCell},
+    ffi::{CString, c_char},
+    panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind},
+    sync::{Arc, Once},
+};
+
+use super::{device_cell::DeviceCell, handles, status::wk_status};
+use crate::error::{Error, Result, Status};
+
+thread_local! {
+    static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
+    /// How many boundary calls this thread is in; a panic there is ours to report, not the standard hook's to print.
+    static DEPTH: Cell<u32> = const { Cell::new(0) };
+    static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// One call from C: the way to objects, and the device to blame when it panics.
+pub(super) struct Call {
+    device: Option<Arc<DeviceCell>>,
+}
+
+impl Call {
+    /// The live object behind a handle whose device still answers.
+    ///
+    /// # Errors
+    /// [`Status::BadHandle`] by the parameter's name, [`Status::Poisoned`].
+    pub(super) fn get<T: handles::Object>(&mut self, param: &str, handle: *const T::C) -> Result<Arc<T>> {
+        let object = handles::get::<T>(param, handle)?;
+        if let Some(device) = object.device() {
+            device.check_alive()?;
+            self.blame(device);
+        }
+        Ok(object)
+    }
+
+    /// Names the device that a panic in this call makes unusable.
+    pub(super) fn blame(&mut self, device: &Arc<DeviceCell>) {
+        self.device = Some(device.clone());
+    }
+}
+
+/// Runs the body of a C function: its error or panic becomes a status and the thread's message.
+pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
+    hush_panics();
+    let mut call = Call { device: None };
+    DEPTH.set(DEPTH.get() + 1);
+    // Whatever a panic leaves half-done belongs to the device, and that is poisoned below.
+    let outcome = catch_unwind(AssertUnwindSafe(|| body(&mut call)));
+    DEPTH.set(DEPTH.get() - 1);
+    let error = match outcome {
+        Ok(Ok(status)) => return status as wk_status,
+        Ok(Err(error)) => error,
+        Err(payload) => {
+            if let Some(device) = &call.device {
+                device.poison();
+            }
+            panic_error(payload)
+        }
+    };
+    remember(function, &error.message);
+    error.status as wk_status
+}
+
+/// The calling thread's last message; valid until its next failing call.
+pub(super) fn last_error() -> *const c_char {
+    LAST_ERROR.with_borrow(|m| m.as_ptr())
+}
+
+fn remember(function: &str, message: &str) {
+    let text = format!("{function}: {message}").replace('\0', "\\0");
+    LAST_ERROR.set(CString::new(text).unwrap_or_default());
+}
+
+fn panic_error(payload: Box<dyn Any + Send>) -> Error {
+    let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
+    let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".into());
+    let place = PANIC_PLACE.take().map_or_else(String::new, |p| format!(" at {p}"));
+    // A payload's own drop may panic as well: leave it.
+    std::mem::forget(payload);
+    Error::new(Status::Internal, format!("a fault inside Welkin{place}: {text}; its device answers no further calls"))
+}
+
+/// The standard hook prints to stderr. Inside our calls the panic becomes a message instead; elsewhere in the process
+/// (a Rust host's own code) the hook that was there keeps its say.
+fn hush_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let outer = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info: &PanicHookInfo<'_>| {
+            if DEPTH.get() == 0 {
+                outer(info);
+            } else {
+                PANIC_PLACE.set(info.location().map(ToString::to_string));
+            }
+        }));
+    });
+}

@@ -1,0 +1,248 @@
+//! Devices
+//!
+//! A wk_device is one native queue or OpenGL context and everything on it that contexts share: pipelines, tables,
+//! caches. It comes from one of four places: made here (below), round the host's OpenGL context, round the host's
+//! Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all of them.
+//!
+//! Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
+//! (driver reset, unplugged) every call answers WK_ERROR_DEVICE_LOST: destroy the views, contexts and the device,
+//! create them anew, and load the state that was saved.
+
+use std::{
+    ffi::{CString, c_char, c_void},
+    ptr::null,
+    sync::Arc,
+};
+
+use super::{
+    boundary::guard,
+    device_cell::DeviceCell,
+    handles::{self, Object},
+    input::out,
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Result, Status},
+    gpu::{Device, DeviceOptions},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_device.rs"));
+
+/// A native queue or OpenGL context. Parent of contexts, surfaces and textures.
+pub struct wk_device {
+    _opaque: [u8; 0],
+}
+
+/// Native graphics interfaces.
+pub type wk_backend_flags = u32;
+/// Draws nothing and needs no GPU: for tests of the host's own code.
+pub const WK_BACKEND_NOOP: wk_backend_flags = 1;
+/// Vulkan.
+pub const WK_BACKEND_VULKAN: wk_backend_flags = 2;
+/// Metal.
+pub const WK_BACKEND_METAL: wk_backend_flags = 4;
+/// Direct3D 12.
+pub const WK_BACKEND_DX12: wk_backend_flags = 8;
+/// OpenGL or OpenGL ES.
+pub const WK_BACKEND_GL: wk_backend_flags = 16;
+/// Whatever serves, the best first.
+pub const WK_BACKEND_ANY: wk_backend_flags = 30;
+
+/// Choices for an own device.
+pub type wk_device_flags = u32;
+/// Use no compute shaders even where there are any: draws as on an OpenGL 3.3 machine.
+pub const WK_DEVICE_FORCE_TIER0: wk_device_flags = 1;
+/// Take the software driver.
+pub const WK_DEVICE_FORCE_SOFTWARE: wk_device_flags = 2;
+
+/// How to make an own device.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_device_desc {
+    /// sizeof(wk_device_desc) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_DEVICE_DESC.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Which native interfaces may serve. Default WK_BACKEND_ANY.
+    pub backends: wk_backend_flags,
+    /// Default 0.
+    pub flags: wk_device_flags,
+}
+
+impl wk_device_desc {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_DEVICE_DESC,
+        next: null(),
+        backends: WK_BACKEND_ANY,
+        flags: 0,
+    };
+}
+
+/// What a device can do.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_caps {
+    /// sizeof(wk_caps) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CAPS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The one native interface that serves it.
+    pub backend: wk_backend_flags,
+    /// 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. What needs tier 1 answers WK_ERROR_UNSUPPORTED
+    /// by name on tier 0.
+    pub tier: u32,
+    /// 1 if the driver computes on the CPU, else 0.
+    pub software: u32,
+    /// Largest edge of a 2-D texture, pixels.
+    pub max_texture_size: u32,
+    /// Most cloud layers in a wk_weather.
+    pub max_cloud_layers: u32,
+    /// Most places or rays in one batch query.
+    pub max_batch: u32,
+    /// The adapter's own name, UTF-8; lives as long as the device.
+    pub adapter_name: *const c_char,
+    /// The driver's own name and version, UTF-8; lives as long as the device.
+    pub driver: *const c_char,
+}
+
+impl wk_caps {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CAPS,
+        next: null(),
+        backend: 0,
+        tier: 0,
+        software: 0,
+        max_texture_size: 0,
+        max_cloud_layers: 0,
+        max_batch: 0,
+        adapter_name: null(),
+        driver: null(),
+    };
+}
+
+/// A device with the texts that `wk_caps` points to.
+pub(super) struct DeviceObject {
+    pub(super) cell: Arc<DeviceCell>,
+    adapter_name: CString,
+    driver: CString,
+}
+
+impl Object for DeviceObject {
+    type C = wk_device;
+    const KIND: u8 = 1;
+    const NAME: &'static str = "wk_device";
+    fn device(&self) -> Option<&Arc<DeviceCell>> {
+        Some(&self.cell)
+    }
+}
+
+/// Enters a new device into the handle table.
+pub(super) fn issue(gpu: Arc<Device>, bound_to_thread: bool) -> Result<*mut wk_device> {
+    let text = |s: &str| CString::new(s.replace('\0', " ")).unwrap_or_default();
+    let (adapter_name, driver) = (text(&gpu.caps().adapter_name), text(&gpu.caps().driver));
+    let cell = DeviceCell::new(gpu, bound_to_thread);
+    handles::insert::<_, DeviceObject>(Arc::new(DeviceObject { cell, adapter_name, driver }), None)
+}
+
+/// Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle that
+/// the caller must give to `wk_device_destroy`; else it is not touched.
+/// Thread: any.
+/// Errors: WK_ERROR_NO_ADAPTER if no driver serves the request; WK_ERROR_INVALID_ARGUMENT by name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_device: *mut *mut wk_device) -> wk_status {
+    guard("wk_device_create", |_| {
+        let place = out("out_device", out_device)?;
+        // SAFETY: the caller's promise about `desc`.
+        let desc = unsafe { layout::read_or_default(&"desc", desc)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"desc", desc.next, &[])? };
+        let handle = issue(Device::headless(&options(&desc))?, false)?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(handle) };
+        Ok(Status::Ok)
+    })
+}
+
+/// What the flags say, as the Rust side takes it.
+pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
+    let pairs = [
+        (WK_BACKEND_NOOP, wgpu::Backends::NOOP),
+        (WK_BACKEND_VULKAN, wgpu::Backends::VULKAN),
+        (WK_BACKEND_METAL, wgpu::Backends::METAL),
+        (WK_BACKEND_DX12, wgpu::Backends::DX12),
+        (WK_BACKEND_GL, wgpu::Backends::GL),
+    ];
+    let chosen = pairs.iter().filter(|p| desc.backends & p.0 != 0);
+    DeviceOptions {
+        backends: chosen.fold(wgpu::Backends::empty(), |all, p| all | p.1),
+        force_tier0: desc.flags & WK_DEVICE_FORCE_TIER0 != 0,
+        force_software: desc.flags & WK_DEVICE_FORCE_SOFTWARE != 0,
+    }
+}
+
+/// Destroys a device. NULL does nothing.
+/// Thread: for a device round an OpenGL context, the thread on which it was created; else any.
+/// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {
+    guard("wk_device_destroy", |_| {
+        if !device.is_null() {
+            let object = handles::get::<DeviceObject>("device", device)?;
+            object.cell.check_home()?;
+            drop(handles::remove::<DeviceObject>("device", device)?);
+            object.cell.release_retired();
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// WK_OK while the device works, WK_ERROR_DEVICE_LOST or WK_ERROR_POISONED when it no longer does.
+/// Thread: any, at any time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_device_get_status(device: *const wk_device) -> wk_status {
+    guard("wk_device_get_status", |call| {
+        call.get::<DeviceObject>("device", device)?.cell.check_not_lost()?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Says what a device can do. The two texts in the answer live as long as the device.
+/// Thread: any, at any time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_device_get_caps(device: *const wk_device, out_caps: *mut wk_caps) -> wk_status {
+    guard("wk_device_get_caps", |call| {
+        let object = call.get::<DeviceObject>("device", device)?;
+        // SAFETY: the caller's promise about `out_caps`.
+        let place = unsafe { layout::out_struct(&"out_caps", out_caps)? };
+        let caps = object.cell.gpu().caps();
+        place.set(&wk_caps {
+            backend: backend_flag(caps.backend),
+            tier: caps.tier,
+            software: u32::from(caps.software),
+            max_texture_size: caps.max_texture_size,
+            max_cloud_layers: 16,
+            max_batch: super::MAX_BATCH as u32,
+            adapter_name: object.adapter_name.as_ptr(),
+            driver: object.driver.as_ptr(),
+            ..wk_caps::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
+
+fn backend_flag(backend: wgpu::Backend) -> wk_backend_flags {
+    match backend {
+        wgpu::Backend::Vulkan => WK_BACKEND_VULKAN,
+        wgpu::Backend::Metal => WK_BACKEND_METAL,
+        wgpu::Backend::Dx12 => WK_BACKEND_DX12,
+        wgpu::Backend::Gl => WK_BACKEND_GL,
+        wgpu::Backend::Noop | wgpu::Backend::BrowserWebGpu => WK_BACKEND_NOOP,
+    }
+}

@@ -1,0 +1,100 @@
+//! What the boundary keeps beside a device: whether a panic happened in it, and objects whose release must wait until
+//! the host's context is current again.
+
+use std::{
+    any::Any,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{self, ThreadId},
+};
+
+use crate::{
+    error::{Error, Result, Status},
+    gpu::{Device, Entered},
+};
+
+/// A device as the boundary sees it; every child of the device holds one.
+pub(super) struct DeviceCell {
+    gpu: Arc<Device>,
+    poisoned: AtomicBool,
+    /// The thread on which the host's context is current, for devices that have one.
+    home: Option<ThreadId>,
+    retired: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
+}
+
+impl DeviceCell {
+    /// `bound_to_thread`: GPU objects may only be released on this thread (an OpenGL host's context).
+    pub(super) fn new(gpu: Arc<Device>, bound_to_thread: bool) -> Arc<Self> {
+        let home = bound_to_thread.then(|| thread::current().id());
+        Arc::new(Self { gpu, poisoned: AtomicBool::new(false), home, retired: Mutex::default() })
+    }
+
+    /// The device itself.
+    pub(super) fn gpu(&self) -> &Arc<Device> {
+        &self.gpu
+    }
+
+    /// Every later call but destroy is refused.
+    pub(super) fn poison(&self) {
+        self.poisoned.store(true, Ordering::Release);
+    }
+
+    /// # Errors
+    /// [`Status::Poisoned`] after a panic.
+    pub(super) fn check_alive(&self) -> Result<()> {
+        if self.poisoned.load(Ordering::Acquire) {
+            let text = "an earlier call on this device ended in a fault inside Welkin; destroy it and its children";
+            return Err(Error::new(Status::Poisoned, text));
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Status::DeviceLost`].
+    pub(super) fn check_not_lost(&self) -> Result<()> {
+        if self.gpu.is_lost() {
+            return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`Status::WrongOrder`] on another thread than the one that a host's context is bound to.
+    pub(super) fn check_home(&self) -> Result<()> {
+        if self.home.is_none_or(|home| home == thread::current().id()) {
+            return Ok(());
+        }
+        let text = "this device draws in the host's OpenGL context: call it on the thread that created it";
+        Err(Error::new(Status::WrongOrder, text))
+    }
+
+    /// Releases what waited; for the end of the device.
+    pub(super) fn release_retired(&self) {
+        let waiting = std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner));
+        let _entered = self.gpu.enter().ok();
+        drop(waiting);
+    }
+
+    /// Makes the host's context current for a batch of GPU calls, and releases what waited for that.
+    ///
+    /// # Errors
+    /// As [`Device::enter`].
+    pub(super) fn enter(&self) -> Result<Entered<'_>> {
+        let entered = self.gpu.enter()?;
+        drop(std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner)));
+        Ok(entered)
+    }
+
+    /// Releases an object now if this thread may, else at the next GPU call.
+    pub(super) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
+        let may = self.home.is_none_or(|home| home == thread::current().id());
+        // A lost device has no context to enter; wgpu releases its objects without one.
+        if may && (self.gpu.is_lost() || self.gpu.enter().map(|entered| (drop(object.clone()), entered)).is_ok()) {
+            drop(object);
+            return;
+        }
+        self.retired.lock().unwrap_or_else(PoisonError::into_inner).push(object);
+    }
+}

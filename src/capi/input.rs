@@ -1,0 +1,136 @@
+//! Checks of plain parameters: numbers, enumerations, texts, buffers, lists.
+
+use std::ffi::{CStr, c_char};
+
+use super::layout::{self, EnumInfo, Layout};
+use crate::error::{Error, Result, Status};
+
+/// # Errors
+/// Names the parameter and every accepted constant.
+pub(super) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
+    info.check(&param, value)
+}
+
+/// # Errors
+/// Names the parameter if it is NaN or infinite.
+pub(super) fn check_finite(param: &str, value: f64) -> Result<f64> {
+    if value.is_finite() { Ok(value) } else { Err(Error::range(param, "finite", value)) }
+}
+
+/// A place for an answer, not written yet.
+///
+/// # Errors
+/// If it is NULL or misaligned.
+pub(super) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
+    layout::check_pointer(&param, p)?;
+    Ok(p)
+}
+
+/// A NUL-terminated UTF-8 text.
+///
+/// # Safety
+/// `p` is NULL or points to a NUL-terminated string that lives as long as `'a`.
+///
+/// # Errors
+/// If it is NULL or not UTF-8; the message gives the byte.
+pub(super) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> {
+    layout::check_pointer(&param, p)?;
+    // SAFETY: not NULL, and the caller's promise.
+    unsafe { CStr::from_ptr(p) }.to_str().map_err(|e| {
+        Error::new(Status::InvalidArgument, format!("{param} must be UTF-8; byte {} is not", e.valid_up_to()))
+    })
+}
+
+/// A text that may be left out.
+///
+/// # Safety
+/// As [`text`].
+///
+/// # Errors
+/// If it is not UTF-8.
+pub(super) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<Option<&'a str>> {
+    // SAFETY: the caller's promise.
+    if p.is_null() { Ok(None) } else { unsafe { text(param, p) }.map(Some) }
+}
+
+/// Plain values in a row.
+///
+/// # Safety
+/// `p` is NULL or points to `count` values that live as long as `'a`.
+///
+/// # Errors
+/// If there are more than `limit`, or `p` is NULL while `count` is not 0.
+pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: usize, limit: usize) -> Result<&'a [T]> {
+    check_count(param, count, limit)?;
+    if count == 0 {
+        return Ok(&[]);
+    }
+    layout::check_pointer(&param, p)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { std::slice::from_raw_parts(p, count) })
+}
+
+/// As [`slice`], for answers.
+///
+/// # Safety
+/// `p` is NULL or points to `count` values that only this call touches while `'a` lasts.
+///
+/// # Errors
+/// As [`slice`].
+pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: usize, limit: usize) -> Result<&'a mut [T]> {
+    check_count(param, count, limit)?;
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    layout::check_pointer(&param, p)?;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { std::slice::from_raw_parts_mut(p, count) })
+}
+
+fn check_count(param: &str, count: usize, limit: usize) -> Result<()> {
+    if count <= limit {
+        return Ok(());
+    }
+    Err(Error::range(&format!("{param}'s count"), &format!("at most {limit}"), count))
+}
+
+/// A list of tagged structs, `stride` bytes apart; each is read and checked as `name[i]`.
+///
+/// # Safety
+/// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
+///
+/// # Errors
+/// Too many, a stride that does not fit, or the first wrong field.
+pub(super) unsafe fn list<T: Layout>(
+    param: &str,
+    p: *const T,
+    count: usize,
+    stride: usize,
+    limit: usize,
+) -> Result<Vec<T>> {
+    check_count(param, count, limit)?;
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    layout::check_pointer(&param, p)?;
+    let align = align_of::<T>();
+    if stride < size_of::<layout::Head>() || stride % align != 0 {
+        let accepted = format!("sizeof({}) of your header, a multiple of {align}", T::INFO.name);
+        return Err(Error::range(&format!("{param}'s stride"), &accepted, stride));
+    }
+    (0..count)
+        .map(|i| {
+            let name = format!("{param}[{i}]");
+            // SAFETY: the caller promises `count` structs at this stride.
+            let at = unsafe { p.cast::<u8>().add(i * stride) }.cast::<T>();
+            // SAFETY: `at` points to a struct of the list, which begins with its size.
+            let size = unsafe { at.cast::<u32>().read() } as usize;
+            if size > stride {
+                let accepted = format!("at most the stride, {stride}");
+                return Err(Error::range(&format!("{name}.struct_size"), &accepted, size));
+            }
+            // SAFETY: the caller's promise.
+            unsafe { layout::read(&name, at) }
+        })
+        .collect()
+}

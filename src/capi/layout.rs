@@ -1,0 +1,373 @@
+//! Reading and writing the structs of the header: sizes of other versions, extension chains, and every number checked
+//! by the name it has in the header.
+//!
+//! `build.rs` writes the tables from the struct definitions themselves, so a new field is checked from the day it is
+//! declared: floats must be finite, enumerations known, reserved fields zero.
+
+use std::{ffi::c_void, fmt::Display, mem::MaybeUninit};
+
+use super::status::*;
+use crate::error::{Error, Result, Status};
+
+/// What a field holds.
+#[derive(Clone, Copy, Debug)]
+#[allow(dead_code, reason = "the kinds that this version's structs do not use yet")]
+pub(crate) enum Kind {
+    U8,
+    U16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F32,
+    F64,
+    Pointer,
+    Enum(&'static EnumInfo),
+    Struct(&'static StructInfo),
+}
+
+/// A field as the header declares it; `count` elements of `kind`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    pub name: &'static str,
+    pub offset: usize,
+    pub kind: Kind,
+    pub count: usize,
+}
+
+/// A struct as the header declares it.
+#[derive(Debug)]
+pub(crate) struct StructInfo {
+    pub name: &'static str,
+    pub size: usize,
+    pub align: usize,
+    pub fields: &'static [Field],
+}
+
+/// An integer type with named values; for `flags` any union of them is accepted.
+#[derive(Debug)]
+pub(crate) struct EnumInfo {
+    pub name: &'static str,
+    pub flags: bool,
+    pub signed: bool,
+    pub values: &'static [(&'static str, u32)],
+}
+
+/// A `repr(C)` struct of the header that begins with `struct_size`, `struct_type`, `next`, or is embedded in one.
+///
+/// # Safety
+/// `INFO` describes `Self` truly, `Self` has no implicit padding, and every bit pattern is a valid `Self`.
+pub(crate) unsafe trait Layout: Copy + 'static {
+    const INFO: &'static StructInfo;
+    /// Every field at its default.
+    const DEFAULT: Self;
+}
+
+/// The first fields of every tagged struct.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub(crate) struct Head {
+    pub struct_size: u32,
+    pub struct_type: u32,
+    pub next: *const c_void,
+}
+
+/// Larger sizes are a mistake, not a future version.
+const MAX_STRUCT_BYTES: usize = 64 * 1024;
+/// Longer chains are a cycle.
+const MAX_CHAIN: usize = 16;
+
+include!(concat!(env!("OUT_DIR"), "/abi_table.rs"));
+
+/// `sizeof` as the structs' first field holds it.
+pub(crate) const fn struct_size<T>() -> u32 {
+    size_of::<T>() as u32
+}
+
+impl Kind {
+    /// Bytes of one element.
+    pub(crate) fn size(self) -> usize {
+        match self {
+            Self::U8 => 1,
+            Self::U16 => 2,
+            Self::U32 | Self::I32 | Self::F32 | Self::Enum(_) => 4,
+            Self::U64 | Self::I64 | Self::F64 => 8,
+            Self::Pointer => size_of::<usize>(),
+            Self::Struct(info) => info.size,
+        }
+    }
+}
+
+impl EnumInfo {
+    /// Fails unless `value` is a named one, or for flags a union of named ones.
+    pub(crate) fn check(&self, param: &dyn Display, value: u32) -> Result<()> {
+        let known = if self.flags {
+            value & !self.values.iter().fold(0, |all, v| all | v.1) == 0
+        } else {
+            self.values.iter().any(|v| v.1 == value)
+        };
+        if known {
+            return Ok(());
+        }
+        let names = self.values.iter().map(|v| v.0).collect::<Vec<_>>().join(", ");
+        let rule = if self.flags { "a union of" } else { "one of" };
+        let got = if self.flags { format!("{value:#x}") } else { (value as i32).to_string() };
+        Err(Error::range(&param.to_string(), &format!("{rule} {names}"), got))
+    }
+}
+
+/// Checks every field of the struct at `base`; `upto` is how many bytes the caller gave.
+///
+/// # Safety
+/// `base` points to `info.size` readable bytes.
+unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static StructInfo, upto: usize) -> Result<()> {
+    for field in info.fields.iter().filter(|f| f.offset < upto) {
+        for i in 0..field.count {
+            // SAFETY: the table's offsets lie inside the struct.
+            let at = unsafe { base.add(field.offset + i * field.kind.size()) };
+            let name = Named { param, field: field.name, index: (field.count > 1).then_some(i) };
+            // SAFETY: as above, and reads are unaligned.
+            unsafe { check_element(&name, at, field)? };
+        }
+    }
+    Ok(())
+}
+
+/// # Safety
+/// `at` points to an element of `field`'s kind.
+unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Result<()> {
+    let float = match field.kind {
+        // SAFETY: the caller's promise.
+        Kind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
+        // SAFETY: the caller's promise.
+        Kind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
+        // SAFETY: the caller's promise.
+        Kind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }),
+        // SAFETY: the caller's promise.
+        Kind::Struct(info) => return unsafe { check_fields(name, at, info, info.size) },
+        Kind::U32 if field.name.starts_with("reserved") => {
+            // SAFETY: the caller's promise.
+            let value = unsafe { at.cast::<u32>().read_unaligned() };
+            return if value == 0 { Ok(()) } else { Err(Error::range(&name.to_string(), "0", value)) };
+        }
+        _ => return Ok(()),
+    };
+    if float.is_finite() { Ok(()) } else { Err(Error::range(&name.to_string(), "finite", float)) }
+}
+
+/// `frame.camera.position_m[2]`, written only when an error needs it.
+struct Named<'a> {
+    param: &'a dyn Display,
+    field: &'static str,
+    index: Option<usize>,
+}
+
+impl Display for Named<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}.{}", self.param, self.field)?;
+        self.index.map_or(Ok(()), |i| write!(f, "[{i}]"))
+    }
+}
+
+/// Fails unless `p` may be read or written as a `T`: neither NULL nor misaligned.
+pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
+    if p.is_null() {
+        return Err(Error::new(Status::InvalidArgument, format!("{param} must not be NULL")));
+    }
+    if !p.is_aligned() {
+        let align = align_of::<T>();
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("{param} must be aligned to {align} bytes, got {p:p}"),
+        ));
+    }
+    Ok(())
+}
+
+/// Checks the head of a struct at `p` and returns the bytes that the caller gave.
+///
+/// # Safety
+/// `p` is NULL or points to `struct_size` readable bytes.
+unsafe fn head<T: Layout>(param: &dyn Display, p: *const T) -> Result<usize> {
+    check_pointer(param, p)?;
+    // SAFETY: every tagged struct begins so; alignment was checked.
+    let size = unsafe { p.cast::<u32>().read() } as usize;
+    // SAFETY: `size` bytes are the caller's promise.
+    unsafe { check_size(param, p.cast(), size, T::INFO)? };
+    // SAFETY: `size` was found to hold the head.
+    let found = unsafe { (*p.cast::<Head>()).struct_type };
+    let wanted = expected_type::<T>();
+    if found != wanted {
+        let name = |t| WK_STRUCT_TYPE.values.iter().find(|v| v.1 == t).map_or("no known type", |v| v.0);
+        let accepted = format!("{} (start from {}_INIT)", name(wanted), T::INFO.name.to_uppercase());
+        return Err(Error::range(&format!("{param}.struct_type"), &accepted, format!("{found} ({})", name(found))));
+    }
+    Ok(size)
+}
+
+/// The `struct_type` of a tagged struct.
+fn expected_type<T: Layout>() -> u32 {
+    let default = T::DEFAULT;
+    // SAFETY: every tagged struct begins with a head.
+    unsafe { (*(&raw const default).cast::<Head>()).struct_type }
+}
+
+/// A size must end where a field ends, and what lies beyond the fields this version knows must be zero.
+///
+/// # Safety
+/// `p` points to `size` readable bytes.
+unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &StructInfo) -> Result<()> {
+    let ends = |f: &Field| f.offset + f.count * f.kind.size();
+    let refuse = |got: usize| {
+        let accepted =
+            format!("sizeof({}), which is {} (start from {}_INIT)", info.name, info.size, info.name.to_uppercase());
+        Err(Error::range(&format!("{param}.struct_size"), &accepted, got))
+    };
+    if size < size_of::<Head>() || size > MAX_STRUCT_BYTES {
+        return refuse(size);
+    }
+    if size <= info.size {
+        return if info.fields.iter().any(|f| ends(f) == size) { Ok(()) } else { refuse(size) };
+    }
+    // SAFETY: the caller promises `size` bytes.
+    let tail = unsafe { std::slice::from_raw_parts(p.add(info.size), size - info.size) };
+    match tail.iter().position(|&b| b != 0) {
+        None => Ok(()),
+        Some(i) => Err(Error::new(
+            Status::Unsupported,
+            format!(
+                "{param} has a field beyond the {} bytes that this version of {} knows, and it is not 0 (byte {})",
+                info.size,
+                info.name,
+                info.size + i
+            ),
+        )),
+    }
+}
+
+/// Reads a struct of this or another version: defaults for a missing tail, every number checked by name.
+///
+/// # Safety
+/// `p` is NULL or points to `struct_size` readable bytes.
+pub(crate) unsafe fn read<T: Layout>(param: &dyn Display, p: *const T) -> Result<T> {
+    // SAFETY: the caller's promise.
+    let size = unsafe { head(param, p)? };
+    let mut value = T::DEFAULT;
+    let known = size.min(size_of::<T>());
+    // SAFETY: `known` bytes are readable and fit; every bit pattern is a `T`.
+    unsafe { std::ptr::copy_nonoverlapping(p.cast::<u8>(), (&raw mut value).cast::<u8>(), known) };
+    // SAFETY: `value` is a whole `T`.
+    unsafe { check_fields(param, (&raw const value).cast(), T::INFO, known)? };
+    Ok(value)
+}
+
+/// As [`read`], but NULL means every default.
+///
+/// # Safety
+/// As [`read`].
+pub(crate) unsafe fn read_or_default<T: Layout>(param: &dyn Display, p: *const T) -> Result<T> {
+    // SAFETY: the caller's promise.
+    if p.is_null() { Ok(T::DEFAULT) } else { unsafe { read(param, p) } }
+}
+
+/// Walks an extension chain: every link must be one of `known`, each at most once.
+///
+/// # Safety
+/// Every link is NULL or points to a struct that begins with a head.
+pub(crate) unsafe fn check_chain(param: &dyn Display, first: *const c_void, known: &[wk_struct_type]) -> Result<()> {
+    let mut link = first;
+    let mut seen = [false; 32];
+    for _ in 0..MAX_CHAIN {
+        if link.is_null() {
+            return Ok(());
+        }
+        check_pointer(&format!("{param}.next"), link.cast::<Head>())?;
+        // SAFETY: not NULL, aligned, and the caller's promise.
+        let head = unsafe { *link.cast::<Head>() };
+        let Some(i) = known.iter().position(|&t| t == head.struct_type) else {
+            let text =
+                format!("{param}.next holds an extension of type {} that this call does not take", head.struct_type);
+            return Err(Error::unsupported(text));
+        };
+        if std::mem::replace(&mut seen[i], true) {
+            let text = format!("{param}.next holds two extensions of type {}", head.struct_type);
+            return Err(Error::new(Status::InvalidArgument, text));
+        }
+        link = head.next;
+    }
+    Err(Error::range(&format!("{param}.next"), &format!("a chain of at most {MAX_CHAIN} structs"), "a longer one"))
+}
+
+/// Reads the extension of type `T` from a checked chain, if it is there.
+///
+/// # Safety
+/// As [`check_chain`], which has accepted the chain.
+pub(crate) unsafe fn extension<T: Layout>(first: *const c_void) -> Result<Option<T>> {
+    let mut link = first;
+    while !link.is_null() {
+        // SAFETY: the chain was checked.
+        let head = unsafe { *link.cast::<Head>() };
+        if head.struct_type == expected_type::<T>() {
+            // SAFETY: its type says that it is a `T`.
+            return unsafe { read(&T::INFO.name, link.cast::<T>()) }.map(Some);
+        }
+        link = head.next;
+    }
+    Ok(None)
+}
+
+/// A checked place for an answer; nothing is written before [`OutStruct::set`].
+pub(crate) struct OutStruct<T: Layout> {
+    at: *mut T,
+    size: usize,
+}
+
+/// Checks the caller's struct for an answer: its size and type, and that it asks for no unknown extension.
+///
+/// # Safety
+/// `p` is NULL or points to `struct_size` writable bytes.
+pub(crate) unsafe fn out_struct<T: Layout>(param: &dyn Display, p: *mut T) -> Result<OutStruct<T>> {
+    // SAFETY: the caller's promise.
+    let size = unsafe { head(param, p)? };
+    // SAFETY: `head` has found at least a head there.
+    let next = unsafe { (*p.cast::<Head>()).next };
+    // SAFETY: the caller's promise.
+    unsafe { check_chain(param, next, &[])? };
+    Ok(OutStruct { at: p, size })
+}
+
+impl<T: Layout> OutStruct<T> {
+    /// Writes the answer as far as the caller's version goes; keeps the caller's head.
+    pub(crate) fn set(self, value: &T) {
+        let skip = size_of::<Head>();
+        let known = self.size.min(size_of::<T>());
+        let from = std::ptr::from_ref(value).cast::<u8>();
+        // SAFETY: `size` writable bytes were promised to `out_struct`; the tail beyond `T` was zero and stays so.
+        unsafe { std::ptr::copy_nonoverlapping(from.add(skip), self.at.cast::<u8>().add(skip), known - skip) };
+    }
+}
+
+/// What every `wk_x_init` does.
+///
+/// # Safety
+/// `out` is NULL or points to `struct_size` writable bytes.
+pub(crate) unsafe fn init_struct<T: Layout>(function: &'static str, out: *mut T, size: u32) -> wk_status {
+    super::boundary::guard(function, |_| {
+        check_pointer(&"out", out)?;
+        let bytes = size as usize;
+        let fits = T::INFO.fields.iter().any(|f| f.offset + f.count * f.kind.size() == bytes);
+        let larger = bytes > size_of::<T>() && bytes <= MAX_STRUCT_BYTES;
+        if bytes < size_of::<Head>() || !(fits || larger) {
+            let accepted = format!("sizeof({}), which is {}", T::INFO.name, size_of::<T>());
+            return Err(Error::range("struct_size", &accepted, size));
+        }
+        let mut value = MaybeUninit::new(T::DEFAULT);
+        // SAFETY: `value` begins with `struct_size`; `bytes` at `out` are the caller's promise.
+        unsafe {
+            value.as_mut_ptr().cast::<u32>().write(size);
+            std::ptr::write_bytes(out.cast::<u8>(), 0, bytes);
+            std::ptr::copy_nonoverlapping(value.as_ptr().cast::<u8>(), out.cast::<u8>(), bytes.min(size_of::<T>()));
+        }
+        Ok(Status::Ok)
+    })
+}

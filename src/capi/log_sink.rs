@@ -1,0 +1,77 @@
+//! The host's log callback. The crate and wgpu speak through `log`; in the shared and the static library that crate's
+//! logger slot is Welkin's own and no one else's, and it is filled only when a host asks for messages. In a Rust
+//! program the slot belongs to the program: if it is taken, the host is told to use its own logger.
+
+use std::{
+    ffi::{CString, c_void},
+    sync::{OnceLock, PoisonError, RwLock},
+};
+
+use super::status::{
+    WK_LOG_LEVEL_DEBUG, WK_LOG_LEVEL_ERROR, WK_LOG_LEVEL_INFO, WK_LOG_LEVEL_WARNING, wk_log_fn, wk_log_level,
+};
+use crate::error::{Error, Result, Status};
+
+struct Receiver {
+    callback: unsafe extern "C" fn(*mut c_void, wk_log_level, *const std::ffi::c_char),
+    user: *mut c_void,
+}
+
+// SAFETY: the header says that the callback comes from any thread, so the host has made `user` fit for that.
+unsafe impl Send for Receiver {}
+// SAFETY: as above.
+unsafe impl Sync for Receiver {}
+
+static RECEIVER: RwLock<Option<Receiver>> = RwLock::new(None);
+
+struct Sink;
+
+impl log::Log for Sink {
+    fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
+        // The graphics layer reports its daily life as information: only its warnings concern a host.
+        metadata.target().starts_with("welkin") || metadata.level() <= log::Level::Warn
+    }
+
+    fn log(&self, record: &log::Record<'_>) {
+        if !self.enabled(record.metadata()) {
+            return;
+        }
+        let level = match record.level() {
+            log::Level::Error => WK_LOG_LEVEL_ERROR,
+            log::Level::Warn => WK_LOG_LEVEL_WARNING,
+            log::Level::Info => WK_LOG_LEVEL_INFO,
+            _ => WK_LOG_LEVEL_DEBUG,
+        };
+        let Ok(text) = CString::new(format!("{}: {}", record.target(), record.args()).replace('\0', "\\0")) else {
+            return;
+        };
+        if let Some(receiver) = &*RECEIVER.read().unwrap_or_else(PoisonError::into_inner) {
+            // SAFETY: the host gave the pair, and takes it back only under the write lock.
+            unsafe { (receiver.callback)(receiver.user, level, text.as_ptr()) };
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// Installs, replaces or (with `None`) removes the receiver. When this returns, the old one is no longer called.
+pub(super) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
+    static INSTALLED: OnceLock<bool> = OnceLock::new();
+    let receiver = callback.map(|callback| Receiver { callback, user });
+    if receiver.is_some() && !*INSTALLED.get_or_init(|| log::set_logger(&Sink).is_ok()) {
+        let text = "this Rust program has its own logger, which gets Welkin's messages already";
+        return Err(Error::new(Status::InUse, text));
+    }
+    let filter = match (&receiver, max_level) {
+        (None, _) => log::LevelFilter::Off,
+        (_, WK_LOG_LEVEL_ERROR) => log::LevelFilter::Error,
+        (_, WK_LOG_LEVEL_WARNING) => log::LevelFilter::Warn,
+        (_, WK_LOG_LEVEL_INFO) => log::LevelFilter::Info,
+        _ => log::LevelFilter::Debug,
+    };
+    if INSTALLED.get() == Some(&true) {
+        log::set_max_level(filter);
+    }
+    *RECEIVER.write().unwrap_or_else(PoisonError::into_inner) = receiver;
+    Ok(())
+}

@@ -1,0 +1,144 @@
+//! Status, versions, messages
+//!
+//! Every call answers a wk_status. 0 and positive values are answers; negative ones are failures, after which no
+//! output was written and wk_last_error_message() says which parameter was wrong and what would have been accepted.
+
+use std::ffi::{CStr, c_char, c_void};
+
+use super::{
+    boundary::{self, guard},
+    input,
+};
+use crate::error::Status;
+
+/// What a call answers. The numbers never change and are never reused.
+pub type wk_status = i32;
+/// The call did what it says.
+pub const WK_OK: wk_status = 0;
+/// More steps are due than one update may take; call again. Not a failure.
+pub const WK_PENDING: wk_status = 1;
+/// A parameter is missing, not finite or outside its range; the message names it.
+pub const WK_ERROR_INVALID_ARGUMENT: wk_status = -1;
+/// A handle is NULL, destroyed, foreign or of another kind.
+pub const WK_ERROR_BAD_HANDLE: wk_status = -2;
+/// A parent was to be destroyed while it has live children, or the handle is in another call at this moment.
+pub const WK_ERROR_IN_USE: wk_status = -3;
+/// This device, tier or build cannot do what was asked; the message names the feature.
+pub const WK_ERROR_UNSUPPORTED: wk_status = -4;
+/// No adapter or driver serves the request.
+pub const WK_ERROR_NO_ADAPTER: wk_status = -5;
+/// The GPU device is lost: destroy it with its children, and create a new one.
+pub const WK_ERROR_DEVICE_LOST: wk_status = -6;
+/// Memory ran out, on the host or on the GPU.
+pub const WK_ERROR_OUT_OF_MEMORY: wk_status = -7;
+/// An earlier call on this device ended in a fault inside Welkin. Only destroy works on it and its children.
+pub const WK_ERROR_POISONED: wk_status = -8;
+/// The native queue or OpenGL context already belongs to another wk_device.
+pub const WK_ERROR_ALREADY_WRAPPED: wk_status = -9;
+/// A text (METAR report, planet file, saved state) does not parse; the message gives line and column.
+pub const WK_ERROR_PARSE: wk_status = -10;
+/// A file could not be read or written.
+pub const WK_ERROR_IO: wk_status = -11;
+/// The surface must be configured again: it was resized, minimised or lost.
+pub const WK_ERROR_SURFACE_OUTDATED: wk_status = -12;
+/// Calls came in an order that the API forbids: stages of a frame, dates before the last update.
+pub const WK_ERROR_WRONG_ORDER: wk_status = -13;
+/// The host aborted a long operation through its callback.
+pub const WK_ERROR_ABORTED: wk_status = -14;
+/// A fault inside Welkin; the message says where.
+pub const WK_ERROR_INTERNAL: wk_status = -15;
+
+/// Which struct a pointer leads to: the second field of every tagged struct. WK_X_INIT sets it.
+pub type wk_struct_type = u32;
+/// wk_device_desc
+pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;
+/// wk_caps
+pub const WK_STRUCT_TYPE_CAPS: wk_struct_type = 2;
+
+/// How grave a message is.
+pub type wk_log_level = u32;
+/// Something failed; the call also answers so.
+pub const WK_LOG_LEVEL_ERROR: wk_log_level = 1;
+/// Something works worse than it could: a fallback, a slow path.
+pub const WK_LOG_LEVEL_WARNING: wk_log_level = 2;
+/// Once-in-a-while news: which adapter, which plan.
+pub const WK_LOG_LEVEL_INFO: wk_log_level = 3;
+/// For those who develop Welkin.
+pub const WK_LOG_LEVEL_DEBUG: wk_log_level = 4;
+
+/// Receives a message, NUL-terminated UTF-8 that is valid during the call. It may come from any thread that is in a
+/// Welkin call; it must not call Welkin and must not unwind.
+pub type wk_log_fn = Option<unsafe extern "C" fn(user: *mut c_void, level: wk_log_level, message: *const c_char)>;
+
+/// The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
+#[unsafe(no_mangle)]
+pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
+    NAMES.iter().find(|n| n.0 == status).map_or(c"unknown status", |n| n.1).as_ptr()
+}
+
+/// What the last failed call of the calling thread says: one sentence that begins with the function's name and names
+/// the parameter and the accepted range. Empty before the first failure; successful calls leave it alone. Never NULL;
+/// valid until the next failing call of this thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn wk_last_error_message() -> *const c_char {
+    boundary::last_error()
+}
+
+/// The library's version, as WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library of the same major version
+/// and at least the header's minor one serves it. Each of the three may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
+    guard("wk_version", |_| {
+        let parts = [
+            (&"major", major, env!("CARGO_PKG_VERSION_MAJOR")),
+            (&"minor", minor, env!("CARGO_PKG_VERSION_MINOR")),
+            (&"patch", patch, env!("CARGO_PKG_VERSION_PATCH")),
+        ];
+        for (name, out, text) in parts {
+            if !out.is_null() {
+                super::layout::check_pointer(name, out)?;
+                // SAFETY: checked, and the caller's promise that it points to a `uint32_t`.
+                unsafe { out.write(text.parse().unwrap_or(0)) };
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
+/// They are off until a host asks. Nothing is ever printed. One callback a process; `max_level` is the least grave
+/// level that is sent. If `callback` fails it must return normally: Welkin ignores it.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_set_log_callback(
+    callback: wk_log_fn,
+    user: *mut c_void,
+    max_level: wk_log_level,
+) -> wk_status {
+    guard("wk_set_log_callback", |_| {
+        input::check_enum("max_level", &super::layout::WK_LOG_LEVEL, max_level)?;
+        super::log_sink::set(callback, user, max_level)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Names by number; a test holds it against the constants above.
+static NAMES: &[(wk_status, &CStr)] = &[
+    (WK_OK, c"WK_OK"),
+    (WK_PENDING, c"WK_PENDING"),
+    (WK_ERROR_INVALID_ARGUMENT, c"WK_ERROR_INVALID_ARGUMENT"),
+    (WK_ERROR_BAD_HANDLE, c"WK_ERROR_BAD_HANDLE"),
+    (WK_ERROR_IN_USE, c"WK_ERROR_IN_USE"),
+    (WK_ERROR_UNSUPPORTED, c"WK_ERROR_UNSUPPORTED"),
+    (WK_ERROR_NO_ADAPTER, c"WK_ERROR_NO_ADAPTER"),
+    (WK_ERROR_DEVICE_LOST, c"WK_ERROR_DEVICE_LOST"),
+    (WK_ERROR_OUT_OF_MEMORY, c"WK_ERROR_OUT_OF_MEMORY"),
+    (WK_ERROR_POISONED, c"WK_ERROR_POISONED"),
+    (WK_ERROR_ALREADY_WRAPPED, c"WK_ERROR_ALREADY_WRAPPED"),
+    (WK_ERROR_PARSE, c"WK_ERROR_PARSE"),
+    (WK_ERROR_IO, c"WK_ERROR_IO"),
+    (WK_ERROR_SURFACE_OUTDATED, c"WK_ERROR_SURFACE_OUTDATED"),
+    (WK_ERROR_WRONG_ORDER, c"WK_ERROR_WRONG_ORDER"),
+    (WK_ERROR_ABORTED, c"WK_ERROR_ABORTED"),
+    (WK_ERROR_INTERNAL, c"WK_ERROR_INTERNAL"),
+];

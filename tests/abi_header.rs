@@ -1,0 +1,161 @@
+//! The committed header: it is the one that the sources give, every C and C++ standard takes it, and C sees the same
+//! structs and the same defaults as Rust. `WELKIN_BLESS=1` writes the committed header and lists anew.
+
+use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path, path::PathBuf, process::Command};
+
+use welkin::capi::abi;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A directory of this test's own.
+fn scratch(name: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&dir).expect("the target directory is writable");
+    dir
+}
+
+/// Holds `now` against a committed file, or writes it when blessing.
+fn compare(file: &str, now: &str) {
+    let path = root().join(file);
+    if std::env::var_os("WELKIN_BLESS").is_some() {
+        fs::write(&path, now).expect("the working tree is writable");
+    }
+    let committed = fs::read_to_string(&path).unwrap_or_default();
+    let first = committed.lines().zip(now.lines()).position(|(a, b)| a != b);
+    let line = first.unwrap_or_else(|| committed.lines().count().min(now.lines().count()));
+    assert!(
+        committed == now,
+        "{file} is out of date from line {} (`make header` writes it): committed {:?}, should be {:?}",
+        line + 1,
+        committed.lines().nth(line),
+        now.lines().nth(line)
+    );
+}
+
+fn run(command: &mut Command) -> String {
+    let shown = format!("{command:?}");
+    let output = command.output().unwrap_or_else(|e| panic!("{shown}: {e}"));
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{shown}: {}\n{errors}", output.status);
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+#[test]
+fn committed_header_is_what_the_sources_give() {
+    compare("include/welkin.h", abi::HEADER);
+}
+
+/// Both headers, every struct and every INIT macro.
+fn every_struct_source() -> String {
+    let mut text = String::from("#include \"welkin.h\"\nint main(void)\n{\n");
+    for (name, ..) in abi::structs() {
+        let _ = writeln!(text, "    {{ {name} x = {}_INIT; (void)x; }}", name.to_uppercase());
+    }
+    text + "    return WK_VERSION_MAJOR < 0;\n}\n"
+}
+
+#[test]
+fn header_compiles_under_every_standard_without_a_warning() {
+    let dir = scratch("standards");
+    let strict = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-I"];
+    let mut compilers = vec![("gcc", "g++")];
+    if Command::new("clang").arg("--version").output().is_ok() {
+        compilers.push(("clang", "clang++"));
+    }
+    fs::write(dir.join("all.c"), every_struct_source()).unwrap();
+    fs::write(dir.join("all.cpp"), every_struct_source()).unwrap();
+    for (c, cpp) in compilers {
+        for std in ["c99", "c11", "c17"] {
+            run(Command::new(c)
+                .arg(format!("-std={std}"))
+                .args(strict)
+                .arg(root().join("include"))
+                .arg(dir.join("all.c")));
+        }
+        for std in ["c++11", "c++17", "c++20"] {
+            run(Command::new(cpp)
+                .arg(format!("-std={std}"))
+                .args(strict)
+                .arg(root().join("include"))
+                .arg(dir.join("all.cpp")));
+        }
+    }
+}
+
+/// A C program that prints each struct's size, alignment, field offsets and sizes, and the bytes of its INIT macro.
+fn layout_program() -> String {
+    let mut text = String::from("#include \"welkin.h\"\n#include <stdio.h>\n#include <string.h>\n");
+    text.push_str("#define ALIGN(T) offsetof(struct { char c; T x; }, x)\n");
+    text.push_str("static void hex(const char *name, const void *p, size_t n)\n{\n");
+    text.push_str("    const unsigned char *b = (const unsigned char *)p;\n    printf(\"init %s \", name);\n");
+    text.push_str("    for (size_t i = 0; i < n; i++) printf(\"%02x\", b[i]);\n    printf(\"\\n\");\n}\n");
+    text.push_str("int main(void)\n{\n");
+    for (name, _, _, fields) in abi::structs() {
+        let _ = writeln!(text, "    printf(\"{name} %zu %zu\\n\", sizeof({name}), (size_t)ALIGN({name}));");
+        for (field, ..) in fields {
+            let _ = writeln!(
+                text,
+                "    printf(\"{name}.{field} %zu %zu\\n\", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));"
+            );
+        }
+        let upper = name.to_uppercase();
+        let _ = writeln!(text, "    {{ static const {name} x = {upper}_INIT; hex(\"{name}\", &x, sizeof x); }}");
+    }
+    text + "    return 0;\n}\n"
+}
+
+fn c_view() -> String {
+    let dir = scratch("layout");
+    let (source, program) = (dir.join("layout.c"), dir.join("layout"));
+    fs::write(&source, layout_program()).unwrap();
+    run(Command::new("gcc").args(["-std=c99", "-I"]).arg(root().join("include")).arg(&source).arg("-o").arg(&program));
+    run(&mut Command::new(program))
+}
+
+#[test]
+fn c_and_rust_agree_on_every_offset_and_the_committed_list() {
+    let mut rust = String::new();
+    for (name, size, align, fields) in abi::structs() {
+        let _ = writeln!(rust, "{name} {size} {align}");
+        let mut end = 0;
+        for (field, offset, bytes) in fields {
+            let _ = writeln!(rust, "{name}.{field} {offset} {bytes}");
+            assert_eq!(end, offset, "{name} has hidden padding before {field}");
+            end = offset + bytes;
+        }
+        assert_eq!(end, size, "{name} has hidden padding at its end");
+    }
+    let c: String = c_view().lines().filter(|l| !l.starts_with("init ")).map(|l| format!("{l}\n")).collect();
+    assert_eq!(c, rust);
+    if usize::BITS == 64 {
+        compare("tests/abi/layout.txt", &rust);
+    }
+}
+
+#[test]
+fn init_macros_and_init_functions_agree() {
+    let macros: BTreeMap<String, String> = c_view()
+        .lines()
+        .filter_map(|l| l.strip_prefix("init ")?.split_once(' ').map(|(a, b)| (a.to_owned(), b.to_owned())))
+        .collect();
+    for (name, size, ..) in abi::structs() {
+        let mut bytes = vec![u64::MAX; size.div_ceil(8) + 8];
+        if abi::init(name, &mut bytes, size as u32) == welkin::capi::status::WK_ERROR_UNSUPPORTED {
+            continue; // embedded structs have no function of their own
+        }
+        let from_function: String =
+            bytes.iter().flat_map(|w| w.to_ne_bytes()).take(size).map(|b| format!("{b:02x}")).collect();
+        assert_eq!(macros[name], from_function, "{name}");
+        assert_eq!(bytes[size.div_ceil(8)], u64::MAX, "{name}: nothing beyond struct_size is written");
+    }
+}
+
+#[test]
+fn exported_functions_are_the_committed_list() {
+    let mut names = abi::functions().to_vec();
+    names.sort_unstable();
+    let list: String = names.iter().map(|n| format!("{n}\n")).collect();
+    compare("tests/abi/symbols.txt", &list);
+}
