@@ -194,7 +194,7 @@ pub fn write_table(model: &Model) -> String {
             let flags = e.name.ends_with("_flags");
             let signed = model.aliases.get(&e.name).is_some_and(|t| type_name(t) == "i32");
             let values: String =
-                e.constants.iter().map(|c| format!("(\"{c}\", super::{module}::{c} as u32), ")).collect();
+                e.constants.iter().map(|c| format!("(\"{c}\", crate::capi::{module}::{c} as u32), ")).collect();
             let upper = e.name.to_uppercase();
             let _ = writeln!(
                 out,
@@ -203,7 +203,7 @@ pub fn write_table(model: &Model) -> String {
             );
         }
         for s in &section.structs {
-            let path = format!("super::{module}::{}", s.name);
+            let path = format!("crate::capi::{module}::{}", s.name);
             let upper = s.name.to_uppercase();
             let _ = writeln!(
                 out,
@@ -246,7 +246,8 @@ fn write_inits_by_name(model: &Model) -> String {
     for section in &model.sections {
         for s in section.structs.iter().filter(|s| s.is_tagged()) {
             let (module, name) = (&section.module, &s.name);
-            let _ = writeln!(out, "        \"{name}\" => unsafe {{ super::{module}::{name}_init(p.cast(), size) }},");
+            let _ =
+                writeln!(out, "        \"{name}\" => unsafe {{ crate::capi::{module}::{name}_init(p.cast(), size) }},");
         }
     }
     out.push_str("        _ => WK_ERROR_UNSUPPORTED,\n    }\n}\n");

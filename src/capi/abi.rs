@@ -10,8 +10,11 @@ pub fn functions() -> &'static [&'static str] {
     FUNCTIONS
 }
 
+/// A field's name, offset and size.
+pub type Span = (&'static str, usize, usize);
+
 /// Every struct of the header: name, size, alignment, and its fields' names, offsets and sizes.
-pub fn structs() -> Vec<(&'static str, usize, usize, Vec<(&'static str, usize, usize)>)> {
+pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
     let fields = |s: &'static super::layout::StructInfo| {
         s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect()
     };

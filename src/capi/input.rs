@@ -114,7 +114,7 @@ pub(super) unsafe fn list<T: Layout>(
     }
     layout::check_pointer(&param, p)?;
     let align = align_of::<T>();
-    if stride < size_of::<layout::Head>() || stride % align != 0 {
+    if stride < size_of::<layout::Head>() || !stride.is_multiple_of(align) {
         let accepted = format!("sizeof({}) of your header, a multiple of {align}", T::INFO.name);
         return Err(Error::range(&format!("{param}'s stride"), &accepted, stride));
     }

@@ -77,7 +77,12 @@ const MAX_STRUCT_BYTES: usize = 64 * 1024;
 /// Longer chains are a cycle.
 const MAX_CHAIN: usize = 16;
 
-include!(concat!(env!("OUT_DIR"), "/abi_table.rs"));
+#[allow(clippy::all, clippy::undocumented_unsafe_blocks, reason = "written by build.rs")]
+mod table {
+    use super::*;
+    include!(concat!(env!("OUT_DIR"), "/abi_table.rs"));
+}
+pub(crate) use table::*;
 
 /// `sizeof` as the structs' first field holds it.
 pub(crate) const fn struct_size<T>() -> u32 {

@@ -7,9 +7,12 @@
 #![allow(non_camel_case_types, reason = "the names are C's")]
 #![allow(clippy::missing_safety_doc, reason = "the safety rules are the header's: see `manual`")]
 
-pub mod device;
+// Empty lines keep rustfmt from sorting what is in reading order.
 pub mod manual;
+
 pub mod status;
+
+pub mod device;
 
 mod boundary;
 mod device_cell;
