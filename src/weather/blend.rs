@@ -1,0 +1,198 @@
+//! Blending of two `Conditions`: what a change of weather looks like half-way.
+//!
+//! Each quantity is blended in the variable in which the eye sees even steps, and each layer's geometry is weighted by how much
+//! of the layer there is, so that a layer which fades in from nothing does not drag the other one's height along.
+
+use super::conditions::{
+    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, FogLayer, SeaState, SurfaceCover,
+    WindProfile,
+};
+
+/// a + (b - a) t, exact at both ends and monotone in t.
+fn mix(a: f64, b: f64, t: f64) -> f64 {
+    if t >= 1.0 { b } else { a + (b - a) * t }
+}
+
+/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb).
+fn share(qa: f64, qb: f64, t: f64) -> f64 {
+    let (a, b) = ((1.0 - t) * qa, t * qb);
+    if a + b > 0.0 { b / (a + b) } else { t }
+}
+
+/// Weight for which mix(a, b, w) = a^(1-t) b^t, both positive: visibility then changes by equal factors in equal parts of t,
+/// which is how differences of visibility are seen (Weber and Fechner).
+pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
+    let log_ratio = libm::log(b / a);
+    let whole = libm::expm1(log_ratio);
+    // Below 1e-9 the quotient's limit is t itself; a quotient of two rounding errors is not.
+    if log_ratio.abs() < 1e-9 || !whole.is_finite() { t } else { libm::expm1(t * log_ratio) / whole }
+}
+
+/// All the light-stopping matter near the ground, fog included wherever it lies.
+fn burden_per_m(c: &Conditions) -> f64 {
+    c.air.rayleigh_extinction_per_m
+        + c.aerosol.extinction_per_m
+        + c.fog.extinction_per_m
+        + c.precipitation.extinction_per_m
+}
+
+impl Conditions {
+    /// The weather between `self` (at `t` = 0) and `to` (at 1); `t` outside is clamped, NaN counts as 0.
+    ///
+    /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot, covers
+    /// linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; wind blends as a vector, so
+    /// a turn by more than 90 degrees passes through a lull; everything else is linear.
+    pub fn lerp(&self, to: &Self, t: f64) -> Self {
+        if t >= 1.0 {
+            return *to;
+        }
+        if t.is_nan() || t <= 0.0 {
+            return *self;
+        }
+        let w = geometric_weight(burden_per_m(self), burden_per_m(to), t);
+        Self {
+            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
+            air: self.air.blend(&to.air, t, w),
+            aerosol: self.aerosol.blend(&to.aerosol, w),
+            fog: self.fog.blend(&to.fog, w),
+            precipitation: self.precipitation.blend(&to.precipitation, t, w),
+            clouds: std::array::from_fn(|i| self.clouds[i].blend(&to.clouds[i], t)),
+            cloud_light: self.cloud_light.blend(&to.cloud_light, t),
+            wind: self.wind.blend(&to.wind, t),
+            sea: self.sea.blend(&to.sea, t),
+            surface: self.surface.blend(&to.surface, t),
+            ozone_du: mix(self.ozone_du, to.ozone_du, t),
+        }
+    }
+}
+
+impl Air {
+    fn blend(&self, to: &Self, t: f64, w: f64) -> Self {
+        Self {
+            temperature_c: mix(self.temperature_c, to.temperature_c, t),
+            relative_humidity: mix(self.relative_humidity, to.relative_humidity, t),
+            pressure_hpa: mix(self.pressure_hpa, to.pressure_hpa, t),
+            station_pressure_hpa: mix(self.station_pressure_hpa, to.station_pressure_hpa, t),
+            station_altitude_m: mix(self.station_altitude_m, to.station_altitude_m, t),
+            rayleigh_density_ratio: mix(self.rayleigh_density_ratio, to.rayleigh_density_ratio, t),
+            rayleigh_scale_height_m: mix(self.rayleigh_scale_height_m, to.rayleigh_scale_height_m, t),
+            rayleigh_extinction_per_m: mix(self.rayleigh_extinction_per_m, to.rayleigh_extinction_per_m, w),
+        }
+    }
+}
+
+impl AerosolLayer {
+    fn blend(&self, to: &Self, w: f64) -> Self {
+        let q = share(self.extinction_per_m, to.extinction_per_m, w);
+        Self {
+            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
+            angstrom_exponent: mix(self.angstrom_exponent, to.angstrom_exponent, q),
+            absorption_angstrom_exponent: mix(self.absorption_angstrom_exponent, to.absorption_angstrom_exponent, q),
+            single_scattering_albedo: mix(self.single_scattering_albedo, to.single_scattering_albedo, q),
+            asymmetry: mix(self.asymmetry, to.asymmetry, q),
+            scale_height_m: mix(self.scale_height_m, to.scale_height_m, q),
+            reference_altitude_m: mix(self.reference_altitude_m, to.reference_altitude_m, q),
+        }
+    }
+}
+
+impl FogLayer {
+    fn blend(&self, to: &Self, w: f64) -> Self {
+        let q = share(self.extinction_per_m, to.extinction_per_m, w);
+        Self {
+            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
+            angstrom_exponent: mix(self.angstrom_exponent, to.angstrom_exponent, q),
+            single_scattering_albedo: mix(self.single_scattering_albedo, to.single_scattering_albedo, q),
+            asymmetry: mix(self.asymmetry, to.asymmetry, q),
+            base_m: mix(self.base_m, to.base_m, q),
+            top_m: mix(self.top_m, to.top_m, q),
+            softness_m: mix(self.softness_m, to.softness_m, q),
+            coverage: mix(self.coverage, to.coverage, q),
+            patch_size_m: mix(self.patch_size_m, to.patch_size_m, q),
+        }
+    }
+}
+
+impl Falling {
+    fn blend(&self, to: &Self, t: f64, w: f64) -> Self {
+        Self {
+            rain_mm_h: mix(self.rain_mm_h, to.rain_mm_h, t),
+            drizzle_mm_h: mix(self.drizzle_mm_h, to.drizzle_mm_h, t),
+            snow_mm_h: mix(self.snow_mm_h, to.snow_mm_h, t),
+            ice_pellets_mm_h: mix(self.ice_pellets_mm_h, to.ice_pellets_mm_h, t),
+            hail_mm_h: mix(self.hail_mm_h, to.hail_mm_h, t),
+            freezing: mix(self.freezing, to.freezing, t),
+            showers: mix(self.showers, to.showers, t),
+            thunder: mix(self.thunder, to.thunder, t),
+            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
+        }
+    }
+}
+
+impl CloudSlab {
+    fn blend(&self, to: &Self, t: f64) -> Self {
+        let q = share(self.cover, to.cover, t);
+        let stopped = |tau: f64| tau / (tau + 10.0);
+        let y = mix(stopped(self.optical_depth), stopped(to.optical_depth), q);
+        Self {
+            cover: mix(self.cover, to.cover, t),
+            base_m: mix(self.base_m, to.base_m, q),
+            thickness_m: mix(self.thickness_m, to.thickness_m, q),
+            optical_depth: 10.0 * y / (1.0 - y),
+            droplet_radius_um: mix(self.droplet_radius_um, to.droplet_radius_um, q),
+            asymmetry: mix(self.asymmetry, to.asymmetry, q),
+            convection: mix(self.convection, to.convection, q),
+            ice_fraction: mix(self.ice_fraction, to.ice_fraction, q),
+        }
+    }
+}
+
+impl CloudLightOverride {
+    fn blend(&self, to: &Self, t: f64) -> Self {
+        let q = share(self.weight, to.weight, t);
+        Self {
+            weight: mix(self.weight, to.weight, t),
+            direct: mix(self.direct, to.direct, q),
+            diffuse: mix(self.diffuse, to.diffuse, q),
+        }
+    }
+}
+
+impl WindProfile {
+    fn blend(&self, to: &Self, t: f64) -> Self {
+        Self {
+            east_m_s: mix(self.east_m_s, to.east_m_s, t),
+            north_m_s: mix(self.north_m_s, to.north_m_s, t),
+            gust_m_s: mix(self.gust_m_s, to.gust_m_s, t),
+            turbulence_intensity: mix(self.turbulence_intensity, to.turbulence_intensity, t),
+            wander_deg: mix(self.wander_deg, to.wander_deg, t),
+            roughness_length_m: mix(self.roughness_length_m, to.roughness_length_m, t),
+            sea_roughness_length_m: mix(self.sea_roughness_length_m, to.sea_roughness_length_m, t),
+        }
+    }
+}
+
+impl SeaState {
+    fn blend(&self, to: &Self, t: f64) -> Self {
+        let q = share(self.swell_height_m, to.swell_height_m, t);
+        Self {
+            significant_wave_height_m: mix(self.significant_wave_height_m, to.significant_wave_height_m, t),
+            swell_height_m: mix(self.swell_height_m, to.swell_height_m, t),
+            swell_period_s: mix(self.swell_period_s, to.swell_period_s, q),
+            swell_east: mix(self.swell_east, to.swell_east, q),
+            swell_north: mix(self.swell_north, to.swell_north, q),
+            temperature_c: mix(self.temperature_c, to.temperature_c, t),
+        }
+    }
+}
+
+impl SurfaceCover {
+    fn blend(&self, to: &Self, t: f64) -> Self {
+        Self {
+            wetness: mix(self.wetness, to.wetness, t),
+            puddles: mix(self.puddles, to.puddles, t),
+            ice: mix(self.ice, to.ice, t),
+            snow_depth_m: mix(self.snow_depth_m, to.snow_depth_m, t),
+        }
+    }
+}

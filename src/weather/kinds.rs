@@ -1,0 +1,225 @@
+//! The kinds of things a weather report names, each with a number that is stable for ever (C hosts pass the number).
+
+use crate::error::{Error, Result};
+
+/// Declares a `u32` enum whose numbers, names and list are public, so that C, files and people can name each variant.
+macro_rules! kinds {
+    ($(#[$meta:meta])* $name:ident, $what:literal { $($(#[$vmeta:meta])* $variant:ident = $value:literal, $text:literal;)+ }) => {
+        $(#[$meta])*
+        #[repr(u32)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $name {
+            $($(#[$vmeta])* $variant = $value,)+
+        }
+
+        impl $name {
+            /// Every variant, in the order of its number.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)+];
+
+            /// The variant's name in lower case with underscores, as presets and files write it.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $text,)+
+                }
+            }
+
+            /// The variant of a stable number.
+            ///
+            /// # Errors
+            /// [`crate::Status::InvalidArgument`] naming the parameter and the accepted numbers.
+            pub fn from_u32(value: u32) -> Result<Self> {
+                match value {
+                    $($value => Ok(Self::$variant),)+
+                    _ => Err(Error::range($what, &format!("one of 0..={}", Self::ALL.len() - 1), value)),
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// What the dry particles of the air are. Sets the defaults of [`super::Aerosol`]'s optional fields.
+    AerosolKind, "aerosol.kind" {
+        /// Average continental air: soil, soot-poor industry, sulphates.
+        Continental = 0, "continental";
+        /// Clean continental or rural air.
+        Clean = 1, "clean";
+        /// Open-sea air: sea salt.
+        Maritime = 2, "maritime";
+        /// Urban air with soot.
+        Urban = 3, "urban";
+        /// Haze (METAR HZ): polluted continental air.
+        Haze = 4, "haze";
+        /// Lifted mineral dust (METAR DU, DS).
+        Dust = 5, "dust";
+        /// Lifted sand (METAR SA, SS): coarser than dust.
+        Sand = 6, "sand";
+        /// Smoke of burning biomass (METAR FU).
+        Smoke = 7, "smoke";
+        /// Volcanic ash (METAR VA).
+        VolcanicAsh = 8, "volcanic_ash";
+        /// Arctic air.
+        Arctic = 9, "arctic";
+    }
+}
+
+kinds! {
+    /// Fog and mist: suspended droplets at the ground.
+    FogKind, "fog.kind" {
+        /// No fog; what visibility lacks is the aerosol's.
+        None = 0, "none";
+        /// Mist (METAR BR): droplets, 1 to 5 km.
+        Mist = 1, "mist";
+        /// Shallow fog (METAR MIFG): below 2 m, clear above.
+        Shallow = 2, "shallow";
+        /// Patches of fog (METAR BCFG).
+        Patches = 3, "patches";
+        /// Part of the aerodrome in fog (METAR PRFG).
+        Partial = 4, "partial";
+        /// Fog (METAR FG): below 1 km.
+        Fog = 5, "fog";
+        /// Freezing fog (METAR FZFG): supercooled droplets.
+        Freezing = 6, "freezing";
+    }
+}
+
+kinds! {
+    /// Cloud genera, and the two that METAR names.
+    CloudKind, "clouds[].kind" {
+        /// Not known: chosen from height, cover and precipitation by `derive`.
+        Unknown = 0, "unknown";
+        /// Low grey sheet.
+        Stratus = 1, "stratus";
+        /// Low lumpy sheet.
+        Stratocumulus = 2, "stratocumulus";
+        /// Fair-weather heaps.
+        Cumulus = 3, "cumulus";
+        /// Towering cumulus (METAR TCU).
+        ToweringCumulus = 4, "towering_cumulus";
+        /// Cumulonimbus (METAR CB).
+        Cumulonimbus = 5, "cumulonimbus";
+        /// Thick sheet that rains or snows.
+        Nimbostratus = 6, "nimbostratus";
+        /// Middle lumpy sheet.
+        Altocumulus = 7, "altocumulus";
+        /// Middle grey sheet.
+        Altostratus = 8, "altostratus";
+        /// High fibres of ice.
+        Cirrus = 9, "cirrus";
+        /// High veil of ice.
+        Cirrostratus = 10, "cirrostratus";
+        /// High ripples of ice.
+        Cirrocumulus = 11, "cirrocumulus";
+    }
+}
+
+kinds! {
+    /// What falls.
+    PrecipitationKind, "precipitation.kind" {
+        /// Nothing falls; the rate must be 0.
+        None = 0, "none";
+        /// Drizzle (DZ): drops below 0.5 mm.
+        Drizzle = 1, "drizzle";
+        /// Rain (RA).
+        Rain = 2, "rain";
+        /// Snow (SN).
+        Snow = 3, "snow";
+        /// Rain and snow together (RASN).
+        Sleet = 4, "sleet";
+        /// Frozen raindrops (PL).
+        IcePellets = 5, "ice_pellets";
+        /// Hail of 5 mm and more (GR).
+        Hail = 6, "hail";
+        /// Small hail or snow pellets (GS).
+        SmallHail = 7, "small_hail";
+        /// Snow grains (SG): frozen drizzle.
+        SnowGrains = 8, "snow_grains";
+        /// Ice crystals, diamond dust (IC).
+        IceCrystals = 9, "ice_crystals";
+        /// Freezing drizzle (FZDZ).
+        FreezingDrizzle = 10, "freezing_drizzle";
+        /// Freezing rain (FZRA).
+        FreezingRain = 11, "freezing_rain";
+    }
+}
+
+kinds! {
+    /// What the wind lifts from the ground.
+    LoftedKind, "lofted.kind" {
+        /// Nothing.
+        None = 0, "none";
+        /// Drifting snow below eye height (DRSN).
+        DriftingSnow = 1, "drifting_snow";
+        /// Blowing snow at and above eye height (BLSN).
+        BlowingSnow = 2, "blowing_snow";
+        /// Drifting dust or sand below eye height (DRDU, DRSA).
+        DriftingDust = 3, "drifting_dust";
+        /// Blowing dust (BLDU) or a dust storm (DS).
+        BlowingDust = 4, "blowing_dust";
+        /// Blowing sand (BLSA) or a sand storm (SS).
+        BlowingSand = 5, "blowing_sand";
+        /// Blowing spray (BLPY).
+        BlowingSpray = 6, "blowing_spray";
+    }
+}
+
+kinds! {
+    /// The ground's state as an observer names it.
+    SurfaceState, "surface.state" {
+        /// Dry.
+        Dry = 0, "dry";
+        /// Damp: darker, no film.
+        Damp = 1, "damp";
+        /// Wet: a film that shines.
+        Wet = 2, "wet";
+        /// Standing water, puddles.
+        StandingWater = 3, "standing_water";
+        /// Frost.
+        Frost = 4, "frost";
+        /// Ice.
+        Ice = 5, "ice";
+        /// Snow lies; see `snow_depth_m`.
+        Snow = 6, "snow";
+    }
+}
+
+impl PrecipitationKind {
+    /// Mass fraction of what falls that is liquid, where the report does not say: 1 for rain, 0 for ice, 0.5 for sleet.
+    pub fn default_liquid_fraction(self) -> f64 {
+        match self {
+            Self::Drizzle | Self::Rain | Self::FreezingDrizzle | Self::FreezingRain => 1.0,
+            Self::Sleet => 0.5,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the drops freeze where they land.
+    pub fn is_freezing(self) -> bool {
+        matches!(self, Self::FreezingDrizzle | Self::FreezingRain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers_are_dense<T: Copy + PartialEq + std::fmt::Debug>(all: &[T], from: impl Fn(u32) -> Result<T>) {
+        for (i, k) in all.iter().enumerate() {
+            assert_eq!(from(i as u32).unwrap(), *k);
+        }
+        assert!(from(all.len() as u32).is_err());
+        assert!(from(u32::MAX).is_err());
+    }
+
+    #[test]
+    fn every_number_names_one_kind_and_others_are_refused_by_name() {
+        numbers_are_dense(AerosolKind::ALL, AerosolKind::from_u32);
+        numbers_are_dense(FogKind::ALL, FogKind::from_u32);
+        numbers_are_dense(CloudKind::ALL, CloudKind::from_u32);
+        numbers_are_dense(PrecipitationKind::ALL, PrecipitationKind::from_u32);
+        numbers_are_dense(LoftedKind::ALL, LoftedKind::from_u32);
+        numbers_are_dense(SurfaceState::ALL, SurfaceState::from_u32);
+        let e = CloudKind::from_u32(99).unwrap_err();
+        assert!(e.message.contains("clouds[].kind") && e.message.contains("0..=11"), "{}", e.message);
+    }
+}
