@@ -7,6 +7,9 @@
 pub mod pass;
 pub mod readback;
 pub mod shader;
+// ash does not build for Apple hosts here: there the backend is Metal.
+#[cfg(not(any(target_os = "macos", target_os = "ios")))]
+pub mod vulkan;
 
 mod device;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};

@@ -1,0 +1,237 @@
+//! Everything that would abort or panic inside the Vulkan backend, checked first and refused by name.
+
+use std::ffi::{CStr, c_void};
+
+use ash::vk;
+
+use super::VulkanHostDesc;
+use super::dispatch::{self, RealFunctions};
+use super::facts::EnabledFeatures;
+use crate::error::{Error, Result, Status};
+
+/// A host description that passed the checks which need no driver call.
+pub(super) struct Handles {
+    pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    pub instance_api_version: u32,
+}
+
+fn invalid(message: impl Into<String>) -> Error {
+    Error::new(Status::InvalidArgument, message)
+}
+
+fn version_text(v: u32) -> String {
+    format!("{}.{}", vk::api_version_major(v), vk::api_version_minor(v))
+}
+
+/// Null pointers, half-given callbacks and impossible versions.
+pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
+    let get = desc.get_instance_proc_addr;
+    let get = get.ok_or_else(|| invalid("get_instance_proc_addr must be vkGetInstanceProcAddr, got NULL"))?;
+    for (name, null) in [
+        ("instance", desc.instance == vk::Instance::null()),
+        ("physical_device", desc.physical_device == vk::PhysicalDevice::null()),
+        ("device", desc.device == vk::Device::null()),
+    ] {
+        if null {
+            return Err(invalid(format!("{name} must be a live Vulkan handle, got VK_NULL_HANDLE")));
+        }
+    }
+    if desc.lock_queue.is_some() != desc.unlock_queue.is_some() {
+        return Err(invalid("lock_queue and unlock_queue must be given together or not at all"));
+    }
+    // VkApplicationInfo::apiVersion 0 means 1.0 (Vulkan specification, VkApplicationInfo).
+    let v = if desc.instance_api_version == 0 { vk::API_VERSION_1_0 } else { desc.instance_api_version };
+    if vk::api_version_variant(v) != 0 || vk::api_version_major(v) != 1 {
+        let accepted = "VkApplicationInfo::apiVersion, variant 0 and major version 1 (or 0 for 1.0)";
+        return Err(Error::range("instance_api_version", accepted, format_args!("{v:#x}")));
+    }
+    Ok(Handles { get_instance_proc_addr: get, instance_api_version: v })
+}
+
+/// The host's instance with wgpu's questions redirected, and the functions behind the redirections.
+pub(super) struct LoadedInstance {
+    pub instance: ash::Instance,
+    pub entry: ash::Entry,
+    plain: ash::Instance,
+    get_features2: Option<vk::PFN_vkGetPhysicalDeviceFeatures2>,
+}
+
+/// Loads the instance's functions; one that Vulkan 1.0 owes and the host's loader does not have is an error
+/// (calling it would abort the process).
+///
+/// # Safety
+/// `handles` and `desc.instance` are the host's, as [`VulkanHostDesc`] demands.
+pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles) -> Result<LoadedInstance> {
+    let get = handles.get_instance_proc_addr;
+    let address = |name: &CStr| {
+        // SAFETY: the caller vouches for the loader function and the instance.
+        let f = unsafe { dispatch::lookup(get, desc.instance, name) };
+        f.map_or(std::ptr::null(), |f| f as *const c_void)
+    };
+    let mut missing = Vec::new();
+    let v1_0 = ash::InstanceFnV1_0::load(|name| {
+        let found = address(name);
+        // Creation and destruction of the host's objects is never ours, and sparse images are not used.
+        if found.is_null() {
+            missing.push(name.to_string_lossy().into_owned());
+        }
+        found
+    });
+    if let Some(name) = missing.first() {
+        return Err(invalid(format!("get_instance_proc_addr must serve Vulkan 1.0, but it answers NULL for {name}")));
+    }
+    let redirected = |name: &CStr| match dispatch::instance_substitute(name) {
+        Some(s) if !address(name).is_null() => s,
+        _ => address(name),
+    };
+    // SAFETY: every pointer comes from the host's loader or is a substitute of the same signature.
+    let instance = unsafe { ash::Instance::load_with(redirected, desc.instance) };
+    let plain = ash::Instance::from_parts_1_3(
+        desc.instance,
+        v1_0,
+        ash::InstanceFnV1_1::load(address),
+        ash::InstanceFnV1_3::load(address),
+    );
+    let features2 = address(c"vkGetPhysicalDeviceFeatures2KHR");
+    // SAFETY: a non-null answer for this name has this signature.
+    let get_features2 =
+        unsafe { std::mem::transmute::<*const c_void, Option<vk::PFN_vkGetPhysicalDeviceFeatures2>>(features2) };
+    let global = |name: &CStr| {
+        // SAFETY: the loader function answers for global names with a null instance.
+        let f = unsafe { get(vk::Instance::null(), name.as_ptr()) };
+        f.map_or(std::ptr::null(), |f| f as *const c_void)
+    };
+    let entry = ash::Entry::from_parts_1_1(
+        ash::StaticFn { get_instance_proc_addr: dispatch::get_instance_proc_addr },
+        ash::EntryFnV1_0::load(global),
+        ash::EntryFnV1_1::load(global),
+    );
+    Ok(LoadedInstance { instance, entry, plain, get_features2 })
+}
+
+/// The physical device belongs to the instance, and its version with the instance's gives the version in force.
+///
+/// # Safety
+/// As for [`load_instance`].
+pub(super) unsafe fn api_version(desc: &VulkanHostDesc<'_>, handles: &Handles, loaded: &LoadedInstance) -> Result<u32> {
+    // SAFETY: the instance is live.
+    let devices = unsafe { loaded.plain.enumerate_physical_devices() };
+    let devices = devices.map_err(|e| {
+        Error::new(Status::NoAdapter, format!("vkEnumeratePhysicalDevices on the host's instance failed: {e}"))
+    })?;
+    if !devices.contains(&desc.physical_device) {
+        let message = "physical_device must be one that vkEnumeratePhysicalDevices(instance) lists";
+        return Err(invalid(message));
+    }
+    // SAFETY: the physical device was just found in the instance's list.
+    let properties = unsafe { loaded.plain.get_physical_device_properties(desc.physical_device) };
+    Ok(properties.api_version.min(handles.instance_api_version))
+}
+
+/// The queue exists and can draw and compute.
+///
+/// # Safety
+/// As for [`load_instance`], with the physical device checked.
+pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInstance) -> Result<()> {
+    // SAFETY: the physical device was checked.
+    let families = unsafe { loaded.plain.get_physical_device_queue_family_properties(desc.physical_device) };
+    let Some(family) = families.get(desc.queue_family_index as usize) else {
+        let accepted = format!("below the device's {} queue families", families.len());
+        return Err(Error::range("queue_family_index", &accepted, desc.queue_family_index));
+    };
+    if desc.queue_index >= family.queue_count {
+        let accepted = format!("below the {} queues of family {}", family.queue_count, desc.queue_family_index);
+        return Err(Error::range("queue_index", &accepted, desc.queue_index));
+    }
+    let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    if !family.queue_flags.contains(needed) {
+        let accepted = "a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT";
+        let got = format!("family {} with {:?}", desc.queue_family_index, family.queue_flags);
+        return Err(Error::range("queue_family_index", accepted, got));
+    }
+    Ok(())
+}
+
+/// What the backend needs beyond Vulkan 1.0, and features that the host claims but cannot have.
+pub(super) fn extensions(api_version: u32, enabled: &[&'static CStr], features: &EnabledFeatures) -> Result<()> {
+    let has = |name| enabled.contains(&name);
+    if api_version < vk::API_VERSION_1_1 {
+        for name in [ash::khr::maintenance1::NAME, ash::khr::storage_buffer_storage_class::NAME] {
+            if !has(name) {
+                return Err(Error::unsupported(format!(
+                    "the host's Vulkan is {}; below 1.1 its device must enable {} (raise \
+                     VkApplicationInfo::apiVersion to 1.1, or enable it and list it in enabled_device_extensions)",
+                    version_text(api_version),
+                    name.to_string_lossy(),
+                )));
+            }
+        }
+    }
+    if features.timeline_semaphore && api_version < vk::API_VERSION_1_2 && !has(ash::khr::timeline_semaphore::NAME) {
+        return Err(invalid(format!(
+            "enabled_features lists timelineSemaphore, but the host's Vulkan is {} and VK_KHR_timeline_semaphore \
+             is not in enabled_device_extensions: enable one of them or leave the feature out",
+            version_text(api_version),
+        )));
+    }
+    Ok(())
+}
+
+/// Loads the device's functions with the queue calls redirected; fills in what the redirections call.
+///
+/// # Safety
+/// As for [`load_instance`]; `desc.device` is live and was made from `desc.physical_device`.
+pub(super) unsafe fn load_device(
+    desc: &VulkanHostDesc<'_>,
+    handles: &Handles,
+    loaded: &LoadedInstance,
+    api_version: u32,
+    extensions: &[&'static CStr],
+) -> Result<(ash::Device, RealFunctions)> {
+    let get_device = loaded.plain.fp_v1_0().get_device_proc_addr;
+    let address = |name: &CStr| {
+        // SAFETY: the caller vouches for the device.
+        let f = unsafe { get_device(desc.device, name.as_ptr()) };
+        f.map_or(std::ptr::null(), |f| f as *const c_void)
+    };
+    let mut missing = Vec::new();
+    let v1_0 = ash::DeviceFnV1_0::load(|name| {
+        let found = address(name);
+        if found.is_null() {
+            missing.push(name.to_string_lossy().into_owned());
+        }
+        found
+    });
+    if desc.enabled_features.timeline_semaphore {
+        let khr = extensions.contains(&ash::khr::timeline_semaphore::NAME);
+        let names = if khr {
+            [c"vkGetSemaphoreCounterValueKHR", c"vkWaitSemaphoresKHR"]
+        } else {
+            [c"vkGetSemaphoreCounterValue", c"vkWaitSemaphores"]
+        };
+        missing.extend(names.iter().filter(|n| address(n).is_null()).map(|n| n.to_string_lossy().into_owned()));
+    }
+    if let Some(name) = missing.first() {
+        return Err(invalid(format!(
+            "device must serve Vulkan {} as instance_api_version and enabled_device_extensions say, but \
+             vkGetDeviceProcAddr answers NULL for {name}",
+            version_text(api_version),
+        )));
+    }
+    let redirected = |name: &CStr| dispatch::device_substitute(name).unwrap_or_else(|| address(name));
+    // SAFETY: every pointer comes from the host's loader or is a substitute of the same signature.
+    let device = unsafe { ash::Device::load_with(redirected, desc.device) };
+    let instance_fns = loaded.plain.fp_v1_0();
+    let real = RealFunctions {
+        get_instance_proc_addr: handles.get_instance_proc_addr,
+        enumerate_device_extensions: instance_fns.enumerate_device_extension_properties,
+        get_properties: instance_fns.get_physical_device_properties,
+        get_features: instance_fns.get_physical_device_features,
+        get_features2: loaded.get_features2,
+        get_queue_families: instance_fns.get_physical_device_queue_family_properties,
+        queue_submit: v1_0.queue_submit,
+        queue_wait_idle: v1_0.queue_wait_idle,
+        create_descriptor_set_layout: v1_0.create_descriptor_set_layout,
+    };
+    Ok((device, real))
+}
