@@ -1,0 +1,147 @@
+//! What a host hands over to be drawn into: colour, depth, mask, and how to read them.
+
+use crate::error::{Error, Result};
+
+/// What the numbers in the host's colour texture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ColorSpace {
+    /// Linear Rec. 709, proportional to luminance; [`Frame::cd_m2_per_unit`](super::Frame::cd_m2_per_unit) gives the
+    /// unit. The only space in which Welkin may tone-map the whole picture.
+    #[default]
+    SceneLinear,
+    /// Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
+    DisplayLinear,
+    /// Tone-mapped already and encoded by the sRGB curve (in an sRGB texture format the hardware does it).
+    DisplaySrgb,
+}
+
+/// The stages of a frame, in the order in which a host interleaves them with its own drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Stages(pub u32);
+
+impl Stages {
+    /// Tables and simulation textures; needs no target.
+    pub const PREPARE: Self = Self(1);
+    /// Sky behind everything: fills pixels at the far depth, or all pixels where there is no depth.
+    pub const BACKGROUND: Self = Self(2);
+    /// Wet and white surfaces, later sea and terrain; after the host's opaque objects.
+    pub const SURFACE: Self = Self(4);
+    /// Fog and aerial perspective on all that the host drew.
+    pub const MEDIUM: Self = Self(8);
+    /// Rain, snow and dust.
+    pub const PARTICLES: Self = Self(16);
+    /// Water on the windscreen.
+    pub const LENS: Self = Self(32);
+    /// Exposure, tone curve, display encoding and dither of the whole picture.
+    pub const TONE: Self = Self(64);
+    /// Everything at once.
+    pub const ALL: Self = Self(127);
+
+    /// Whether any stage of `other` is in the set.
+    pub fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// This set without `other`.
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Both sets.
+    pub fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Checks a mask from outside.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if it is empty or has unknown bits.
+    pub fn from_bits(bits: u32) -> Result<Self> {
+        if bits == 0 || bits & !Self::ALL.0 != 0 {
+            return Err(Error::range("stages", "a non-empty mask of WK_STAGE_ bits (0x7f)", format!("{bits:#x}")));
+        }
+        Ok(Self(bits))
+    }
+}
+
+/// Checks that a colour texture can be drawn into and copied, or says what it lacks.
+///
+/// # Errors
+/// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming the usage.
+pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    let format = texture.format();
+    if !matches!(
+        format,
+        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb | F::Rgba16Float | F::Rgba32Float
+            | F::Rgb10a2Unorm | F::Rg11b10Ufloat
+    ) {
+        return Err(Error::unsupported(format!(
+            "color format {format:?}; supported: Rgba8Unorm, Bgra8Unorm (both with or without Srgb), Rgb10a2Unorm, \
+             Rg11b10Ufloat, Rgba16Float, Rgba32Float"
+        )));
+    }
+    let needed = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    check_usage("color", texture, needed)
+}
+
+/// Checks that a depth texture can be read and matches the colour target.
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    let format = texture.format();
+    if !matches!(
+        format,
+        F::Depth16Unorm | F::Depth24Plus | F::Depth24PlusStencil8 | F::Depth32Float | F::Depth32FloatStencil8 | F::R32Float
+    ) {
+        return Err(Error::unsupported(format!(
+            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
+        )));
+    }
+    if (texture.width(), texture.height()) != (color.width(), color.height()) {
+        return Err(Error::range(
+            "depth",
+            &format!("as large as color, {} x {}", color.width(), color.height()),
+            format!("{} x {}", texture.width(), texture.height()),
+        ));
+    }
+    if texture.sample_count() != color.sample_count() {
+        return Err(Error::range(
+            "depth.samples",
+            &format!("those of color, {}", color.sample_count()),
+            texture.sample_count(),
+        ));
+    }
+    check_usage("depth", texture, wgpu::TextureUsages::TEXTURE_BINDING)
+}
+
+/// Checks the optional mask (red channel: 0 draws weather, 1 leaves the host's pixel).
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
+        return Err(Error::unsupported(format!(
+            "mask format {:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm",
+            texture.format()
+        )));
+    }
+    if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
+        return Err(Error::range(
+            "mask",
+            &format!("as large as color, {} x {}, one sample", color.width(), color.height()),
+            format!("{} x {}, {} samples", texture.width(), texture.height(), texture.sample_count()),
+        ));
+    }
+    check_usage("mask", texture, wgpu::TextureUsages::TEXTURE_BINDING)
+}
+
+fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages) -> Result<()> {
+    if texture.usage().contains(needed) {
+        return Ok(());
+    }
+    Err(Error::range(&format!("{name}.usage"), &format!("one with {needed:?}"), format!("{:?}", texture.usage())))
+}

@@ -1,0 +1,147 @@
+//! From luminance to the display, in f64: the truth of `shaders/frame/tone.wgsl`, and the exposure that all channels
+//! of a simulator share.
+
+use crate::error::{Error, Result, check_range};
+
+/// How luminance becomes display values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ToneCurve {
+    /// Exposure and clamp.
+    Linear,
+    /// 1 - exp(-x) a channel (O'Neil 2005): bright skies never burn out.
+    #[default]
+    Exponential,
+    /// Hable's filmic curve (2010), white at 11.2.
+    Filmic,
+}
+
+impl ToneCurve {
+    pub(super) fn shader_value(self) -> u32 {
+        match self {
+            Self::Linear => 0,
+            Self::Exponential => 1,
+            Self::Filmic => 2,
+        }
+    }
+
+    /// The curve applied to an exposed value.
+    pub fn apply(self, x: f64) -> f64 {
+        let hable = |x: f64| (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 1.0 / 15.0;
+        match self {
+            Self::Linear => x,
+            Self::Exponential => 1.0 - (-x).exp(),
+            Self::Filmic => hable(2.0 * x.min(1e4)) / hable(11.2),
+        }
+    }
+}
+
+/// How bright the picture is taken: one value for all channels of a simulator, never measured per view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// From the light that falls on level ground, by the closed-form queries: equal on every channel and machine.
+    /// `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
+    Auto {
+        /// Stops added.
+        compensation_ev: f64,
+    },
+    /// A fixed exposure value at ISO 100, [-20, 30]; 15 is a sunny day, -4 a moonlit night.
+    Ev100(f64),
+    /// Display units per cd/m^2, (0, 1e6].
+    Factor(f64),
+}
+
+impl Default for Exposure {
+    fn default() -> Self {
+        Self::Auto { compensation_ev: 0.0 }
+    }
+}
+
+impl Exposure {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match *self {
+            Self::Auto { compensation_ev } => check_range("exposure.compensation_ev", compensation_ev, -20.0, 20.0, "EV"),
+            Self::Ev100(ev) => check_range("exposure.ev100", ev, -20.0, 30.0, "EV"),
+            Self::Factor(f) if f.is_finite() && f > 0.0 && f <= 1e6 => Ok(()),
+            Self::Factor(f) => Err(Error::range("exposure.factor", "in (0, 1e6] per cd/m^2", f)),
+        }
+    }
+
+    /// Display units per cd/m^2, given the illuminance on level ground in lux.
+    pub fn factor(&self, ground_illuminance_lux: f64) -> f64 {
+        match *self {
+            Self::Auto { compensation_ev } => auto_factor(ground_illuminance_lux) * compensation_ev.exp2(),
+            Self::Ev100(ev) => ev100_factor(ev),
+            Self::Factor(f) => f,
+        }
+    }
+}
+
+/// Saturation-based sensitivity of ISO 12232 with the usual lens: L_max = 1.2 * 2^EV.
+fn ev100_factor(ev: f64) -> f64 {
+    1.0 / (1.2 * ev.exp2())
+}
+
+/// Maps the mean luminance of an 18 % grey, level scene to a key that falls with adaptation (Krawczyk, Myszkowski &
+/// Seidel 2005, eq. 11), so that a night looks like one and yet is not black.
+fn auto_factor(ground_illuminance_lux: f64) -> f64 {
+    let luminance = (0.18 * ground_illuminance_lux / std::f64::consts::PI).max(1e-5);
+    let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());
+    key.max(0.03) / luminance
+}
+
+/// IEC 61966-2-1 encoding of a linear value.
+pub fn srgb_encode(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// IEC 61966-2-1 decoding.
+pub fn srgb_decode(v: f64) -> f64 {
+    let v = v.clamp(0.0, 1.0);
+    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_start_at_black_rise_and_stay_below_white() {
+        for curve in [ToneCurve::Exponential, ToneCurve::Filmic] {
+            assert!(curve.apply(0.0).abs() < 1e-12);
+            let mut last = 0.0;
+            for i in 1..200 {
+                let y = curve.apply(0.02 * f64::from(i) * f64::from(i) / 160.0);
+                assert!(y > last && y < 1.0, "{curve:?} {i} {y}");
+                last = y;
+            }
+        }
+    }
+
+    #[test]
+    fn srgb_round_trip() {
+        for i in 0..=255 {
+            let v = f64::from(i) / 255.0;
+            assert!((srgb_encode(srgb_decode(v)) - v).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn exposure_is_monotone_in_light_and_checked() {
+        // More light on the ground must never make a grey card darker on the display.
+        let shown = |lux: f64| Exposure::default().factor(lux) * 0.18 * lux / std::f64::consts::PI;
+        let mut last = 0.0;
+        for i in -20..=20 {
+            let y = shown(10f64.powf(f64::from(i) / 4.0));
+            assert!(y >= last - 1e-12, "{i}: {y} < {last}");
+            last = y;
+        }
+        assert!(Exposure::Ev100(f64::NAN).validate().unwrap_err().message.contains("exposure.ev100"));
+        assert!(Exposure::Factor(0.0).validate().unwrap_err().message.contains("exposure.factor"));
+        assert!((Exposure::Ev100(15.0).factor(0.0) * 1.2 * 32768.0 - 1.0).abs() < 1e-12);
+    }
+}
