@@ -16,7 +16,7 @@ pub enum ColorSpace {
 }
 
 /// The stages of a frame, in the order in which a host interleaves them with its own drawing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Stages(pub u32);
 
 impl Stages {

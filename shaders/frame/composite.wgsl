@@ -1,0 +1,97 @@
+// One pixel of the frame: sky behind, air and fog between, tone on top. Host colour x T + L throughout.
+//!include "common/fullscreen.wgsl"
+//!include "frame/tone.wgsl"
+//!include "frame/uniform.wgsl"
+//!include "frame/discs.wgsl"
+//!include "sky/lookup.wgsl"
+//!include "fog/lookup.wgsl"
+
+override BACKGROUND: bool = true;
+override MEDIUM: bool = true;
+override TONE: bool = true;
+// Lights that count: 1 the sun, 2 the moon too.
+override LIGHTS: u32 = 1u;
+
+const SCENE_LINEAR: u32 = 0u;
+const DISPLAY_SRGB: u32 = 2u;
+
+// Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
+struct Veil {
+    light: vec3f,
+    transmittance: vec3f,
+}
+
+fn local_to(light: FrameLight, d: vec3f) -> vec3f {
+    let horizontal = length(light.direction.xy);
+    let c = select(vec2f(1.0, 0.0), light.direction.xy / horizontal, horizontal > 1e-6);
+    return vec3f(dot(d.xy, c), c.x * d.y - c.y * d.x, d.z);
+}
+
+// Mean luminance of an overcast sky over elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
+fn overcast_gradation(sin_elevation: f32) -> f32 {
+    return (1.0 + 2.0 * max(sin_elevation, 0.0)) / 3.0;
+}
+
+fn sky_behind(d: vec3f) -> vec3f {
+    var clear = frame.night_floor;
+    let through = view_transmittance(d);
+    for (var i = 0u; i < LIGHTS; i++) {
+        let light = frame.lights[i];
+        clear += light.irradiance * sky_radiance(i, local_to(light, d));
+        clear += light.irradiance * light.direct_share * through * disc_radiance(light, d);
+    }
+    if frame.deck_cover == 0.0 || d.z <= 0.0 {
+        return clear;
+    }
+    return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
+}
+
+fn air_between(d: vec3f, distance: f32) -> Veil {
+    var veil = Veil(vec3f(0.0), vec3f(1.0));
+    for (var i = 0u; i < LIGHTS; i++) {
+        let light = frame.lights[i];
+        let air = aerial(i, local_to(light, d), distance);
+        veil.light += light.irradiance * frame.medium_share * air.light;
+        veil.transmittance = air.transmittance;
+    }
+    veil.light += frame.night_floor * (1.0 - veil.transmittance);
+    return veil;
+}
+
+// Display-linear value of scene luminance.
+fn display(luminance: vec3f) -> vec3f {
+    return tone_curve(frame.tone, luminance * frame.exposure);
+}
+
+// `distance` is RANGE_SKY where the host drew nothing.
+fn compose(host: vec4f, distance: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
+    let ray = view_ray(frame.depth, ndc);
+    let sky = distance >= RANGE_SKY;
+    var veil = Veil(vec3f(0.0), vec3f(1.0));
+    if BACKGROUND && sky {
+        veil = Veil(sky_behind(ray.direction), vec3f(0.0));
+    } else if MEDIUM && !sky {
+        veil = air_between(ray.direction, distance);
+    }
+    if MEDIUM {
+        let fog = fog_veil(ray.direction, distance);
+        veil = Veil(veil.light * fog.transmittance + fog.light, veil.transmittance * fog.transmittance);
+    }
+    return vec4f(mix(written(host.rgb, veil, pixel), host.rgb, mask), host.a);
+}
+
+fn written(host: vec3f, veil: Veil, pixel: vec2u) -> vec3f {
+    var shown: vec3f;
+    if frame.color_space == SCENE_LINEAR {
+        let luminance = host * frame.cd_m2_per_unit * veil.transmittance + veil.light;
+        if !TONE {
+            return luminance / frame.cd_m2_per_unit;
+        }
+        shown = display(luminance);
+    } else {
+        let behind = select(host, srgb_decode(host), frame.color_space == DISPLAY_SRGB);
+        shown = behind * veil.transmittance + display(veil.light);
+    }
+    let encoded = select(shown, srgb_encode(shown), frame.encode == 1u);
+    return select(encoded, dither(encoded, frame.dither_step, pixel, frame.seed), frame.dither_step > 0.0);
+}

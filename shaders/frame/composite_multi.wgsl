@@ -1,0 +1,24 @@
+// The frame's composition over a host's picture with several samples a pixel, each with its own depth.
+//!include "frame/composite.wgsl"
+
+@group(0) @binding(1) var host_color: texture_multisampled_2d<f32>;
+@group(0) @binding(2) var host_depth: texture_multisampled_2d<f32>;
+@group(0) @binding(3) var host_mask: texture_2d<f32>;
+
+override HAS_DEPTH: bool = true;
+override HAS_MASK: bool = false;
+
+@fragment
+fn composite(in: FullscreenVarying, @builtin(sample_index) sample: u32) -> @location(0) vec4f {
+    let pixel = vec2i(in.position.xy);
+    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    var distance = RANGE_SKY;
+    if HAS_DEPTH {
+        distance = view_range(frame.depth, textureLoad(host_depth, pixel, i32(sample)).r, ndc);
+    }
+    var mask = 0.0;
+    if HAS_MASK {
+        mask = textureLoad(host_mask, pixel, 0).r;
+    }
+    return compose(textureLoad(host_color, pixel, i32(sample)), distance, mask, ndc, vec2u(pixel));
+}

@@ -1,0 +1,56 @@
+// What a frame knows: the camera's rays, the lights above it, and how the host's numbers are to be read.
+//!include "common/depth.wgsl"
+
+struct FrameLight {
+    // Towards the light, camera-local east-north-up; geometric (scattering) direction.
+    direction: vec3f,
+    // Angular radius of the disc, rad; 0 draws no disc.
+    radius: f32,
+    // Towards the disc as seen, lifted by refraction.
+    apparent: vec3f,
+    // Part of the disc's face that is lit (moon), 1 for the sun.
+    lit: f32,
+    // Illuminance at the top of the air, lux a channel of linear Rec. 709.
+    irradiance: vec3f,
+    // Vertical over horizontal diameter of the disc, flattened by refraction.
+    flattening: f32,
+    // Towards where the disc's bright limb points (moon), camera-local east-north-up, in the disc's plane.
+    bright_limb: vec3f,
+    // Share of direct light that the clouds above let through.
+    direct_share: f32,
+}
+
+struct FrameUniform {
+    // Axes: camera-local east-north-up.
+    depth: DepthUniform,
+    lights: array<FrameLight, 2>,
+    // Luminance of a moonless, airglow and starlit sky near the zenith, cd/m^2 a channel.
+    night_floor: vec3f,
+    // Display units per cd/m^2.
+    exposure: f32,
+    // Zenith luminance of the cloud deck's underside, cd/m^2 a channel.
+    deck: vec3f,
+    // Share of the sky that the deck hides.
+    deck_cover: f32,
+    // cd/m^2 per unit of the host's colour (scene-linear hosts).
+    cd_m2_per_unit: f32,
+    // 0 scene-linear, 1 display-linear, 2 display with sRGB values in a plain texture.
+    color_space: u32,
+    // The tone curve (tone.wgsl).
+    tone: u32,
+    // Seed of the dither: the host's frame_id.
+    seed: u32,
+    // 1 where row 0 of the target is the picture's top, -1 where it is the bottom (OpenGL textures).
+    y_sign: f32,
+    // Quantisation step of the target for the dither, 0 for float targets.
+    dither_step: f32,
+    inverse_size: vec2f,
+    // Share of the clear sky's light that scatters towards the camera below a deck.
+    medium_share: f32,
+    // 1 encodes the result by the sRGB curve: a plain 8- or 10-bit target that holds display values.
+    encode: u32,
+    pad0: f32,
+    pad1: f32,
+}
+
+@group(0) @binding(0) var<uniform> frame: FrameUniform;

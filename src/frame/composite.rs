@@ -1,0 +1,181 @@
+//! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
+
+use std::{collections::HashMap, sync::Arc};
+
+use super::{target::Stages, uniform::FrameUniform};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+};
+
+/// What distinguishes one compiled variant from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Variant {
+    pub stages: Stages,
+    pub format: wgpu::TextureFormat,
+    pub samples: u32,
+    pub has_depth: bool,
+    pub has_mask: bool,
+    /// 1 or 2.
+    pub lights: u32,
+}
+
+/// Pipelines of the composition, shared by the views of a device.
+pub(super) struct Composite {
+    layout_single: wgpu::BindGroupLayout,
+    layout_multi: wgpu::BindGroupLayout,
+    pipelines: HashMap<Variant, wgpu::RenderPipeline>,
+    none: wgpu::TextureView,
+    none_multi: Option<wgpu::TextureView>,
+}
+
+fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled,
+        },
+        count: None,
+    }
+}
+
+fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    let uniform = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("frame"),
+        entries: &[uniform, texture_entry(1, multisampled), texture_entry(2, multisampled), texture_entry(3, false)],
+    })
+}
+
+/// A 1 x 1 texture that stands for a depth or mask the host does not give.
+fn none(device: &wgpu::Device, samples: u32) -> wgpu::TextureView {
+    let usage = if samples > 1 {
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT
+    } else {
+        wgpu::TextureUsages::TEXTURE_BINDING
+    };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("none"),
+        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
+}
+
+impl Composite {
+    pub fn new(device: &Device) -> Self {
+        let multi = device
+            .adapter
+            .get_downlevel_capabilities()
+            .flags
+            .contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
+        Self {
+            layout_single: layout(&device.device, false),
+            layout_multi: layout(&device.device, true),
+            pipelines: HashMap::new(),
+            none: none(&device.device, 1),
+            none_multi: multi.then(|| none(&device.device, 4)),
+        }
+    }
+
+    /// Whether multisampled targets can be composed, sample by sample.
+    pub fn reads_samples(&self) -> bool {
+        self.none_multi.is_some()
+    }
+
+    /// The bind group of one view's uniform and one set of host textures.
+    pub fn bind(
+        &self,
+        device: &Device,
+        uniform: &wgpu::Buffer,
+        color: &wgpu::Texture,
+        depth: Option<&wgpu::Texture>,
+        mask: Option<&wgpu::Texture>,
+    ) -> wgpu::BindGroup {
+        let multi = color.sample_count() > 1;
+        let color_view = color.create_view(&Default::default());
+        let depth_view = depth.map(|t| {
+            let aspect = if t.format().has_depth_aspect() {
+                wgpu::TextureAspect::DepthOnly
+            } else {
+                wgpu::TextureAspect::All
+            };
+            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
+        });
+        let mask_view = mask.map(|t| t.create_view(&Default::default()));
+        let no_depth = if multi { self.none_multi.as_ref().unwrap_or(&self.none) } else { &self.none };
+        let entry = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: if multi { &self.layout_multi } else { &self.layout_single },
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                entry(1, &color_view),
+                entry(2, depth_view.as_ref().unwrap_or(no_depth)),
+                entry(3, mask_view.as_ref().unwrap_or(&self.none)),
+            ],
+        })
+    }
+
+    /// The pipeline of `variant`, compiled at its first use.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn pipeline(
+        &mut self,
+        device: &Arc<Device>,
+        variant: Variant,
+        groups: &[&wgpu::BindGroupLayout],
+    ) -> Result<&wgpu::RenderPipeline> {
+        if !self.pipelines.contains_key(&variant) {
+            let multi = variant.samples > 1;
+            let mut layouts = vec![if multi { &self.layout_multi } else { &self.layout_single }];
+            layouts.extend_from_slice(groups);
+            let yes = |b: bool| f64::from(u8::from(b));
+            let pipeline = pass::fullscreen(
+                device,
+                &FullscreenDesc {
+                    shader: if multi { "frame/composite_multi.wgsl" } else { "frame/composite_single.wgsl" },
+                    entry: "composite",
+                    layouts: &layouts,
+                    targets: &[wgpu::ColorTargetState {
+                        format: variant.format,
+                        blend: None,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    }],
+                    constants: &[
+                        ("BACKGROUND", yes(variant.stages.has(Stages::BACKGROUND))),
+                        ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
+                        ("TONE", yes(variant.stages.has(Stages::TONE))),
+                        ("LIGHTS", f64::from(variant.lights)),
+                        ("HAS_DEPTH", yes(variant.has_depth)),
+                        ("HAS_MASK", yes(variant.has_mask)),
+                    ],
+                    samples: variant.samples,
+                },
+            )?;
+            self.pipelines.insert(variant, pipeline);
+        }
+        Ok(&self.pipelines[&variant])
+    }
+}
