@@ -6,6 +6,7 @@
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
 pub mod capi;
+pub mod context;
 pub mod error;
 pub mod fog;
 pub mod frame;

@@ -3,8 +3,7 @@
 //!include "frame/tone.wgsl"
 //!include "frame/uniform.wgsl"
 //!include "frame/discs.wgsl"
-//!include "sky/lookup.wgsl"
-//!include "fog/lookup.wgsl"
+//!include "frame/sky_link.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;

@@ -84,11 +84,8 @@ fn none(device: &wgpu::Device, samples: u32) -> wgpu::TextureView {
 
 impl Composite {
     pub fn new(device: &Device) -> Self {
-        let multi = device
-            .adapter
-            .get_downlevel_capabilities()
-            .flags
-            .contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
+        let multi =
+            device.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
         Self {
             layout_single: layout(&device.device, false),
             layout_multi: layout(&device.device, true),
@@ -115,16 +112,14 @@ impl Composite {
         let multi = color.sample_count() > 1;
         let color_view = color.create_view(&Default::default());
         let depth_view = depth.map(|t| {
-            let aspect = if t.format().has_depth_aspect() {
-                wgpu::TextureAspect::DepthOnly
-            } else {
-                wgpu::TextureAspect::All
-            };
+            let aspect =
+                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
             t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
         });
         let mask_view = mask.map(|t| t.create_view(&Default::default()));
         let no_depth = if multi { self.none_multi.as_ref().unwrap_or(&self.none) } else { &self.none };
-        let entry = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let entry =
+            |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: if multi { &self.layout_multi } else { &self.layout_single },

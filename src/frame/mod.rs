@@ -1,1 +1,94 @@
-//! The order of passes, composition and the frame's report.
+//! The order of passes, composition, and the frame's report.
+//!
+//! A host hands over a [`Frame`] (camera, colour, depth) and a set of [`Stages`]; a [`View`] records them. All stages
+//! that neighbour each other in one call are fused into one full-screen draw.
+
+mod composite;
+mod shared;
+mod sky_link;
+mod target;
+pub mod tone;
+mod uniform;
+mod view;
+
+pub use shared::Shared;
+pub use target::{ColorSpace, Stages};
+pub use tone::{Exposure, ToneCurve};
+pub use view::{Report, View};
+
+use crate::{
+    error::{Error, Result},
+    scene::{Camera, DepthMapping},
+};
+
+/// Flags of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct FrameFlags(pub u32);
+
+impl FrameFlags {
+    /// The camera jumped: nothing of earlier frames may show.
+    pub const CUT: Self = Self(1);
+    /// Draw the pure function of (seed, time, view): no history at all.
+    pub const NO_HISTORY: Self = Self(2);
+
+    /// Whether any flag of `other` is set.
+    pub fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+}
+
+/// One frame of a host: where it looks from, what it drew, and what its numbers mean.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// The host's frame number; the same on all channels of a simulator, for jitter and dither.
+    pub frame_id: u64,
+    /// The camera.
+    pub camera: Camera,
+    /// What the numbers in `depth` mean.
+    pub depth_mapping: DepthMapping,
+    /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
+    pub color: Option<&'a wgpu::Texture>,
+    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING.
+    pub depth: Option<&'a wgpu::Texture>,
+    /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
+    pub mask: Option<&'a wgpu::Texture>,
+    /// What the numbers in `color` mean.
+    pub color_space: ColorSpace,
+    /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, (0, 1e9], default 1.
+    pub cd_m2_per_unit: f64,
+    /// Exposure of this frame; `None` takes the context's.
+    pub exposure: Option<Exposure>,
+    /// Row 0 of the targets is the bottom of the picture, as OpenGL draws.
+    pub origin_bottom_left: bool,
+    /// Cut, no history.
+    pub flags: FrameFlags,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame of a scene-linear host with reversed infinite depth that draws into `color`.
+    pub fn new(frame_id: u64, camera: Camera, color: &'a wgpu::Texture, depth: Option<&'a wgpu::Texture>) -> Self {
+        Self {
+            frame_id,
+            camera,
+            depth_mapping: DepthMapping { reversed: true, ..Default::default() },
+            color: Some(color),
+            depth,
+            mask: None,
+            color_space: ColorSpace::SceneLinear,
+            cd_m2_per_unit: 1.0,
+            exposure: None,
+            origin_bottom_left: false,
+            flags: FrameFlags(0),
+        }
+    }
+
+    fn validate(&self) -> Result<()> {
+        if !(self.cd_m2_per_unit.is_finite() && self.cd_m2_per_unit > 0.0 && self.cd_m2_per_unit <= 1e9) {
+            return Err(Error::range("cd_m2_per_unit", "in (0, 1e9] cd/m^2", self.cd_m2_per_unit));
+        }
+        if let Some(exposure) = &self.exposure {
+            exposure.validate()?;
+        }
+        Ok(())
+    }
+}

@@ -73,8 +73,14 @@ pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
     let format = texture.format();
     if !matches!(
         format,
-        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb | F::Rgba16Float | F::Rgba32Float
-            | F::Rgb10a2Unorm | F::Rg11b10Ufloat
+        F::Rgba8Unorm
+            | F::Rgba8UnormSrgb
+            | F::Bgra8Unorm
+            | F::Bgra8UnormSrgb
+            | F::Rgba16Float
+            | F::Rgba32Float
+            | F::Rgb10a2Unorm
+            | F::Rg11b10Ufloat
     ) {
         return Err(Error::unsupported(format!(
             "color format {format:?}; supported: Rgba8Unorm, Bgra8Unorm (both with or without Srgb), Rgb10a2Unorm, \
@@ -94,7 +100,12 @@ pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
     let format = texture.format();
     if !matches!(
         format,
-        F::Depth16Unorm | F::Depth24Plus | F::Depth24PlusStencil8 | F::Depth32Float | F::Depth32FloatStencil8 | F::R32Float
+        F::Depth16Unorm
+            | F::Depth24Plus
+            | F::Depth24PlusStencil8
+            | F::Depth32Float
+            | F::Depth32FloatStencil8
+            | F::R32Float
     ) {
         return Err(Error::unsupported(format!(
             "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"

@@ -63,7 +63,9 @@ impl Exposure {
     /// [`crate::Status::InvalidArgument`].
     pub fn validate(&self) -> Result<()> {
         match *self {
-            Self::Auto { compensation_ev } => check_range("exposure.compensation_ev", compensation_ev, -20.0, 20.0, "EV"),
+            Self::Auto { compensation_ev } => {
+                check_range("exposure.compensation_ev", compensation_ev, -20.0, 20.0, "EV")
+            }
             Self::Ev100(ev) => check_range("exposure.ev100", ev, -20.0, 30.0, "EV"),
             Self::Factor(f) if f.is_finite() && f > 0.0 && f <= 1e6 => Ok(()),
             Self::Factor(f) => Err(Error::range("exposure.factor", "in (0, 1e6] per cd/m^2", f)),

@@ -96,7 +96,7 @@ pub fn struct_layout(wgsl: &str, name: &str) -> Result<(u32, Vec<(String, u32)>)
 pub fn validate(wgsl: &str) -> Result<()> {
     use wgpu::naga::{front::wgsl, valid};
     let module = wgsl::parse_str(wgsl).map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))?;
-    valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty())
+    valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::MULTISAMPLED_SHADING)
         .validate(&module)
         .map(|_| ())
         .map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))

@@ -1,0 +1,328 @@
+//! A view: one camera or projector channel, with what it keeps between frames.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    Frame, FrameFlags,
+    composite::Variant,
+    shared::Shared,
+    target::{ColorSpace, Stages, check_color, check_depth, check_mask},
+    uniform::{FrameUniform, LightUniform},
+};
+use crate::{
+    context::{Context, Light, Scene},
+    error::{Error, Result, Status},
+    gpu::Device,
+    scene::{Camera, ViewRays},
+};
+
+/// What the last frame of a view took and showed.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Report {
+    /// The host's frame_id.
+    pub frame_id: u64,
+    /// Full-screen draws recorded for this frame_id so far.
+    pub passes: u32,
+    /// Tables rebuilt for this frame_id so far; 0 when only the camera turned.
+    pub tables_rebuilt: u32,
+    /// Display units per cd/m^2 that were applied.
+    pub exposure: f64,
+    /// Bytes of GPU memory the view holds for itself.
+    pub bytes: u64,
+}
+
+/// The textures of one bind group: it is made anew only when the host hands over others.
+#[derive(PartialEq)]
+struct Bound {
+    color: wgpu::Texture,
+    depth: Option<wgpu::Texture>,
+    mask: Option<wgpu::Texture>,
+}
+
+/// One camera or projector channel. Exclusive: one thread at a time.
+pub struct View {
+    device: Arc<Device>,
+    shared: Arc<Shared>,
+    uniform: wgpu::Buffer,
+    copy: Option<wgpu::Texture>,
+    bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
+    sky: super::sky_link::ViewSky,
+    recorded: Stages,
+    report: Report,
+}
+
+impl View {
+    /// Makes a view of `context`.
+    ///
+    /// # Errors
+    /// [`Status::DeviceLost`], or a GPU fault.
+    pub fn new(context: &Context) -> Result<Self> {
+        let device = context.device().clone();
+        let _entered = device.enter()?;
+        let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let shared = context.shared().clone();
+        let sky = super::sky_link::ViewSky::new(&device, &shared)?;
+        device.check()?;
+        drop(_entered);
+        Ok(Self {
+            device,
+            shared,
+            uniform,
+            copy: None,
+            bound: None,
+            sky,
+            recorded: Stages(0),
+            report: Report { frame_id: u64::MAX, ..Default::default() },
+        })
+    }
+
+    /// What the last frame took and showed.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// Records the stages of a frame and submits them: when it returns, the work is on the device's queue.
+    ///
+    /// The calls of one frame share `frame.frame_id` and come in the order of the stages; a new id begins a new frame.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] and [`Status::Unsupported`] naming the field, [`Status::WrongOrder`] if a stage comes
+    /// twice or late, [`Status::DeviceLost`]. After an error nothing was drawn by this call.
+    pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let mut encoder =
+            device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
+        self.record_into(context, frame, stages, &mut encoder)?;
+        device.queue.submit([encoder.finish()]);
+        device.check()
+    }
+
+    /// As [`View::record`], into a Rust host's own encoder; the host submits.
+    ///
+    /// # Errors
+    /// As [`View::record`].
+    pub fn record_into(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        stages: Stages,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        Stages::from_bits(stages.0)?;
+        self.check_order(frame.frame_id, stages)?;
+        let drawn = stages.has(Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::TONE));
+        frame.camera.validate()?;
+        let scene = context.scene_at(frame.camera.position);
+        let rays = if drawn { Some(self.check_targets(frame, stages, &scene)?) } else { None };
+        if frame.frame_id != self.report.frame_id {
+            self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
+            self.recorded = Stages(0);
+        }
+        if stages.has(Stages::PREPARE) || self.recorded == Stages(0) {
+            let cut = frame.flags.has(FrameFlags::CUT) || frame.flags.has(FrameFlags::NO_HISTORY);
+            self.report.tables_rebuilt += self.sky.prepare(&self.device, &self.shared, encoder, &scene, cut)?;
+        }
+        if let Some(rays) = rays {
+            self.draw(context, frame, stages, &scene, &rays, encoder)?;
+        }
+        self.recorded = self.recorded.with(stages);
+        Ok(())
+    }
+
+    fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
+        if frame_id != self.report.frame_id || self.recorded == Stages(0) {
+            return Ok(());
+        }
+        let last = 31 - self.recorded.0.leading_zeros();
+        let first = stages.0.trailing_zeros();
+        if first <= last {
+            return Err(Error::new(
+                Status::WrongOrder,
+                format!(
+                    "stages {:#x} of frame_id {frame_id} come after {:#x}: each stage once, in rising order of its bit",
+                    stages.0, self.recorded.0
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Checks everything a draw needs before anything is recorded.
+    fn check_targets(&self, frame: &Frame<'_>, stages: Stages, scene: &Scene) -> Result<ViewRays> {
+        let color = frame.color.ok_or_else(|| Error::range("color", "a texture for stages that draw", "none"))?;
+        check_color(color)?;
+        if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
+            return Err(Error::unsupported(
+                "color.samples above 1: this device cannot shade per sample; resolve first",
+            ));
+        }
+        if let Some(depth) = frame.depth {
+            check_depth(depth, color)?;
+        }
+        if let Some(mask) = frame.mask {
+            check_mask(mask, color)?;
+        }
+        frame.validate()?;
+        if stages.has(Stages::TONE) && stages != Stages::ALL && frame.color_space != ColorSpace::SceneLinear {
+            return Err(Error::range(
+                "stages",
+                "without TONE for a host whose colour is tone-mapped already (color_space is not scene-linear)",
+                format!("{:#x}", stages.0),
+            ));
+        }
+        // The camera's axes are turned to the local east-north-up, in which the shaders work.
+        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
+        let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
+        ViewRays::new(&local, &frame.depth_mapping)
+    }
+
+    fn draw(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        stages: Stages,
+        scene: &Scene,
+        rays: &ViewRays,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        let Some(color) = frame.color else { return Ok(()) };
+        let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
+        let stages = if tone { stages } else { stages.without(Stages::TONE) };
+        let variant = Variant {
+            stages: Stages(stages.0 & (Stages::BACKGROUND.0 | Stages::MEDIUM.0 | Stages::TONE.0)),
+            format: color.format(),
+            samples: color.sample_count(),
+            has_depth: frame.depth.is_some(),
+            has_mask: frame.mask.is_some(),
+            lights: if scene.moon.matters { 2 } else { 1 },
+        };
+        if variant.stages == Stages(0) {
+            return Ok(());
+        }
+        self.bind(frame, color)?;
+        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground_illuminance_lux);
+        self.report.exposure = exposure;
+        let block = uniform(frame, scene, rays, color, exposure, context, tone);
+        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
+        self.sky.write(&self.device, scene);
+        let Some((_, group, target)) = &self.bound else { return Ok(()) };
+        if let Some(copy) = &self.copy {
+            encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
+        }
+        let layouts = self.shared.sky_layouts();
+        let mut composite = self.shared.composite()?;
+        let pipeline = composite.pipeline(&self.device, variant, &layouts)?;
+        let groups = self.sky.groups();
+        crate::gpu::pass::draw(encoder, "composite", pipeline, &[group, groups[0], groups[1]], target);
+        self.report.passes += 1;
+        Ok(())
+    }
+
+    /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
+    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture) -> Result<()> {
+        let same = self.bound.as_ref().is_some_and(|(b, ..)| {
+            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask
+        });
+        if same {
+            return Ok(());
+        }
+        let fits = self.copy.as_ref().is_some_and(|c| {
+            c.size() == color.size() && c.format() == color.format() && c.sample_count() == color.sample_count()
+        });
+        if !fits {
+            self.copy = Some(color_copy(&self.device.device, color));
+            let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
+            let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
+            self.report.bytes = self.sky.bytes() + texel * pixels;
+        }
+        let Some(copy) = &self.copy else { return Ok(()) };
+        let group = self.shared.composite()?.bind(&self.device, &self.uniform, copy, frame.depth, frame.mask);
+        let target = color.create_view(&Default::default());
+        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned() };
+        self.bound = Some((bound, group, target));
+        Ok(())
+    }
+}
+
+/// A texture like the host's colour, to read while the host's is written.
+fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
+    let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    if color.sample_count() > 1 {
+        usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
+    }
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("color copy"),
+        size: color.size(),
+        mip_level_count: 1,
+        sample_count: color.sample_count(),
+        dimension: wgpu::TextureDimension::D2,
+        format: color.format(),
+        usage,
+        view_formats: &[],
+    })
+}
+
+fn light(l: &Light) -> LightUniform {
+    LightUniform {
+        direction: l.direction.as_vec3().to_array(),
+        radius: l.angular_radius as f32,
+        apparent: l.apparent.as_vec3().to_array(),
+        lit: l.lit as f32,
+        irradiance: l.illuminance_lux.map(|v| v as f32),
+        flattening: l.flattening as f32,
+        bright_limb: l.bright_limb.as_vec3().to_array(),
+        direct_share: l.direct_share as f32,
+    }
+}
+
+fn uniform(
+    frame: &Frame<'_>,
+    scene: &Scene,
+    rays: &ViewRays,
+    color: &wgpu::Texture,
+    exposure: f64,
+    context: &Context,
+    tone: bool,
+) -> FrameUniform {
+    let format = color.format();
+    let display = tone || frame.color_space != ColorSpace::SceneLinear;
+    let float = matches!(
+        format,
+        wgpu::TextureFormat::Rgba16Float | wgpu::TextureFormat::Rgba32Float | wgpu::TextureFormat::Rg11b10Ufloat
+    );
+    let plain_display = display && !float && !format.is_srgb();
+    let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
+    // In an sRGB format the hardware encodes after us: a step there is not a step here, so only plain formats dither.
+    let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
+    FrameUniform {
+        depth: rays.uniform(),
+        lights: [light(&scene.sun), light(&scene.moon)],
+        night_floor: scene.night_floor_cd_m2.map(|v| v as f32),
+        exposure: exposure as f32,
+        deck: scene.deck_cd_m2.map(|v| v as f32),
+        deck_cover: scene.deck_cover as f32,
+        cd_m2_per_unit: frame.cd_m2_per_unit as f32,
+        color_space: match frame.color_space {
+            ColorSpace::SceneLinear => 0,
+            ColorSpace::DisplayLinear => 1,
+            ColorSpace::DisplaySrgb if format.is_srgb() => 1,
+            ColorSpace::DisplaySrgb => 2,
+        },
+        tone: context.tone_curve().shader_value(),
+        seed: frame.frame_id as u32,
+        y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
+        dither_step: if plain_display { step } else { 0.0 },
+        inverse_size: [1.0 / color.width() as f32, 1.0 / color.height() as f32],
+        medium_share: scene.medium_share as f32,
+        encode: u32::from(encode),
+        pad: [0.0; 2],
+    }
+}

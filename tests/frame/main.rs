@@ -1,0 +1,4 @@
+//! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
+
+mod host;
+mod stages;

@@ -1,0 +1,83 @@
+//! Stages: what each draws, their order, and what is refused.
+
+use welkin::{
+    Status,
+    frame::{Frame, Stages},
+};
+
+use crate::host::{Host, SIZE, camera};
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+#[test]
+fn background_fills_the_far_pixels_only_and_keeps_alpha() {
+    let mut host = Host::new(FORMAT);
+    host.clear([1.0, 2.0, 3.0, 0.5], 0.0);
+    host.record(1, Stages::BACKGROUND).unwrap();
+    let top = host.pixels()[0];
+    assert!(top[2] > 100.0 && top[3] == 0.5, "the noon sky is bright and alpha is the host's: {top:?}");
+    host.clear([1.0, 2.0, 3.0, 0.5], 0.01); // a wall 10 m away
+    host.record(2, Stages::BACKGROUND).unwrap();
+    assert_eq!(host.pixels()[0], [1.0, 2.0, 3.0, 0.5]);
+}
+
+#[test]
+fn one_call_equals_the_stages_one_by_one() {
+    let mut host = Host::new(FORMAT);
+    for depth in [0.0, 1e-4] {
+        host.clear([100.0, 2000.0, 300.0, 1.0], depth);
+        host.record(1, Stages::ALL.without(Stages::TONE)).unwrap();
+        let whole = host.pixels();
+        host.clear([100.0, 2000.0, 300.0, 1.0], depth);
+        for stage in [Stages::PREPARE, Stages::BACKGROUND, Stages::SURFACE, Stages::MEDIUM] {
+            host.record(2, stage).unwrap();
+        }
+        for (a, b) in whole.iter().zip(host.pixels()) {
+            for c in 0..3 {
+                assert!((a[c] - b[c]).abs() <= 2e-3 * a[c].abs() + 0.5, "{a:?} {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn stages_out_of_order_and_unknown_bits_are_refused() {
+    let mut host = Host::new(FORMAT);
+    host.record(7, Stages::MEDIUM).unwrap();
+    for stages in [Stages::BACKGROUND, Stages::MEDIUM] {
+        assert_eq!(host.record(7, stages).unwrap_err().status, Status::WrongOrder);
+    }
+    host.record(7, Stages::TONE).unwrap();
+    host.record(8, Stages::BACKGROUND).unwrap();
+    for bits in [0, 128] {
+        let e = host.record(9, Stages(bits)).unwrap_err();
+        assert!(e.status == Status::InvalidArgument && e.message.contains("stages"), "{e}");
+    }
+}
+
+#[test]
+fn a_target_that_does_not_fit_is_refused_by_name() {
+    let mut host = Host::new(FORMAT);
+    let small = host.device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIZE.0, height: 8, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let mut frame = Frame::new(1, camera(), &host.color, Some(&small));
+    let e = host.view.record(&host.context, &frame, Stages::ALL).unwrap_err();
+    assert!(e.message.contains("depth") && e.message.contains("160 x 90"), "{e}");
+    frame.depth = None;
+    frame.cd_m2_per_unit = f64::NAN;
+    let e = host.view.record(&host.context, &frame, Stages::ALL).unwrap_err();
+    assert!(e.message.contains("cd_m2_per_unit"), "{e}");
+    frame.cd_m2_per_unit = 1.0;
+    frame.color = None;
+    let e = host.view.record(&host.context, &frame, Stages::ALL).unwrap_err();
+    assert!(e.message.contains("color"), "{e}");
+    host.view.record(&host.context, &frame, Stages::PREPARE).unwrap();
+}
