@@ -1,4 +1,5 @@
 //! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
 
 mod host;
+mod spaces;
 mod stages;

@@ -1,0 +1,151 @@
+//! The three colour spaces of a host, masks, samples and orientation: each against what the scene-linear frame says.
+
+use glam::DVec3;
+use welkin::{
+    Status,
+    frame::{ColorSpace, Exposure, Frame, Stages, ToneCurve, tone},
+    scene::Camera,
+};
+
+use crate::host::{Host, SIZE, camera, texture};
+
+const EXPOSURE: f64 = 2e-4;
+const WALL_DEPTH: f32 = 5e-5; // 2 km in front of the camera's 0.1 m near plane
+
+fn draw(host: &mut Host, space: ColorSpace, stages: Stages, value: f64) -> Vec<[f32; 4]> {
+    host.clear([value, value, value, 1.0], WALL_DEPTH);
+    let mut frame = Frame::new(1, camera(), &host.color, Some(&host.depth));
+    frame.color_space = space;
+    frame.exposure = Some(Exposure::Factor(EXPOSURE));
+    host.view.record(&host.context, &frame, stages).unwrap();
+    // The next call may use the same id again.
+    frame.frame_id = 2;
+    host.view.record(&host.context, &frame, Stages::PREPARE).unwrap();
+    host.pixels()
+}
+
+/// Light added and transmittance of the wall's pixels, from two scene-linear frames.
+fn veil() -> Vec<([f64; 3], [f64; 3])> {
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
+    let black = draw(&mut host, ColorSpace::SceneLinear, Stages::MEDIUM, 0.0);
+    let grey = draw(&mut host, ColorSpace::SceneLinear, Stages::MEDIUM, 8192.0);
+    let light = |p: &[f32; 4]| [0, 1, 2].map(|c| f64::from(p[c]));
+    black.iter().zip(&grey).map(|(b, g)| (light(b), [0, 1, 2].map(|c| f64::from(g[c] - b[c]) / 8192.0))).collect()
+}
+
+#[test]
+fn the_veil_is_there_to_be_composed() {
+    for (light, through) in veil() {
+        assert!(light[2] > 10.0 && through[2] > 0.3 && through[2] < 0.999, "{light:?} {through:?}");
+    }
+}
+
+#[test]
+fn display_hosts_keep_their_own_tone_and_get_welkins_light_tone_mapped() {
+    let veil = veil();
+    let curve = ToneCurve::default();
+    let cases = [
+        (ColorSpace::DisplayLinear, wgpu::TextureFormat::Rgba16Float, 0.002),
+        (ColorSpace::DisplaySrgb, wgpu::TextureFormat::Rgba8UnormSrgb, 0.012),
+        (ColorSpace::DisplaySrgb, wgpu::TextureFormat::Rgba8Unorm, 0.012),
+    ];
+    for (space, format, tolerance) in cases {
+        let mut host = Host::new(format);
+        // A clear value means linear in float and Srgb formats, the encoded one in a plain format.
+        let value = 0.25;
+        let linear = if format == wgpu::TextureFormat::Rgba8Unorm { tone::srgb_decode(value) } else { value };
+        for (p, (light, through)) in draw(&mut host, space, Stages::MEDIUM, value).iter().zip(&veil) {
+            for c in 0..3 {
+                let want = linear * through[c] + curve.apply(EXPOSURE * light[c]);
+                let want = if space == ColorSpace::DisplaySrgb { tone::srgb_encode(want) } else { want };
+                assert!((f64::from(p[c]) - want).abs() < tolerance, "{space:?} {format:?}: {p:?}, want {want} at {c}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tone_maps_scene_linear_hosts_only() {
+    let veil = veil();
+    let curve = ToneCurve::default();
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
+    let both = Stages::MEDIUM.with(Stages::TONE);
+    for (p, (light, through)) in draw(&mut host, ColorSpace::SceneLinear, both, 3000.0).iter().zip(&veil) {
+        let want = curve.apply(EXPOSURE * (3000.0 * through[1] + light[1]));
+        assert!((f64::from(p[1]) - want).abs() < 2e-3, "{p:?} want {want}");
+    }
+    let mut frame = Frame::new(9, camera(), &host.color, Some(&host.depth));
+    frame.color_space = ColorSpace::DisplayLinear;
+    let e = host.view.record(&host.context, &frame, Stages::TONE).unwrap_err();
+    assert!(e.status == Status::InvalidArgument && e.message.contains("TONE"), "{e}");
+}
+
+#[test]
+fn the_mask_keeps_the_hosts_pixels() {
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
+    host.clear([1.0, 2.0, 3.0, 1.0], 0.0);
+    let mask = texture(&host.device, wgpu::TextureFormat::R8Unorm, 1);
+    let rows: Vec<u8> = (0..SIZE.0 * SIZE.1).map(|i| if i % SIZE.0 < 80 { 255 } else { 0 }).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0), rows_per_image: None };
+    host.device.queue.write_texture(mask.as_image_copy(), &rows, layout, mask.size());
+    let mut frame = Frame::new(1, camera(), &host.color, Some(&host.depth));
+    frame.mask = Some(&mask);
+    host.view.record(&host.context, &frame, Stages::BACKGROUND).unwrap();
+    let pixels = host.pixels();
+    assert_eq!(pixels[10], [1.0, 2.0, 3.0, 1.0]);
+    assert!(pixels[120][2] > 100.0);
+}
+
+#[test]
+fn bottom_left_origin_is_the_same_picture_upside_down() {
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
+    let up = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, 1.0, 0.4), DVec3::Z, 1.2, 16.0 / 9.0, 0.1);
+    let mut pictures = Vec::new();
+    for (id, bottom) in [(1, false), (2, true)] {
+        host.clear([0.0; 4], 0.0);
+        let mut frame = Frame::new(id, up, &host.color, Some(&host.depth));
+        frame.origin_bottom_left = bottom;
+        host.view.record(&host.context, &frame, Stages::BACKGROUND).unwrap();
+        pictures.push(host.pixels());
+    }
+    let (w, h) = (SIZE.0 as usize, SIZE.1 as usize);
+    let mut differs = 0.0f32;
+    for y in 0..h {
+        for x in 0..w {
+            let (a, b) = (pictures[0][y * w + x], pictures[1][(h - 1 - y) * w + x]);
+            assert!((a[2] - b[2]).abs() <= 2e-3 * a[2], "{x} {y}: {a:?} {b:?}");
+            differs = differs.max((a[2] - pictures[1][y * w + x][2]).abs());
+        }
+    }
+    assert!(differs > 10.0, "the picture has an up and a down");
+}
+
+#[test]
+fn every_sample_of_a_multisampled_host_is_composed_by_its_own_depth() {
+    let host = Host::new(wgpu::TextureFormat::Rgba16Float);
+    let color = texture(&host.device, wgpu::TextureFormat::Rgba16Float, 4);
+    let depth = texture(&host.device, wgpu::TextureFormat::Depth32Float, 4);
+    let mut multi = Host { color, depth, ..host };
+    let resolved = texture(&multi.device, wgpu::TextureFormat::Rgba16Float, 1);
+    let mut pixel = |far: f32| {
+        multi.clear([100.0, 100.0, 100.0, 1.0], far);
+        multi.record(u64::from(far.to_bits()), Stages::BACKGROUND.with(Stages::MEDIUM)).unwrap();
+        let mut encoder = multi.device.device.create_command_encoder(&Default::default());
+        let (from, to) = (multi.color.create_view(&Default::default()), resolved.create_view(&Default::default()));
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: None,
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &from,
+                depth_slice: None,
+                resolve_target: Some(&to),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        multi.device.submit_and_wait(encoder).unwrap();
+        welkin::gpu::readback::rgba(&multi.device, &resolved).unwrap()[80 * 4]
+    };
+    let (sky, wall) = (pixel(0.0), pixel(0.01));
+    assert!(sky[2] > 500.0, "{sky:?}");
+    assert!((wall[2] - 100.0).abs() < 20.0, "a wall 10 m away keeps its colour: {wall:?}");
+}
