@@ -192,13 +192,13 @@ pub fn write_table(model: &Model) -> String {
         let module = &section.module;
         for e in &section.enums {
             let flags = e.name.ends_with("_flags");
-            let signed = model.aliases.get(&e.name).is_some_and(|t| type_name(t) == "i32");
+            let wide = model.aliases.get(&e.name).is_some_and(|t| type_name(t) == "u64");
             let values: String =
-                e.constants.iter().map(|c| format!("(\"{c}\", crate::capi::{module}::{c} as u32), ")).collect();
+                e.constants.iter().map(|c| format!("(\"{c}\", crate::capi::{module}::{c} as u64), ")).collect();
             let upper = e.name.to_uppercase();
             let _ = writeln!(
                 out,
-                "pub(crate) static {upper}: EnumInfo = EnumInfo {{ name: \"{}\", flags: {flags}, signed: {signed}, values: &[{values}] }};",
+                "pub(crate) static {upper}: EnumInfo = EnumInfo {{ name: \"{}\", flags: {flags}, wide: {wide}, values: &[{values}] }};",
                 e.name
             );
         }

@@ -161,7 +161,7 @@ fn c_value(owner: &str, ty: &syn::Type, value: &syn::Expr) -> String {
             let syn::Expr::Path(p) = &*c.func else { panic!("{owner}: a call that C cannot make") };
             match p.path.segments.last().map(|s| s.ident.to_string()).as_deref() {
                 Some("null" | "null_mut") => "NULL".into(),
-                Some("struct_size") => format!("(uint32_t)sizeof({owner})"),
+                Some("struct_size") => format!("(uint32_t)sizeof({})", sized(p).replace("Self", owner)),
                 other => panic!("{owner}: default {other:?}() has no C form"),
             }
         }
@@ -177,6 +177,16 @@ fn c_value(owner: &str, ty: &syn::Type, value: &syn::Expr) -> String {
             format!("{{ {} }}", vec![item; n.base10_parse().expect("a length")].join(", "))
         }
         _ => panic!("{owner}: a default that has no C form"),
+    }
+}
+
+/// The `T` of `struct_size::<T>()`.
+fn sized(path: &syn::ExprPath) -> String {
+    let last = path.path.segments.last().expect("a path has a segment");
+    let syn::PathArguments::AngleBracketed(args) = &last.arguments else { panic!("struct_size names its type") };
+    match args.args.first() {
+        Some(syn::GenericArgument::Type(t)) => type_name(t),
+        _ => panic!("struct_size names its type"),
     }
 }
 

@@ -99,6 +99,12 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_DEVICE_DESC 1
 /** wk_caps */
 #define WK_STRUCT_TYPE_CAPS 2
+/** wk_weather */
+#define WK_STRUCT_TYPE_WEATHER 3
+/** wk_cloud_layer */
+#define WK_STRUCT_TYPE_CLOUD_LAYER 4
+/** wk_texture_desc */
+#define WK_STRUCT_TYPE_TEXTURE_DESC 5
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -276,6 +282,538 @@ wk_status wk_device_desc_init(wk_device_desc *out,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_caps_init(wk_caps *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Textures of an own device
+ *
+ * For hosts without graphics of their own: a program that wants pictures in memory, or one that draws with Welkin only.
+ * Hosts with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
+ * ====================================================================================================
+ */
+
+/** A 2-D texture of an own device. Child of a wk_device. */
+typedef struct wk_texture wk_texture;
+
+/** Texel formats, little-endian, channels in the order of the name. */
+typedef uint32_t wk_format;
+
+/** 8-bit normalised, 4 bytes: colour that is display-encoded or display-linear. */
+#define WK_FORMAT_RGBA8_UNORM 1
+/** 8-bit normalised with the sRGB curve, 4 bytes. */
+#define WK_FORMAT_RGBA8_SRGB 2
+/** 8-bit normalised, 4 bytes. */
+#define WK_FORMAT_BGRA8_UNORM 3
+/** 8-bit normalised with the sRGB curve, 4 bytes. */
+#define WK_FORMAT_BGRA8_SRGB 4
+/** Half floats, 8 bytes: scene-linear colour. */
+#define WK_FORMAT_RGBA16_FLOAT 5
+/** Floats, 16 bytes: scene-linear colour. Not on every driver as a target. */
+#define WK_FORMAT_RGBA32_FLOAT 6
+/** One float, 4 bytes: depth as the host's projection gives it. */
+#define WK_FORMAT_R32_FLOAT 7
+/** 8-bit normalised, 1 byte: a mask. */
+#define WK_FORMAT_R8_UNORM 8
+
+/** How to make a texture. */
+typedef struct wk_texture_desc {
+    /** sizeof(wk_texture_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_TEXTURE_DESC. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Pixels. Range [1, wk_caps.max_texture_size], default 1. */
+    uint32_t width;
+    /** Pixels. Range [1, wk_caps.max_texture_size], default 1. */
+    uint32_t height;
+    /** Default WK_FORMAT_RGBA8_UNORM. */
+    wk_format format;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_texture_desc;
+
+/** Every field of `wk_texture_desc` at its default. */
+#define WK_TEXTURE_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_texture_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_TEXTURE_DESC, \
+    /* next */ NULL, \
+    /* width */ 1, \
+    /* height */ 1, \
+    /* format */ WK_FORMAT_RGBA8_UNORM, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Makes a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
+ * Thread: any.
+ * Errors: WK_ERROR_UNSUPPORTED if the device cannot make the format; WK_ERROR_OUT_OF_MEMORY.
+ */
+WK_API
+wk_status wk_texture_create(wk_device *device,
+                            const wk_texture_desc *desc,
+                            wk_texture **out_texture);
+
+/**
+ * Destroys a texture. NULL does nothing. Views that were given it keep it alive for as long as they need it.
+ * Thread: any.
+ */
+WK_API wk_status wk_texture_destroy(wk_texture *texture);
+
+/**
+ * Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top.
+ * `data_size` is what lies at `data`: at least `bytes_per_row` times the height. Copied during the call.
+ * Thread: exclusive.
+ */
+WK_API
+wk_status wk_texture_write(wk_texture *texture,
+                           const void *data,
+                           size_t data_size,
+                           uint32_t bytes_per_row);
+
+/**
+ * Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the picture's
+ * top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Not for every frame.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
+ */
+WK_API
+wk_status wk_texture_read(wk_texture *texture,
+                          void *data,
+                          size_t data_size,
+                          uint32_t bytes_per_row);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_TEXTURE_DESC_INIT`. `struct_size` is `sizeof(wk_texture_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_texture_desc_init(wk_texture_desc *out,
+                               uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Kinds of weather
+ *
+ * What a report names by words. The numbers are stable for ever.
+ * ====================================================================================================
+ */
+
+/** What the dry particles of the air are. */
+typedef uint32_t wk_aerosol_kind;
+
+/** Average continental air: soil, soot-poor industry, sulphates. */
+#define WK_AEROSOL_CONTINENTAL 0
+/** Clean continental or rural air. */
+#define WK_AEROSOL_CLEAN 1
+/** Open-sea air: sea salt. */
+#define WK_AEROSOL_MARITIME 2
+/** Urban air with soot. */
+#define WK_AEROSOL_URBAN 3
+/** Haze (METAR HZ): polluted continental air. */
+#define WK_AEROSOL_HAZE 4
+/** Lifted mineral dust (METAR DU, DS). */
+#define WK_AEROSOL_DUST 5
+/** Lifted sand (METAR SA, SS): coarser than dust. */
+#define WK_AEROSOL_SAND 6
+/** Smoke of burning biomass (METAR FU). */
+#define WK_AEROSOL_SMOKE 7
+/** Volcanic ash (METAR VA). */
+#define WK_AEROSOL_VOLCANIC_ASH 8
+/** Arctic air. */
+#define WK_AEROSOL_ARCTIC 9
+
+/** Fog and mist: suspended droplets at the ground. */
+typedef uint32_t wk_fog_kind;
+
+/** No fog; what visibility lacks is the aerosol's. */
+#define WK_FOG_NONE 0
+/** Mist (METAR BR): droplets, 1 to 5 km. */
+#define WK_FOG_MIST 1
+/** Shallow fog (METAR MIFG): below 2 m, clear above. */
+#define WK_FOG_SHALLOW 2
+/** Patches of fog (METAR BCFG). */
+#define WK_FOG_PATCHES 3
+/** Part of the aerodrome in fog (METAR PRFG). */
+#define WK_FOG_PARTIAL 4
+/** Fog (METAR FG): below 1 km. */
+#define WK_FOG_FOG 5
+/** Freezing fog (METAR FZFG): supercooled droplets. */
+#define WK_FOG_FREEZING 6
+
+/** Cloud genera, and the two that METAR names. */
+typedef uint32_t wk_cloud_kind;
+
+/** Not known: chosen from height, cover and precipitation by derive. */
+#define WK_CLOUD_UNKNOWN 0
+/** Low grey sheet. */
+#define WK_CLOUD_STRATUS 1
+/** Low lumpy sheet. */
+#define WK_CLOUD_STRATOCUMULUS 2
+/** Fair-weather heaps. */
+#define WK_CLOUD_CUMULUS 3
+/** Towering cumulus (METAR TCU). */
+#define WK_CLOUD_TOWERING_CUMULUS 4
+/** Cumulonimbus (METAR CB). */
+#define WK_CLOUD_CUMULONIMBUS 5
+/** Thick sheet that rains or snows. */
+#define WK_CLOUD_NIMBOSTRATUS 6
+/** Middle lumpy sheet. */
+#define WK_CLOUD_ALTOCUMULUS 7
+/** Middle grey sheet. */
+#define WK_CLOUD_ALTOSTRATUS 8
+/** High fibres of ice. */
+#define WK_CLOUD_CIRRUS 9
+/** High veil of ice. */
+#define WK_CLOUD_CIRROSTRATUS 10
+/** High ripples of ice. */
+#define WK_CLOUD_CIRROCUMULUS 11
+
+/** What falls. */
+typedef uint32_t wk_precipitation_kind;
+
+/** Nothing falls; the rate must be 0. */
+#define WK_PRECIPITATION_NONE 0
+/** Drizzle (DZ): drops below 0.5 mm. */
+#define WK_PRECIPITATION_DRIZZLE 1
+/** Rain (RA). */
+#define WK_PRECIPITATION_RAIN 2
+/** Snow (SN). */
+#define WK_PRECIPITATION_SNOW 3
+/** Rain and snow together (RASN). */
+#define WK_PRECIPITATION_SLEET 4
+/** Frozen raindrops (PL). */
+#define WK_PRECIPITATION_ICE_PELLETS 5
+/** Hail of 5 mm and more (GR). */
+#define WK_PRECIPITATION_HAIL 6
+/** Small hail or snow pellets (GS). */
+#define WK_PRECIPITATION_SMALL_HAIL 7
+/** Snow grains (SG): frozen drizzle. */
+#define WK_PRECIPITATION_SNOW_GRAINS 8
+/** Ice crystals, diamond dust (IC). */
+#define WK_PRECIPITATION_ICE_CRYSTALS 9
+/** Freezing drizzle (FZDZ). */
+#define WK_PRECIPITATION_FREEZING_DRIZZLE 10
+/** Freezing rain (FZRA). */
+#define WK_PRECIPITATION_FREEZING_RAIN 11
+
+/** What the wind lifts from the ground. */
+typedef uint32_t wk_lofted_kind;
+
+/** Nothing. */
+#define WK_LOFTED_NONE 0
+/** Drifting snow below eye height (DRSN). */
+#define WK_LOFTED_DRIFTING_SNOW 1
+/** Blowing snow at and above eye height (BLSN). */
+#define WK_LOFTED_BLOWING_SNOW 2
+/** Drifting dust or sand below eye height (DRDU, DRSA). */
+#define WK_LOFTED_DRIFTING_DUST 3
+/** Blowing dust (BLDU) or a dust storm (DS). */
+#define WK_LOFTED_BLOWING_DUST 4
+/** Blowing sand (BLSA) or a sand storm (SS). */
+#define WK_LOFTED_BLOWING_SAND 5
+/** Blowing spray (BLPY). */
+#define WK_LOFTED_BLOWING_SPRAY 6
+
+/** The ground's state as an observer names it. */
+typedef uint32_t wk_surface_state;
+
+/** Dry. */
+#define WK_SURFACE_DRY 0
+/** Damp: darker, no film. */
+#define WK_SURFACE_DAMP 1
+/** Wet: a film that shines. */
+#define WK_SURFACE_WET 2
+/** Standing water, puddles. */
+#define WK_SURFACE_STANDING_WATER 3
+/** Frost. */
+#define WK_SURFACE_FROST 4
+/** Ice. */
+#define WK_SURFACE_ICE 5
+/** Snow lies; see snow_depth_m. */
+#define WK_SURFACE_SNOW 6
+
+/*
+ * ====================================================================================================
+ * Weather
+ *
+ * A wk_weather is what the host says the weather is: plain data in SI units, copied by every call that takes it. Start
+ * from WK_WEATHER_INIT (a clear standard day), a METAR report or a preset, and change what you know better. Zero is a
+ * value everywhere (0 degrees, north, calm, 0 %); what may be unknown has a bit in `has`, and where the bit is clear
+ * Welkin derives the value by a named physical law and ignores the field. All reals are doubles.
+ * ====================================================================================================
+ */
+
+/** Which optional fields of a wk_cloud_layer are set. */
+typedef uint32_t wk_cloud_layer_has_flags;
+
+/** thickness_m */
+#define WK_CLOUD_LAYER_HAS_THICKNESS 1
+/** water_g_m3 */
+#define WK_CLOUD_LAYER_HAS_WATER 2
+/** droplet_radius_um */
+#define WK_CLOUD_LAYER_HAS_DROPLET_RADIUS 4
+
+/** One layer of cloud. */
+typedef struct wk_cloud_layer {
+    /** sizeof(wk_cloud_layer) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CLOUD_LAYER. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Which optional fields are set. Default 0. */
+    wk_cloud_layer_has_flags has;
+    /** Which cloud. Default WK_CLOUD_UNKNOWN. */
+    wk_cloud_kind kind;
+    /** Part of the sky it covers, fraction (eighths / 8). Range [0, 1], default 0. */
+    double cover;
+    /** Base above the station, m. Range [0, 20000], default 0. */
+    double base_m;
+    /** Optional: thickness, m. Range [1, 20000]; else by kind. */
+    double thickness_m;
+    /** Optional: water, liquid or ice, g/m^3. Range [0, 10]; else by kind. */
+    double water_g_m3;
+    /** Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind. */
+    double droplet_radius_um;
+} wk_cloud_layer;
+
+/** Every field of `wk_cloud_layer` at its default. */
+#define WK_CLOUD_LAYER_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cloud_layer), \
+    /* struct_type */ WK_STRUCT_TYPE_CLOUD_LAYER, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* kind */ WK_CLOUD_UNKNOWN, \
+    /* cover */ 0.0, \
+    /* base_m */ 0.0, \
+    /* thickness_m */ 0.0, \
+    /* water_g_m3 */ 0.0, \
+    /* droplet_radius_um */ 0.0 \
+}
+
+/** Which optional fields of a wk_weather are set. */
+typedef uint64_t wk_weather_has_flags;
+
+/** vertical_visibility_m */
+#define WK_WEATHER_HAS_VERTICAL_VISIBILITY 1
+/** runway_visual_range_m */
+#define WK_WEATHER_HAS_RUNWAY_VISUAL_RANGE 2
+/** aerosol_angstrom_exponent */
+#define WK_WEATHER_HAS_AEROSOL_ANGSTROM_EXPONENT 4
+/** aerosol_single_scattering_albedo */
+#define WK_WEATHER_HAS_AEROSOL_SINGLE_SCATTERING_ALBEDO 8
+/** aerosol_asymmetry */
+#define WK_WEATHER_HAS_AEROSOL_ASYMMETRY 16
+/** aerosol_scale_height_m */
+#define WK_WEATHER_HAS_AEROSOL_SCALE_HEIGHT 32
+/** fog_top_m */
+#define WK_WEATHER_HAS_FOG_TOP 64
+/** fog_coverage */
+#define WK_WEATHER_HAS_FOG_COVERAGE 128
+/** fog_visibility_inside_m */
+#define WK_WEATHER_HAS_FOG_VISIBILITY_INSIDE 256
+/** precipitation_liquid_fraction */
+#define WK_WEATHER_HAS_PRECIPITATION_LIQUID_FRACTION 512
+/** wind_gust_m_s */
+#define WK_WEATHER_HAS_WIND_GUST 1024
+/** wind_variable_from_deg and wind_variable_to_deg */
+#define WK_WEATHER_HAS_WIND_VARIABLE 2048
+/** wind_turbulence_intensity */
+#define WK_WEATHER_HAS_WIND_TURBULENCE_INTENSITY 4096
+/** sea_significant_wave_height_m */
+#define WK_WEATHER_HAS_SEA_WAVE_HEIGHT 8192
+/** sea_state */
+#define WK_WEATHER_HAS_SEA_STATE 16384
+/** sea_temperature_c */
+#define WK_WEATHER_HAS_SEA_TEMPERATURE 32768
+/** swell_height_m, swell_period_s and swell_from_deg */
+#define WK_WEATHER_HAS_SWELL 65536
+/** surface_state */
+#define WK_WEATHER_HAS_SURFACE_STATE 131072
+/** surface_roughness_length_m */
+#define WK_WEATHER_HAS_SURFACE_ROUGHNESS_LENGTH 262144
+/** lofted_top_m */
+#define WK_WEATHER_HAS_LOFTED_TOP 524288
+
+/** How it falls. */
+typedef uint32_t wk_precipitation_flags;
+
+/** From convective cloud (SH): onset and end are sharp. */
+#define WK_PRECIPITATION_SHOWERS 1
+/** With thunder (TS). */
+#define WK_PRECIPITATION_THUNDERSTORM 2
+/** With hail beside what the kind says (GR, GS). */
+#define WK_PRECIPITATION_WITH_HAIL 4
+
+/** The weather at a station and moment. Heights are above the station unless they say otherwise. */
+typedef struct wk_weather {
+    /** sizeof(wk_weather) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WEATHER. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Which optional fields are set. Default 0. */
+    wk_weather_has_flags has;
+    /**
+     * Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
+     * total: air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+     */
+    double visibility_m;
+    /**
+     * Optional: vertical visibility into an obscured sky, m. Range [0, 10000]; else the sky is not obscured. With fog
+     * it sets the fog's depth.
+     */
+    double vertical_visibility_m;
+    /** Optional: runway visual range, m. Range [1, 10000]. For information; extinction follows visibility_m. */
+    double runway_visual_range_m;
+    /** Air at 2 m, degrees Celsius. Range [-90, 60], default 15. */
+    double temperature_c;
+    /** Relative humidity over water, fraction. Range [0, 1], default 0.5. */
+    double relative_humidity;
+    /** Pressure reduced to mean sea level (QNH), hPa. Range [800, 1100], default 1013.25. */
+    double pressure_hpa;
+    /** Height of the station above mean sea level, m. Range [-500, 9000], default 0. */
+    double station_altitude_m;
+    /** Ozone column, Dobson units. Range [0, 700], default 300. */
+    double ozone_du;
+    /** What the dry particles are. Default WK_AEROSOL_CONTINENTAL. */
+    wk_aerosol_kind aerosol_kind;
+    /** Fog or mist. Default WK_FOG_NONE. */
+    wk_fog_kind fog_kind;
+    /** Optional: extinction goes with wavelength^-exponent. Range [-1, 4]; else by kind. */
+    double aerosol_angstrom_exponent;
+    /** Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity. */
+    double aerosol_single_scattering_albedo;
+    /** Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity. */
+    double aerosol_asymmetry;
+    /** Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. */
+    double aerosol_scale_height_m;
+    /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
+    double fog_top_m;
+    /** Optional: part of the ground under fog, fraction. Range [0, 1]; else by kind. */
+    double fog_coverage;
+    /**
+     * Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
+     * that the reported visibility looks over or past.
+     */
+    double fog_visibility_inside_m;
+    /** What falls. Default WK_PRECIPITATION_NONE. */
+    wk_precipitation_kind precipitation_kind;
+    /** How it falls. Default 0. */
+    wk_precipitation_flags precipitation_flags;
+    /** How much, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls. */
+    double precipitation_rate_mm_h;
+    /** Optional: part of it that is liquid, fraction. Range [0, 1]; else by kind. */
+    double precipitation_liquid_fraction;
+    /** Mean wind at 10 m above ground, m/s. Range [0, 120], default 0. */
+    double wind_speed_m_s;
+    /** Where it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    double wind_from_deg;
+    /** Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence. */
+    double wind_gust_m_s;
+    /** Optional, with the next: the direction varies clockwise from here, degrees. Range [0, 360]. */
+    double wind_variable_from_deg;
+    /** To here, degrees. Range [0, 360]. 0 to 360 says that it varies all round (VRB). */
+    double wind_variable_to_deg;
+    /** Optional: standard deviation of speed over its mean. Range [0, 1]; else from the roughness. */
+    double wind_turbulence_intensity;
+    /** Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind. */
+    double sea_significant_wave_height_m;
+    /** Optional: water, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8. */
+    double sea_temperature_c;
+    /** Optional, with the next two: significant height of the swell, m. Range [0, 20]. */
+    double swell_height_m;
+    /** Peak period of the swell, s. Range [1, 30] where the swell is set. */
+    double swell_period_s;
+    /** Where the swell comes from, degrees clockwise from true north. Range [0, 360]. */
+    double swell_from_deg;
+    /** Optional: WMO sea state, code table 3700. Range 0 to 9. */
+    uint32_t sea_state;
+    /** Optional: the ground as observed; else from precipitation, temperature and snow depth. */
+    wk_surface_state surface_state;
+    /** Depth of lying snow, m. Range [0, 20], default 0. */
+    double surface_snow_depth_m;
+    /** Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03. */
+    double surface_roughness_length_m;
+    /** Optional: depth of what the wind lifts, m. Range [0.1, 5000]; else by kind. */
+    double lofted_top_m;
+    /** What the wind lifts. Default WK_LOFTED_NONE. */
+    wk_lofted_kind lofted_kind;
+    /** Number of cloud layers, at most wk_caps.max_cloud_layers (16). Default 0. */
+    uint32_t cloud_count;
+    /** The cloud layers in any order; may be NULL if there are none. Read during the call only. */
+    const wk_cloud_layer *clouds;
+    /** Bytes from one layer to the next: sizeof(wk_cloud_layer) of your header, which is the default. */
+    uint32_t cloud_stride;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_weather;
+
+/** Every field of `wk_weather` at its default. */
+#define WK_WEATHER_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_weather), \
+    /* struct_type */ WK_STRUCT_TYPE_WEATHER, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* visibility_m */ 40000.0, \
+    /* vertical_visibility_m */ 0.0, \
+    /* runway_visual_range_m */ 0.0, \
+    /* temperature_c */ 15.0, \
+    /* relative_humidity */ 0.5, \
+    /* pressure_hpa */ 1013.25, \
+    /* station_altitude_m */ 0.0, \
+    /* ozone_du */ 300.0, \
+    /* aerosol_kind */ WK_AEROSOL_CONTINENTAL, \
+    /* fog_kind */ WK_FOG_NONE, \
+    /* aerosol_angstrom_exponent */ 0.0, \
+    /* aerosol_single_scattering_albedo */ 0.0, \
+    /* aerosol_asymmetry */ 0.0, \
+    /* aerosol_scale_height_m */ 0.0, \
+    /* fog_top_m */ 0.0, \
+    /* fog_coverage */ 0.0, \
+    /* fog_visibility_inside_m */ 0.0, \
+    /* precipitation_kind */ WK_PRECIPITATION_NONE, \
+    /* precipitation_flags */ 0, \
+    /* precipitation_rate_mm_h */ 0.0, \
+    /* precipitation_liquid_fraction */ 0.0, \
+    /* wind_speed_m_s */ 0.0, \
+    /* wind_from_deg */ 0.0, \
+    /* wind_gust_m_s */ 0.0, \
+    /* wind_variable_from_deg */ 0.0, \
+    /* wind_variable_to_deg */ 0.0, \
+    /* wind_turbulence_intensity */ 0.0, \
+    /* sea_significant_wave_height_m */ 0.0, \
+    /* sea_temperature_c */ 0.0, \
+    /* swell_height_m */ 0.0, \
+    /* swell_period_s */ 0.0, \
+    /* swell_from_deg */ 0.0, \
+    /* sea_state */ 0, \
+    /* surface_state */ WK_SURFACE_DRY, \
+    /* surface_snow_depth_m */ 0.0, \
+    /* surface_roughness_length_m */ 0.0, \
+    /* lofted_top_m */ 0.0, \
+    /* lofted_kind */ WK_LOFTED_NONE, \
+    /* cloud_count */ 0, \
+    /* clouds */ NULL, \
+    /* cloud_stride */ (uint32_t)sizeof(wk_cloud_layer), \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CLOUD_LAYER_INIT`. `struct_size` is `sizeof(wk_cloud_layer)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_cloud_layer_init(wk_cloud_layer *out,
+                              uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WEATHER_INIT`. `struct_size` is `sizeof(wk_weather)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_weather_init(wk_weather *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

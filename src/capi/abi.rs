@@ -40,3 +40,8 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     }
     found
 }
+
+/// The next call of this thread that reaches a device panics there.
+pub fn panic_in_next_call() {
+    super::boundary::panic_in_next_call();
+}

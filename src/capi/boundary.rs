@@ -16,6 +16,8 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
     /// How many boundary calls this thread is in; a panic there is ours to report, not the standard hook's to print.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
+    /// See [`panic_in_next_call`].
+    static PANIC_NEXT: Cell<bool> = const { Cell::new(false) };
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
@@ -41,6 +43,7 @@ impl Call {
     /// Names the device that a panic in this call makes unusable.
     pub(super) fn blame(&mut self, device: &Arc<DeviceCell>) {
         self.device = Some(device.clone());
+        assert!(!PANIC_NEXT.replace(false), "injected");
     }
 }
 
@@ -69,6 +72,11 @@ pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Resu
 /// The calling thread's last message; valid until its next failing call.
 pub(super) fn last_error() -> *const c_char {
     LAST_ERROR.with_borrow(|m| m.as_ptr())
+}
+
+/// The next call of this thread that reaches a device panics there: how the tests see what a fault inside does.
+pub(super) fn panic_in_next_call() {
+    PANIC_NEXT.set(true);
 }
 
 fn remember(function: &str, message: &str) {

@@ -77,6 +77,13 @@ impl DeviceCell {
         drop(waiting);
     }
 
+    /// Releases what waited for the host's context, before a call that enters it by itself.
+    pub(super) fn drain(&self) {
+        if self.home.is_some() && !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty() {
+            self.release_retired();
+        }
+    }
+
     /// Makes the host's context current for a batch of GPU calls, and releases what waited for that.
     ///
     /// # Errors
@@ -90,8 +97,9 @@ impl DeviceCell {
     /// Releases an object now if this thread may, else at the next GPU call.
     pub(super) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
         let may = self.home.is_none_or(|home| home == thread::current().id());
-        // A lost device has no context to enter; wgpu releases its objects without one.
-        if may && (self.gpu.is_lost() || self.gpu.enter().map(|entered| (drop(object.clone()), entered)).is_ok()) {
+        if may {
+            // A lost device has no context to enter; wgpu releases its objects without one.
+            let _entered = self.gpu.enter().ok();
             drop(object);
             return;
         }

@@ -129,8 +129,8 @@ pub(super) fn remove<T: Object>(param: &str, handle: *const T::C) -> Result<Arc<
     let index = locate::<T>(&table, param, handle as usize)?;
     let children = table.slots[index].children;
     if children > 0 {
-        let text =
-            format!("{param} has {children} live children (contexts, views, surfaces or textures): destroy them first");
+        let noun = if children == 1 { "child" } else { "children" };
+        let text = format!("{param} has {children} live {noun} (contexts, views, surfaces, textures): destroy first");
         return Err(Error::new(Status::InUse, text));
     }
     let slot = &mut table.slots[index];

@@ -8,7 +8,7 @@ use crate::error::{Error, Result, Status};
 /// # Errors
 /// Names the parameter and every accepted constant.
 pub(super) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
-    info.check(&param, value)
+    info.check(&param, value.into())
 }
 
 /// # Errors

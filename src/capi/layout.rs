@@ -4,7 +4,7 @@
 //! `build.rs` writes the tables from the struct definitions themselves, so a new field is checked from the day it is
 //! declared: floats must be finite, enumerations known, reserved fields zero.
 
-use std::{ffi::c_void, fmt::Display, mem::MaybeUninit};
+use std::{ffi::c_void, fmt::Display};
 
 use super::status::*;
 use crate::error::{Error, Result, Status};
@@ -49,8 +49,8 @@ pub(crate) struct StructInfo {
 pub(crate) struct EnumInfo {
     pub name: &'static str,
     pub flags: bool,
-    pub signed: bool,
-    pub values: &'static [(&'static str, u32)],
+    pub wide: bool,
+    pub values: &'static [(&'static str, u64)],
 }
 
 /// A `repr(C)` struct of the header that begins with `struct_size`, `struct_type`, `next`, or is embedded in one.
@@ -95,8 +95,8 @@ impl Kind {
         match self {
             Self::U8 => 1,
             Self::U16 => 2,
-            Self::U32 | Self::I32 | Self::F32 | Self::Enum(_) => 4,
-            Self::U64 | Self::I64 | Self::F64 => 8,
+            Self::U32 | Self::I32 | Self::F32 | Self::Enum(EnumInfo { wide: false, .. }) => 4,
+            Self::U64 | Self::I64 | Self::F64 | Self::Enum(_) => 8,
             Self::Pointer => size_of::<usize>(),
             Self::Struct(info) => info.size,
         }
@@ -105,7 +105,7 @@ impl Kind {
 
 impl EnumInfo {
     /// Fails unless `value` is a named one, or for flags a union of named ones.
-    pub(crate) fn check(&self, param: &dyn Display, value: u32) -> Result<()> {
+    pub(crate) fn check(&self, param: &dyn Display, value: u64) -> Result<()> {
         let known = if self.flags {
             value & !self.values.iter().fold(0, |all, v| all | v.1) == 0
         } else {
@@ -116,7 +116,7 @@ impl EnumInfo {
         }
         let names = self.values.iter().map(|v| v.0).collect::<Vec<_>>().join(", ");
         let rule = if self.flags { "a union of" } else { "one of" };
-        let got = if self.flags { format!("{value:#x}") } else { (value as i32).to_string() };
+        let got = if self.flags { format!("{value:#x}") } else { value.to_string() };
         Err(Error::range(&param.to_string(), &format!("{rule} {names}"), got))
     }
 }
@@ -146,8 +146,10 @@ unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Resul
         Kind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
         // SAFETY: the caller's promise.
         Kind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
-        // SAFETY: the caller's promise.
-        Kind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }),
+        // SAFETY: the caller's promise; the width is the type's.
+        Kind::Enum(info) if info.wide => return info.check(name, unsafe { at.cast::<u64>().read_unaligned() }),
+        // SAFETY: as above.
+        Kind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }.into()),
         // SAFETY: the caller's promise.
         Kind::Struct(info) => return unsafe { check_fields(name, at, info, info.size) },
         Kind::U32 if field.name.starts_with("reserved") => {
@@ -203,7 +205,7 @@ unsafe fn head<T: Layout>(param: &dyn Display, p: *const T) -> Result<usize> {
     let found = unsafe { (*p.cast::<Head>()).struct_type };
     let wanted = expected_type::<T>();
     if found != wanted {
-        let name = |t| WK_STRUCT_TYPE.values.iter().find(|v| v.1 == t).map_or("no known type", |v| v.0);
+        let name = |t: u32| WK_STRUCT_TYPE.values.iter().find(|v| v.1 == u64::from(t)).map_or("no known type", |v| v.0);
         let accepted = format!("{} (start from {}_INIT)", name(wanted), T::INFO.name.to_uppercase());
         return Err(Error::range(&format!("{param}.struct_type"), &accepted, format!("{found} ({})", name(found))));
     }
@@ -352,6 +354,30 @@ impl<T: Layout> OutStruct<T> {
     }
 }
 
+/// Fails unless `bytes` is the size of this, an earlier or a later version of `T`.
+pub(crate) fn check_version_size<T: Layout>(param: &str, bytes: usize) -> Result<()> {
+    let fits = T::INFO.fields.iter().any(|f| f.offset + f.count * f.kind.size() == bytes);
+    let later = bytes > size_of::<T>() && bytes <= MAX_STRUCT_BYTES && bytes.is_multiple_of(align_of::<T>());
+    if bytes >= size_of::<Head>() && (fits || later) {
+        return Ok(());
+    }
+    Err(Error::range(param, &format!("sizeof({}), which is {}", T::INFO.name, size_of::<T>()), bytes))
+}
+
+/// Writes a whole struct as a version of `bytes` bytes knows it: cut, or with a zero tail.
+///
+/// # Safety
+/// `at` points to `bytes` writable bytes, and `check_version_size` has accepted them.
+pub(crate) unsafe fn write_version<T: Layout>(value: &T, at: *mut u8, bytes: usize) {
+    let from = std::ptr::from_ref(value).cast::<u8>();
+    // SAFETY: the caller's promise; every tagged struct begins with its size.
+    unsafe {
+        std::ptr::write_bytes(at, 0, bytes);
+        std::ptr::copy_nonoverlapping(from, at, bytes.min(size_of::<T>()));
+        at.cast::<u32>().write_unaligned(bytes as u32);
+    }
+}
+
 /// What every `wk_x_init` does.
 ///
 /// # Safety
@@ -359,20 +385,9 @@ impl<T: Layout> OutStruct<T> {
 pub(crate) unsafe fn init_struct<T: Layout>(function: &'static str, out: *mut T, size: u32) -> wk_status {
     super::boundary::guard(function, |_| {
         check_pointer(&"out", out)?;
-        let bytes = size as usize;
-        let fits = T::INFO.fields.iter().any(|f| f.offset + f.count * f.kind.size() == bytes);
-        let larger = bytes > size_of::<T>() && bytes <= MAX_STRUCT_BYTES;
-        if bytes < size_of::<Head>() || !(fits || larger) {
-            let accepted = format!("sizeof({}), which is {}", T::INFO.name, size_of::<T>());
-            return Err(Error::range("struct_size", &accepted, size));
-        }
-        let mut value = MaybeUninit::new(T::DEFAULT);
-        // SAFETY: `value` begins with `struct_size`; `bytes` at `out` are the caller's promise.
-        unsafe {
-            value.as_mut_ptr().cast::<u32>().write(size);
-            std::ptr::write_bytes(out.cast::<u8>(), 0, bytes);
-            std::ptr::copy_nonoverlapping(value.as_ptr().cast::<u8>(), out.cast::<u8>(), bytes.min(size_of::<T>()));
-        }
+        check_version_size::<T>("struct_size", size as usize)?;
+        // SAFETY: the size was checked, and the bytes are the caller's promise.
+        unsafe { write_version(&T::DEFAULT, out.cast(), size as usize) };
         Ok(Status::Ok)
     })
 }

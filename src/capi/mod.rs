@@ -14,12 +14,19 @@ pub mod status;
 
 pub mod device;
 
+pub mod texture;
+
+pub mod weather_kinds;
+
+pub mod weather;
+
 mod boundary;
 mod device_cell;
 mod handles;
 mod input;
 mod layout;
 mod log_sink;
+mod weather_convert;
 
 #[doc(hidden)]
 pub mod abi;

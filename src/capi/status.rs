@@ -54,6 +54,12 @@ pub type wk_struct_type = u32;
 pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;
 /// wk_caps
 pub const WK_STRUCT_TYPE_CAPS: wk_struct_type = 2;
+/// wk_weather
+pub const WK_STRUCT_TYPE_WEATHER: wk_struct_type = 3;
+/// wk_cloud_layer
+pub const WK_STRUCT_TYPE_CLOUD_LAYER: wk_struct_type = 4;
+/// wk_texture_desc
+pub const WK_STRUCT_TYPE_TEXTURE_DESC: wk_struct_type = 5;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

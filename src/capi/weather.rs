@@ -1,0 +1,276 @@
+//! Weather
+//!
+//! A wk_weather is what the host says the weather is: plain data in SI units, copied by every call that takes it. Start
+//! from WK_WEATHER_INIT (a clear standard day), a METAR report or a preset, and change what you know better. Zero is a
+//! value everywhere (0 degrees, north, calm, 0 %); what may be unknown has a bit in `has`, and where the bit is clear
+//! Welkin derives the value by a named physical law and ignores the field. All reals are doubles.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    layout::{init_struct, struct_size},
+    status::*,
+    weather_kinds::*,
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_weather.rs"));
+
+/// Which optional fields of a wk_weather are set.
+pub type wk_weather_has_flags = u64;
+/// vertical_visibility_m
+pub const WK_WEATHER_HAS_VERTICAL_VISIBILITY: wk_weather_has_flags = 0x1;
+/// runway_visual_range_m
+pub const WK_WEATHER_HAS_RUNWAY_VISUAL_RANGE: wk_weather_has_flags = 0x2;
+/// aerosol_angstrom_exponent
+pub const WK_WEATHER_HAS_AEROSOL_ANGSTROM_EXPONENT: wk_weather_has_flags = 0x4;
+/// aerosol_single_scattering_albedo
+pub const WK_WEATHER_HAS_AEROSOL_SINGLE_SCATTERING_ALBEDO: wk_weather_has_flags = 0x8;
+/// aerosol_asymmetry
+pub const WK_WEATHER_HAS_AEROSOL_ASYMMETRY: wk_weather_has_flags = 0x10;
+/// aerosol_scale_height_m
+pub const WK_WEATHER_HAS_AEROSOL_SCALE_HEIGHT: wk_weather_has_flags = 0x20;
+/// fog_top_m
+pub const WK_WEATHER_HAS_FOG_TOP: wk_weather_has_flags = 0x40;
+/// fog_coverage
+pub const WK_WEATHER_HAS_FOG_COVERAGE: wk_weather_has_flags = 0x80;
+/// fog_visibility_inside_m
+pub const WK_WEATHER_HAS_FOG_VISIBILITY_INSIDE: wk_weather_has_flags = 0x100;
+/// precipitation_liquid_fraction
+pub const WK_WEATHER_HAS_PRECIPITATION_LIQUID_FRACTION: wk_weather_has_flags = 0x200;
+/// wind_gust_m_s
+pub const WK_WEATHER_HAS_WIND_GUST: wk_weather_has_flags = 0x400;
+/// wind_variable_from_deg and wind_variable_to_deg
+pub const WK_WEATHER_HAS_WIND_VARIABLE: wk_weather_has_flags = 0x800;
+/// wind_turbulence_intensity
+pub const WK_WEATHER_HAS_WIND_TURBULENCE_INTENSITY: wk_weather_has_flags = 0x1000;
+/// sea_significant_wave_height_m
+pub const WK_WEATHER_HAS_SEA_WAVE_HEIGHT: wk_weather_has_flags = 0x2000;
+/// sea_state
+pub const WK_WEATHER_HAS_SEA_STATE: wk_weather_has_flags = 0x4000;
+/// sea_temperature_c
+pub const WK_WEATHER_HAS_SEA_TEMPERATURE: wk_weather_has_flags = 0x8000;
+/// swell_height_m, swell_period_s and swell_from_deg
+pub const WK_WEATHER_HAS_SWELL: wk_weather_has_flags = 0x1_0000;
+/// surface_state
+pub const WK_WEATHER_HAS_SURFACE_STATE: wk_weather_has_flags = 0x2_0000;
+/// surface_roughness_length_m
+pub const WK_WEATHER_HAS_SURFACE_ROUGHNESS_LENGTH: wk_weather_has_flags = 0x4_0000;
+/// lofted_top_m
+pub const WK_WEATHER_HAS_LOFTED_TOP: wk_weather_has_flags = 0x8_0000;
+
+/// Which optional fields of a wk_cloud_layer are set.
+pub type wk_cloud_layer_has_flags = u32;
+/// thickness_m
+pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
+/// water_g_m3
+pub const WK_CLOUD_LAYER_HAS_WATER: wk_cloud_layer_has_flags = 2;
+/// droplet_radius_um
+pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
+
+/// How it falls.
+pub type wk_precipitation_flags = u32;
+/// From convective cloud (SH): onset and end are sharp.
+pub const WK_PRECIPITATION_SHOWERS: wk_precipitation_flags = 1;
+/// With thunder (TS).
+pub const WK_PRECIPITATION_THUNDERSTORM: wk_precipitation_flags = 2;
+/// With hail beside what the kind says (GR, GS).
+pub const WK_PRECIPITATION_WITH_HAIL: wk_precipitation_flags = 4;
+
+/// One layer of cloud.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_cloud_layer {
+    /// sizeof(wk_cloud_layer) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CLOUD_LAYER.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Which optional fields are set. Default 0.
+    pub has: wk_cloud_layer_has_flags,
+    /// Which cloud. Default WK_CLOUD_UNKNOWN.
+    pub kind: wk_cloud_kind,
+    /// Part of the sky it covers, fraction (eighths / 8). Range [0, 1], default 0.
+    pub cover: f64,
+    /// Base above the station, m. Range [0, 20000], default 0.
+    pub base_m: f64,
+    /// Optional: thickness, m. Range [1, 20000]; else by kind.
+    pub thickness_m: f64,
+    /// Optional: water, liquid or ice, g/m^3. Range [0, 10]; else by kind.
+    pub water_g_m3: f64,
+    /// Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind.
+    pub droplet_radius_um: f64,
+}
+
+impl wk_cloud_layer {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CLOUD_LAYER,
+        next: null(),
+        has: 0,
+        kind: WK_CLOUD_UNKNOWN,
+        cover: 0.0,
+        base_m: 0.0,
+        thickness_m: 0.0,
+        water_g_m3: 0.0,
+        droplet_radius_um: 0.0,
+    };
+}
+
+/// The weather at a station and moment. Heights are above the station unless they say otherwise.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_weather {
+    /// sizeof(wk_weather) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WEATHER.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Which optional fields are set. Default 0.
+    pub has: wk_weather_has_flags,
+
+    /// Meteorological optical range at the station, m: where 550 nm light falls to 5 % (the reported visibility). It is
+    /// total: air, haze, fog, rain and snow together. Range [1, 1e6], default 40000.
+    pub visibility_m: f64,
+    /// Optional: vertical visibility into an obscured sky, m. Range [0, 10000]; else the sky is not obscured. With fog
+    /// it sets the fog's depth.
+    pub vertical_visibility_m: f64,
+    /// Optional: runway visual range, m. Range [1, 10000]. For information; extinction follows visibility_m.
+    pub runway_visual_range_m: f64,
+    /// Air at 2 m, degrees Celsius. Range [-90, 60], default 15.
+    pub temperature_c: f64,
+    /// Relative humidity over water, fraction. Range [0, 1], default 0.5.
+    pub relative_humidity: f64,
+    /// Pressure reduced to mean sea level (QNH), hPa. Range [800, 1100], default 1013.25.
+    pub pressure_hpa: f64,
+    /// Height of the station above mean sea level, m. Range [-500, 9000], default 0.
+    pub station_altitude_m: f64,
+    /// Ozone column, Dobson units. Range [0, 700], default 300.
+    pub ozone_du: f64,
+
+    /// What the dry particles are. Default WK_AEROSOL_CONTINENTAL.
+    pub aerosol_kind: wk_aerosol_kind,
+    /// Fog or mist. Default WK_FOG_NONE.
+    pub fog_kind: wk_fog_kind,
+    /// Optional: extinction goes with wavelength^-exponent. Range [-1, 4]; else by kind.
+    pub aerosol_angstrom_exponent: f64,
+    /// Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity.
+    pub aerosol_single_scattering_albedo: f64,
+    /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
+    pub aerosol_asymmetry: f64,
+    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind.
+    pub aerosol_scale_height_m: f64,
+    /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
+    pub fog_top_m: f64,
+    /// Optional: part of the ground under fog, fraction. Range [0, 1]; else by kind.
+    pub fog_coverage: f64,
+    /// Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
+    /// that the reported visibility looks over or past.
+    pub fog_visibility_inside_m: f64,
+
+    /// What falls. Default WK_PRECIPITATION_NONE.
+    pub precipitation_kind: wk_precipitation_kind,
+    /// How it falls. Default 0.
+    pub precipitation_flags: wk_precipitation_flags,
+    /// How much, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls.
+    pub precipitation_rate_mm_h: f64,
+    /// Optional: part of it that is liquid, fraction. Range [0, 1]; else by kind.
+    pub precipitation_liquid_fraction: f64,
+
+    /// Mean wind at 10 m above ground, m/s. Range [0, 120], default 0.
+    pub wind_speed_m_s: f64,
+    /// Where it comes from, degrees clockwise from true north. Range [0, 360], default 0.
+    pub wind_from_deg: f64,
+    /// Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence.
+    pub wind_gust_m_s: f64,
+    /// Optional, with the next: the direction varies clockwise from here, degrees. Range [0, 360].
+    pub wind_variable_from_deg: f64,
+    /// To here, degrees. Range [0, 360]. 0 to 360 says that it varies all round (VRB).
+    pub wind_variable_to_deg: f64,
+    /// Optional: standard deviation of speed over its mean. Range [0, 1]; else from the roughness.
+    pub wind_turbulence_intensity: f64,
+
+    /// Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind.
+    pub sea_significant_wave_height_m: f64,
+    /// Optional: water, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8.
+    pub sea_temperature_c: f64,
+    /// Optional, with the next two: significant height of the swell, m. Range [0, 20].
+    pub swell_height_m: f64,
+    /// Peak period of the swell, s. Range [1, 30] where the swell is set.
+    pub swell_period_s: f64,
+    /// Where the swell comes from, degrees clockwise from true north. Range [0, 360].
+    pub swell_from_deg: f64,
+    /// Optional: WMO sea state, code table 3700. Range 0 to 9.
+    pub sea_state: u32,
+    /// Optional: the ground as observed; else from precipitation, temperature and snow depth.
+    pub surface_state: wk_surface_state,
+    /// Depth of lying snow, m. Range [0, 20], default 0.
+    pub surface_snow_depth_m: f64,
+    /// Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03.
+    pub surface_roughness_length_m: f64,
+
+    /// Optional: depth of what the wind lifts, m. Range [0.1, 5000]; else by kind.
+    pub lofted_top_m: f64,
+    /// What the wind lifts. Default WK_LOFTED_NONE.
+    pub lofted_kind: wk_lofted_kind,
+    /// Number of cloud layers, at most wk_caps.max_cloud_layers (16). Default 0.
+    pub cloud_count: u32,
+    /// The cloud layers in any order; may be NULL if there are none. Read during the call only.
+    pub clouds: *const wk_cloud_layer,
+    /// Bytes from one layer to the next: sizeof(wk_cloud_layer) of your header, which is the default.
+    pub cloud_stride: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_weather {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WEATHER,
+        next: null(),
+        has: 0,
+        visibility_m: 40000.0,
+        vertical_visibility_m: 0.0,
+        runway_visual_range_m: 0.0,
+        temperature_c: 15.0,
+        relative_humidity: 0.5,
+        pressure_hpa: 1013.25,
+        station_altitude_m: 0.0,
+        ozone_du: 300.0,
+        aerosol_kind: WK_AEROSOL_CONTINENTAL,
+        fog_kind: WK_FOG_NONE,
+        aerosol_angstrom_exponent: 0.0,
+        aerosol_single_scattering_albedo: 0.0,
+        aerosol_asymmetry: 0.0,
+        aerosol_scale_height_m: 0.0,
+        fog_top_m: 0.0,
+        fog_coverage: 0.0,
+        fog_visibility_inside_m: 0.0,
+        precipitation_kind: WK_PRECIPITATION_NONE,
+        precipitation_flags: 0,
+        precipitation_rate_mm_h: 0.0,
+        precipitation_liquid_fraction: 0.0,
+        wind_speed_m_s: 0.0,
+        wind_from_deg: 0.0,
+        wind_gust_m_s: 0.0,
+        wind_variable_from_deg: 0.0,
+        wind_variable_to_deg: 0.0,
+        wind_turbulence_intensity: 0.0,
+        sea_significant_wave_height_m: 0.0,
+        sea_temperature_c: 0.0,
+        swell_height_m: 0.0,
+        swell_period_s: 0.0,
+        swell_from_deg: 0.0,
+        sea_state: 0,
+        surface_state: WK_SURFACE_DRY,
+        surface_snow_depth_m: 0.0,
+        surface_roughness_length_m: 0.0,
+        lofted_top_m: 0.0,
+        lofted_kind: WK_LOFTED_NONE,
+        cloud_count: 0,
+        clouds: null(),
+        cloud_stride: struct_size::<wk_cloud_layer>(),
+        reserved0: 0,
+    };
+}
