@@ -49,6 +49,10 @@ pub struct Scene {
     pub medium_share: f64,
     /// Illuminance on level ground, lux.
     pub ground_illuminance_lux: f64,
+    /// Direct sun at the place on a surface facing it, lux a channel.
+    pub sun_ground_lux: [f64; 3],
+    /// The sky's light on level ground, lux a channel.
+    pub sky_ground_lux: [f64; 3],
 }
 
 impl Context {
@@ -77,6 +81,8 @@ impl Context {
             deck_cover: 0.0,
             medium_share: 1.0,
             ground_illuminance_lux: 1e5 * direction.z.max(0.0) + 0.01,
+            sun_ground_lux: [1e5; 3],
+            sky_ground_lux: [1.2e4, 1.5e4, 2e4],
         }
     }
 }

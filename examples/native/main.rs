@@ -1,0 +1,227 @@
+//! A Rust host with its own `wgpu::Device`: it draws its world, Welkin draws the weather into the same textures.
+//!
+//! `cargo run --release --example native [-- OUT_DIR [NAME..]]` writes the pictures of the README's gallery as PNG.
+
+mod shots;
+mod world;
+
+use std::sync::Arc;
+
+use glam::{DVec3, Mat4};
+use welkin::{
+    context::{Context, ContextDesc, Scene},
+    frame::{Frame, Shared, Stages, View, tone},
+    gpu::{Device, readback},
+    scene::Camera,
+};
+
+type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+
+const SIZE: (u32, u32) = (640, 360);
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HostUniform {
+    view_projection: Mat4,
+    sun: [f32; 4],
+    sun_light: [f32; 4],
+    sky_light: [f32; 4],
+}
+
+/// Everything the host owns: Welkin knows nothing of it but `device` and the two targets.
+struct Host {
+    device: Arc<Device>,
+    pipeline: wgpu::RenderPipeline,
+    uniform: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    terrain: world::Terrain,
+}
+
+/// The host makes its own instance, adapter, device and queue, and lends them to Welkin.
+fn lend_device() -> Fallible<Arc<Device>> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
+    Ok(Device::adopt(instance, adapter, device, queue, false, None)?)
+}
+
+fn target(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+impl Host {
+    fn new() -> Fallible<Self> {
+        let lent = lend_device()?;
+        let device = &lent.device;
+        let module = device.create_shader_module(wgpu::include_wgsl!("scene.wgsl"));
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("host"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<world::Vertex>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &attributes,
+                })],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(wgpu::TextureFormat::Rgba16Float.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: size_of::<HostUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        });
+        let color = target(device, wgpu::TextureFormat::Rgba16Float);
+        let depth = target(device, wgpu::TextureFormat::Depth32Float);
+        let terrain = world::Terrain::read("examples/data/jacksboro_dem.png")?;
+        Ok(Self { pipeline, uniform, group, color, depth, terrain, device: lent.clone() })
+    }
+
+    /// Vertices relative to the camera, so that f32 holds them.
+    fn vertices(&self, eye: DVec3) -> wgpu::Buffer {
+        let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2());
+        for v in &mut mesh {
+            for (p, e) in v.position.iter_mut().zip(eye.to_array()) {
+                *p -= e as f32;
+            }
+        }
+        let buffer = self.device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: size_of_val(&mesh[..]) as u64,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.device.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&mesh));
+        buffer
+    }
+
+    /// Draws the host's own world, lit by what Welkin's query says of sun and sky.
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, camera: &Camera, scene: &Scene, world: Option<&wgpu::Buffer>) {
+        let block = HostUniform {
+            view_projection: (camera.projection * camera.view).as_mat4(),
+            sun: scene.sun.direction.as_vec3().extend(0.0).to_array(),
+            sun_light: scene
+                .sun_ground_lux
+                .map(|v| v as f32)
+                .into_iter()
+                .chain([0.0])
+                .collect::<Vec<_>>()
+                .try_into()
+                .unwrap_or_default(),
+            sky_light: scene
+                .sky_ground_lux
+                .map(|v| v as f32)
+                .into_iter()
+                .chain([0.0])
+                .collect::<Vec<_>>()
+                .try_into()
+                .unwrap_or_default(),
+        };
+        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
+        let (color, depth) = (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        if let Some(vertices) = world {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.draw(0..(vertices.size() / size_of::<world::Vertex>() as u64) as u32, 0..1);
+        }
+    }
+}
+
+/// One picture: the host's world with the weather drawn into it.
+fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fallible<()> {
+    let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
+    (shot.weather)(&mut context)?;
+    let ground = f64::from(host.terrain.height(glam::Vec2::from_array(shot.at)));
+    let eye = DVec3::new(
+        f64::from(shot.at[0]),
+        f64::from(shot.at[1]),
+        shot.height_m + if shot.above_ground { ground } else { 0.0 },
+    );
+    let (sa, ca) = shot.azimuth_deg.to_radians().sin_cos();
+    let (se, ce) = shot.elevation_deg.to_radians().sin_cos();
+    let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+    let forward = DVec3::new(sa * ce, ca * ce, se);
+    let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
+    let mut view = View::new(&context)?;
+    let vertices = shot.above_ground.then(|| host.vertices(eye));
+    let mut encoder = host.device.device.create_command_encoder(&Default::default());
+    host.draw(&mut encoder, &camera, &context.scene_at(eye), vertices.as_ref());
+    let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
+    view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
+    host.device.submit_and_wait(encoder)?;
+    let pixels = readback::rgba(&host.device, &host.color)?;
+    let bytes =
+        pixels.iter().flat_map(|p| [0, 1, 2].map(|c| (tone::srgb_encode(f64::from(p[c])) * 255.0).round() as u8));
+    image::save_buffer(path, &bytes.collect::<Vec<_>>(), SIZE.0, SIZE.1, image::ExtendedColorType::Rgb8)?;
+    Ok(())
+}
+
+fn main() -> Fallible<()> {
+    let mut arguments = std::env::args().skip(1);
+    let out = arguments.next().unwrap_or_else(|| "out/gallery".to_owned());
+    let wanted: Vec<String> = arguments.collect();
+    std::fs::create_dir_all(&out)?;
+    let host = Host::new()?;
+    println!("adapter: {} ({})", host.device.caps().adapter_name, host.device.caps().driver);
+    let shared = Arc::new(Shared::new(&host.device)?);
+    for shot in shots::shots().iter().filter(|s| wanted.is_empty() || wanted.iter().any(|w| w == s.name)) {
+        let path = format!("{out}/{}.png", shot.name);
+        take(&host, &shared, shot, &path)?;
+        println!("{path}: {}", shot.caption);
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! The pictures of the gallery: where, when and in what weather.
+
+use welkin::context::{Context, GivenDirection};
+
+pub struct Shot {
+    pub name: &'static str,
+    pub caption: &'static str,
+    /// Camera over the terrain, m east and north of its centre.
+    pub at: [f32; 2],
+    /// Above the ground, or above the sea where there is no terrain in the picture.
+    pub height_m: f64,
+    pub above_ground: bool,
+    pub azimuth_deg: f64,
+    pub elevation_deg: f64,
+    pub fov_y_deg: f64,
+    pub weather: fn(&mut Context) -> welkin::Result<()>,
+}
+
+fn sun(context: &mut Context, azimuth_deg: f64, elevation_deg: f64) -> welkin::Result<()> {
+    context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg }))
+}
+
+const GROUND: Shot = Shot {
+    name: "",
+    caption: "",
+    at: [-2500.0, -6000.0],
+    height_m: 2.5,
+    above_ground: true,
+    azimuth_deg: 8.0,
+    elevation_deg: 4.0,
+    fov_y_deg: 50.0,
+    weather: |_| Ok(()),
+};
+
+pub fn shots() -> Vec<Shot> {
+    vec![
+        Shot { name: "noon", caption: "Noon, clear", weather: |c| sun(c, 160.0, 55.0), ..GROUND },
+        Shot { name: "low_sun", caption: "Low sun", weather: |c| sun(c, 40.0, 10.0), ..GROUND },
+        Shot { name: "sunset", caption: "Sunset", weather: |c| sun(c, 15.0, 0.5), ..GROUND },
+        Shot { name: "twilight", caption: "Civil twilight", weather: |c| sun(c, 15.0, -5.0), ..GROUND },
+        Shot {
+            name: "twelve_km",
+            caption: "12 km up",
+            height_m: 12e3,
+            above_ground: false,
+            elevation_deg: -2.0,
+            weather: |c| sun(c, 60.0, 25.0),
+            ..GROUND
+        },
+        Shot {
+            name: "space",
+            caption: "200 km up: the limb",
+            height_m: 200e3,
+            above_ground: false,
+            elevation_deg: -14.0,
+            weather: |c| sun(c, 30.0, 5.0),
+            ..GROUND
+        },
+    ]
+}
