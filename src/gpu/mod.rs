@@ -7,9 +7,11 @@
 pub mod pass;
 pub mod readback;
 pub mod shader;
+pub mod surface;
 // ash does not build for Apple hosts here: there the backend is Metal.
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod vulkan;
 
 mod device;
+mod x11;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};

@@ -1,0 +1,502 @@
+//! A window that the host named by its native handle: images to draw into, and their way to the screen.
+//!
+//! Welkin neither makes nor reads the window; the host keeps its event loop and says when the size changed.
+//! Nothing that a window may do is a fault: resized, hidden, minimised and lost are answers to [`Surface::acquire`].
+
+use std::ffi::c_void;
+use std::num::{NonZeroIsize, NonZeroU32};
+use std::ptr::NonNull;
+use std::sync::Arc;
+
+use raw_window_handle as rwh;
+
+use super::{Device, DeviceOptions};
+use crate::error::{Error, Result, Status};
+
+/// A native window. Pointers and numbers are the host's and outlive the device and surface made from them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NativeWindow {
+    /// X11 by Xlib: `Display*`, screen number, `Window`.
+    Xlib {
+        /// `Display*`.
+        display: *mut c_void,
+        /// Screen number, as `DefaultScreen` gives it.
+        screen: i32,
+        /// `Window`.
+        window: u64,
+    },
+    /// X11 by XCB: `xcb_connection_t*`, screen number, `xcb_window_t`.
+    Xcb {
+        /// `xcb_connection_t*`.
+        connection: *mut c_void,
+        /// Screen number, as `xcb_connect` gives it.
+        screen: i32,
+        /// `xcb_window_t`.
+        window: u32,
+    },
+    /// Wayland: `wl_display*`, `wl_surface*`.
+    Wayland {
+        /// `wl_display*`.
+        display: *mut c_void,
+        /// `wl_surface*`.
+        surface: *mut c_void,
+    },
+    /// Windows: `HWND` and the module's `HINSTANCE`.
+    Win32 {
+        /// `HWND`.
+        hwnd: *mut c_void,
+        /// `HINSTANCE` of the module that made the window.
+        hinstance: *mut c_void,
+    },
+    /// macOS: `NSView*`; to be used on the main thread.
+    AppKit {
+        /// `NSView*`.
+        ns_view: *mut c_void,
+    },
+}
+
+impl NativeWindow {
+    /// Takes the handles of a Rust window.
+    ///
+    /// # Errors
+    /// [`Status::Unsupported`] for a window system that Welkin does not present to, or handles that are not
+    /// available now.
+    pub fn of(window: &(impl rwh::HasWindowHandle + rwh::HasDisplayHandle)) -> Result<Self> {
+        let gone = |e: rwh::HandleError| Error::unsupported(format!("the window has no handle now: {e}"));
+        let display = window.display_handle().map_err(gone)?.as_raw();
+        let window = window.window_handle().map_err(gone)?.as_raw();
+        let pointer = |p: Option<NonNull<c_void>>| p.map_or(std::ptr::null_mut(), NonNull::as_ptr);
+        Ok(match (display, window) {
+            (rwh::RawDisplayHandle::Xlib(d), rwh::RawWindowHandle::Xlib(w)) => {
+                #[allow(clippy::useless_conversion, reason = "c_ulong has 32 bits on Windows")]
+                let window = u64::from(w.window);
+                Self::Xlib { display: pointer(d.display), screen: d.screen, window }
+            }
+            (rwh::RawDisplayHandle::Xcb(d), rwh::RawWindowHandle::Xcb(w)) => {
+                Self::Xcb { connection: pointer(d.connection), screen: d.screen, window: w.window.get() }
+            }
+            (rwh::RawDisplayHandle::Wayland(d), rwh::RawWindowHandle::Wayland(w)) => {
+                Self::Wayland { display: d.display.as_ptr(), surface: w.surface.as_ptr() }
+            }
+            (_, rwh::RawWindowHandle::Win32(w)) => Self::Win32 {
+                hwnd: w.hwnd.get() as *mut c_void,
+                hinstance: w.hinstance.map_or(std::ptr::null_mut(), |h| h.get() as *mut c_void),
+            },
+            (_, rwh::RawWindowHandle::AppKit(w)) => Self::AppKit { ns_view: w.ns_view.as_ptr() },
+            (_, other) => return Err(Error::unsupported(format!("Welkin does not present to {other:?}"))),
+        })
+    }
+
+    /// The handles as wgpu takes them.
+    fn raw(&self) -> Result<(rwh::RawDisplayHandle, rwh::RawWindowHandle)> {
+        Ok(match *self {
+            Self::Xlib { display, screen, window } => {
+                let display = Some(pointer("display", "a Display*", display)?);
+                let window = std::ffi::c_ulong::try_from(window).ok().filter(|&w| w != 0);
+                let window = window.ok_or_else(|| Error::range("window", "an X11 Window, not 0", 0))?;
+                (rwh::XlibDisplayHandle::new(display, screen).into(), rwh::XlibWindowHandle::new(window).into())
+            }
+            Self::Xcb { connection, screen, window } => {
+                let connection = Some(pointer("connection", "an xcb_connection_t*", connection)?);
+                let window = NonZeroU32::new(window);
+                let window = window.ok_or_else(|| Error::range("window", "an xcb_window_t, not 0", 0))?;
+                (rwh::XcbDisplayHandle::new(connection, screen).into(), rwh::XcbWindowHandle::new(window).into())
+            }
+            Self::Wayland { display, surface } => {
+                let display = pointer("display", "a wl_display*", display)?;
+                let surface = pointer("surface", "a wl_surface*", surface)?;
+                (rwh::WaylandDisplayHandle::new(display).into(), rwh::WaylandWindowHandle::new(surface).into())
+            }
+            Self::Win32 { hwnd, hinstance } => {
+                let hwnd = NonZeroIsize::new(hwnd as isize);
+                let mut window =
+                    rwh::Win32WindowHandle::new(hwnd.ok_or_else(|| Error::range("hwnd", "an HWND", "NULL"))?);
+                window.hinstance = NonZeroIsize::new(hinstance as isize);
+                if window.hinstance.is_none() {
+                    return Err(Error::range("hinstance", "the HINSTANCE that made the window", "NULL"));
+                }
+                (rwh::WindowsDisplayHandle::new().into(), window.into())
+            }
+            Self::AppKit { ns_view } => {
+                let view = pointer("ns_view", "an NSView*", ns_view)?;
+                (rwh::AppKitDisplayHandle::new().into(), rwh::AppKitWindowHandle::new(view).into())
+            }
+        })
+    }
+}
+
+impl NativeWindow {
+    /// Refuses an X11 window that is not there: drivers would crash on it.
+    ///
+    /// # Safety
+    /// The connection is live.
+    unsafe fn check_exists(&self) -> Result<()> {
+        #[cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
+        {
+            use super::x11;
+            // SAFETY: the caller vouches for the connection.
+            let exists = unsafe {
+                match *self {
+                    Self::Xlib { display, window, .. } => NonNull::new(display).map(|d| x11::exists_xlib(d, window)),
+                    Self::Xcb { connection, window, .. } => {
+                        NonNull::new(connection).map(|c| x11::exists_xcb(c, window))
+                    }
+                    _ => None,
+                }
+            };
+            if exists.flatten() == Some(false) {
+                return Err(gone());
+            }
+        }
+        Ok(())
+    }
+}
+
+fn pointer(name: &str, accepted: &str, p: *mut c_void) -> Result<NonNull<c_void>> {
+    NonNull::new(p).ok_or_else(|| Error::range(name, accepted, "NULL"))
+}
+
+/// The connection to the window system, which OpenGL needs before there is any window.
+#[derive(Debug)]
+struct Display(rwh::RawDisplayHandle);
+
+// SAFETY: the host keeps the connection alive and lets it be used from the threads that call Welkin
+// (`device_for_window`'s contract); wgpu only passes the pointer on to EGL.
+unsafe impl Send for Display {}
+// SAFETY: as above.
+unsafe impl Sync for Display {}
+
+impl rwh::HasDisplayHandle for Display {
+    fn display_handle(&self) -> std::result::Result<rwh::DisplayHandle<'_>, rwh::HandleError> {
+        // SAFETY: the host keeps the connection alive longer than the instance that holds this.
+        Ok(unsafe { rwh::DisplayHandle::borrow_raw(self.0) })
+    }
+}
+
+/// Makes an own device that can present to `window` (and to other windows of the same connection).
+///
+/// # Errors
+/// [`Status::InvalidArgument`] names a null handle; [`Status::NoAdapter`] if no driver can present to the window.
+///
+/// # Safety
+/// The window's connection (display) outlives the device. With X11, if the host or Welkin calls from several
+/// threads, the host called `XInitThreads` first.
+pub unsafe fn device_for_window(window: &NativeWindow, options: &DeviceOptions) -> Result<Arc<Device>> {
+    let (display, _) = window.raw()?;
+    let mut desc = wgpu::InstanceDescriptor::new_with_display_handle(Box::new(Display(display)));
+    desc.backends = options.backends;
+    desc.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(desc);
+    // SAFETY: the caller vouches for the window.
+    let surface = unsafe { create(&instance, window)? };
+    Device::from_instance(instance, options, Some(&surface))
+}
+
+/// # Safety
+/// The window lives as long as the surface.
+unsafe fn create(instance: &wgpu::Instance, window: &NativeWindow) -> Result<wgpu::Surface<'static>> {
+    let (raw_display_handle, raw_window_handle) = window.raw()?;
+    // SAFETY: the caller vouches for the window's connection.
+    unsafe { window.check_exists()? };
+    let raw_display_handle = Some(raw_display_handle);
+    let target = wgpu::SurfaceTargetUnsafe::RawHandle { raw_display_handle, raw_window_handle };
+    // SAFETY: the caller vouches for the window.
+    unsafe { instance.create_surface_unsafe(target) }
+        .map_err(|e| Error::new(Status::Unsupported, format!("no driver can present to this window: {e}")))
+}
+
+/// How the values that are drawn mean colour on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SurfaceEncoding {
+    /// What is drawn is display-linear, and the hardware encodes it to sRGB as it is written.
+    #[default]
+    DisplayLinear,
+    /// What is drawn is already sRGB-encoded.
+    DisplaySrgb,
+}
+
+/// When images reach the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pacing {
+    /// With the screen's refresh, no tearing: [`Surface::acquire`] waits for it.
+    #[default]
+    Refresh,
+    /// As soon as possible.
+    Immediate,
+}
+
+/// How a surface is to be set up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceOptions {
+    /// Width of the window's drawable area, pixels; 0 while it is minimised.
+    pub width: u32,
+    /// Height of the window's drawable area, pixels; 0 while it is minimised.
+    pub height: u32,
+    /// Default display-linear.
+    pub encoding: SurfaceEncoding,
+    /// Default with the refresh.
+    pub pacing: Pacing,
+}
+
+/// A window to present to. One thread at a time; on macOS the main thread.
+pub struct Surface {
+    // Dropped in this order: an image before its surface, the surface before the device's instance.
+    current: Option<wgpu::SurfaceTexture>,
+    surface: wgpu::Surface<'static>,
+    device: Arc<Device>,
+    window: NativeWindow,
+    options: Option<SurfaceOptions>,
+    format: Option<wgpu::TextureFormat>,
+    ready: bool,
+    lost: bool,
+}
+
+// SAFETY: the raw handles inside are only passed on to the driver, under `&mut self`, from the thread that the
+// host calls from; the host's promise for them is the contract of `Surface::new`.
+unsafe impl Send for Surface {}
+
+impl std::fmt::Debug for Surface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { window, options, format, .. } = self;
+        let mut out = f.debug_struct("Surface");
+        out.field("window", window).field("options", options).field("format", format).finish_non_exhaustive()
+    }
+}
+
+impl Surface {
+    /// A surface on `window`, presented to by `device`. It is to be configured before it gives images.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] names a null handle; [`Status::Unsupported`] if the device cannot present to
+    /// this window: make the device with [`device_for_window`].
+    ///
+    /// # Safety
+    /// The window outlives the surface, and its connection the device.
+    pub unsafe fn new(device: &Arc<Device>, window: &NativeWindow) -> Result<Self> {
+        let _entered = device.enter()?;
+        // SAFETY: the caller vouches for the window.
+        let surface = unsafe { create(&device.instance, window)? };
+        if surface.get_capabilities(&device.adapter).formats.is_empty() {
+            return Err(Error::unsupported(format!(
+                "the device ({}) cannot present to this window: it is gone, or the device was not made for it",
+                device.caps().adapter_name
+            )));
+        }
+        Ok(Self {
+            current: None,
+            surface,
+            device: device.clone(),
+            window: *window,
+            options: None,
+            format: None,
+            ready: false,
+            lost: false,
+        })
+    }
+
+    /// The format that images have, once configured.
+    pub fn format(&self) -> Option<wgpu::TextureFormat> {
+        self.format
+    }
+
+    /// Size of the images, pixels, as configured; (0, 0) before.
+    pub fn size(&self) -> (u32, u32) {
+        self.options.map_or((0, 0), |o| (o.width, o.height))
+    }
+
+    /// Sets the surface up, or up again after its window changed. An image in hand is given back undrawn.
+    ///
+    /// A width or height of 0 is a minimised window: the call succeeds and [`Surface::acquire`] answers
+    /// [`Status::SurfaceOutdated`] until it is configured with an area.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] beyond the device's texture size; [`Status::Unsupported`] if the window gives
+    /// no format for the encoding; [`Status::SurfaceOutdated`] if the window is gone; [`Status::DeviceLost`].
+    pub fn configure(&mut self, options: &SurfaceOptions) -> Result<()> {
+        let max = self.device.caps().max_texture_size;
+        for (name, value) in [("width", options.width), ("height", options.height)] {
+            if value > max {
+                return Err(Error::range(name, &format!("in [0, {max}] pixels"), value));
+            }
+        }
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        self.current = None;
+        self.ready = false;
+        self.options = Some(*options);
+        if options.width == 0 || options.height == 0 {
+            return Ok(());
+        }
+        // SAFETY: the window's connection outlives the device by the contract of `new`.
+        unsafe { self.window.check_exists().inspect_err(|_| self.lost = true)? };
+        if self.lost {
+            // SAFETY: the window outlives this surface by the contract of `new`.
+            self.surface = unsafe { create(&device.instance, &self.window)? };
+            self.lost = false;
+        }
+        let caps = self.surface.get_capabilities(&device.adapter);
+        if caps.formats.is_empty() {
+            self.lost = true;
+            return Err(gone());
+        }
+        let format = choose_format(&caps.formats, options.encoding)?;
+        self.format = Some(format);
+        let wanted = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST
+            | wgpu::TextureUsages::TEXTURE_BINDING;
+        let config = wgpu::SurfaceConfiguration {
+            usage: caps.usages & wanted,
+            format,
+            color_space: wgpu::SurfaceColorSpace::Auto,
+            width: options.width,
+            height: options.height,
+            present_mode: match options.pacing {
+                Pacing::Refresh => wgpu::PresentMode::AutoVsync,
+                Pacing::Immediate => wgpu::PresentMode::AutoNoVsync,
+            },
+            desired_maximum_frame_latency: 2,
+            alpha_mode: wgpu::CompositeAlphaMode::Auto,
+            view_formats: Vec::new(),
+        };
+        self.surface.configure(&device.device, &config);
+        if let Some(fault) = device.take_fault() {
+            self.lost = true;
+            return Err(outdated(&fault.message));
+        }
+        self.ready = true;
+        Ok(())
+    }
+
+    /// The next image to draw into. To be drawn, then shown by [`Surface::present`]; asked for again before that,
+    /// it is the same image.
+    ///
+    /// # Errors
+    /// [`Status::SurfaceOutdated`]: configure again, with the window's present size (also while it is minimised);
+    /// [`Status::Pending`]: the window shows nothing now (hidden, or the screen is busy): skip this frame;
+    /// [`Status::WrongOrder`] before the first configure; [`Status::DeviceLost`].
+    pub fn acquire(&mut self) -> Result<wgpu::Texture> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let Some(options) = self.options else {
+            return Err(Error::new(Status::WrongOrder, "the surface must be configured before it gives images"));
+        };
+        if let Some(image) = &self.current {
+            return Ok(image.texture.clone());
+        }
+        if !self.ready {
+            let (w, h) = (options.width, options.height);
+            let why = if w == 0 || h == 0 {
+                format!("the window has no area ({w} x {h} pixels)")
+            } else {
+                "the window changed".into()
+            };
+            return Err(outdated(&why));
+        }
+        use wgpu::CurrentSurfaceTexture as Next;
+        let image = match self.surface.get_current_texture() {
+            Next::Success(image) => image,
+            // Still good to draw into; the next call says that the window changed.
+            Next::Suboptimal(image) => {
+                self.ready = false;
+                image
+            }
+            Next::Timeout => {
+                return Err(Error::new(Status::Pending, "the screen gave no image in time: skip this frame"));
+            }
+            Next::Occluded => return Err(Error::new(Status::Pending, "the window is hidden: skip this frame")),
+            Next::Outdated => {
+                self.ready = false;
+                return Err(outdated("the window changed"));
+            }
+            Next::Lost => {
+                (self.ready, self.lost) = (false, true);
+                return Err(outdated("the surface was lost"));
+            }
+            Next::Validation => {
+                self.ready = false;
+                return Err(device.take_fault().unwrap_or_else(|| outdated("the surface gave no image")));
+            }
+        };
+        let texture = image.texture.clone();
+        self.current = Some(image);
+        Ok(texture)
+    }
+
+    /// Shows the image in hand, after the work submitted for it.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] if no image was acquired; [`Status::SurfaceOutdated`] and [`Status::DeviceLost`] as
+    /// in [`Surface::acquire`].
+    pub fn present(&mut self) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let Some(image) = self.current.take() else {
+            return Err(Error::new(Status::WrongOrder, "there is no image to present: acquire one first"));
+        };
+        device.queue.present(image);
+        if let Some(fault) = device.take_fault() {
+            self.ready = false;
+            return Err(outdated(&fault.message));
+        }
+        Ok(())
+    }
+}
+
+fn gone() -> Error {
+    Error::new(Status::SurfaceOutdated, "window: it does not exist, or no longer; make a surface on another one")
+}
+
+fn outdated(why: &str) -> Error {
+    let message = format!("{why}: configure the surface again, with the window's present size");
+    Error::new(Status::SurfaceOutdated, message)
+}
+
+/// The window's format for an encoding: 8 bits a channel, in the order that the window prefers.
+fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> Result<wgpu::TextureFormat> {
+    let wanted = match encoding {
+        SurfaceEncoding::DisplayLinear => [wgpu::TextureFormat::Bgra8UnormSrgb, wgpu::TextureFormat::Rgba8UnormSrgb],
+        SurfaceEncoding::DisplaySrgb => [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm],
+    };
+    offered.iter().copied().find(|f| wanted.contains(f)).ok_or_else(|| {
+        Error::unsupported(format!("encoding: the window offers {offered:?}, none of which serves {encoding:?}"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn null_handles_are_refused_by_name() {
+        let null = std::ptr::null_mut();
+        let some = std::ptr::dangling_mut::<u64>().cast::<c_void>();
+        let cases = [
+            (NativeWindow::Xlib { display: null, screen: 0, window: 1 }, "display"),
+            (NativeWindow::Xlib { display: some, screen: 0, window: 0 }, "window"),
+            (NativeWindow::Xcb { connection: null, screen: 0, window: 1 }, "connection"),
+            (NativeWindow::Xcb { connection: some, screen: 0, window: 0 }, "window"),
+            (NativeWindow::Wayland { display: null, surface: some }, "display"),
+            (NativeWindow::Wayland { display: some, surface: null }, "surface"),
+            (NativeWindow::Win32 { hwnd: null, hinstance: some }, "hwnd"),
+            (NativeWindow::Win32 { hwnd: some, hinstance: null }, "hinstance"),
+            (NativeWindow::AppKit { ns_view: null }, "ns_view"),
+        ];
+        for (window, name) in cases {
+            // SAFETY: the null handle is found before anything is used.
+            let e = unsafe { device_for_window(&window, &DeviceOptions::default()) }.err().expect("refused");
+            assert_eq!(e.status, Status::InvalidArgument);
+            assert!(e.message.starts_with(name), "{}", e.message);
+        }
+    }
+
+    #[test]
+    fn the_format_follows_the_encoding_in_the_windows_order() {
+        use wgpu::TextureFormat as F;
+        let offered = [F::Rgba16Float, F::Bgra8Unorm, F::Rgba8UnormSrgb, F::Bgra8UnormSrgb];
+        assert_eq!(choose_format(&offered, SurfaceEncoding::DisplayLinear).unwrap(), F::Rgba8UnormSrgb);
+        assert_eq!(choose_format(&offered, SurfaceEncoding::DisplaySrgb).unwrap(), F::Bgra8Unorm);
+        let e = choose_format(&[F::Rgba16Float], SurfaceEncoding::DisplayLinear).unwrap_err();
+        assert_eq!(e.status, Status::Unsupported);
+    }
+}

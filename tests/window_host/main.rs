@@ -1,0 +1,199 @@
+//! Own-device windows by native handle: what Welkin presents is what the X server shows, and whatever happens to
+//! the window is an answer, not a fault.
+#![cfg(target_os = "linux")]
+
+mod x11;
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use welkin::Status;
+use welkin::gpu::surface::{NativeWindow, Pacing, Surface, SurfaceEncoding, SurfaceOptions, device_for_window};
+use welkin::gpu::{Device, DeviceOptions};
+use x11::{Server, Window, X_ERRORS};
+
+fn open(window: &NativeWindow, backends: wgpu::Backends) -> (std::sync::Arc<Device>, Surface) {
+    let options = DeviceOptions { backends, ..DeviceOptions::default() };
+    // SAFETY: the tests keep the window longer than device and surface.
+    unsafe {
+        let device = device_for_window(window, &options).unwrap_or_else(|e| panic!("{backends:?}: {e}"));
+        let surface = Surface::new(&device, window).unwrap_or_else(|e| panic!("{backends:?}: {e}"));
+        (device, surface)
+    }
+}
+
+fn size(width: u32, height: u32) -> SurfaceOptions {
+    SurfaceOptions { width, height, ..SurfaceOptions::default() }
+}
+
+/// Clears the next image to a colour and presents it.
+fn show(device: &Device, surface: &mut Surface, colour: [f64; 3]) -> welkin::Result<()> {
+    let texture = surface.acquire()?;
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let [r, g, b] = colour;
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    }));
+    device.queue.submit([encoder.finish()]);
+    surface.present()?;
+    device.wait()
+}
+
+/// The pixel becomes the colour within a second: presenting is not synchronous.
+fn assert_pixel(window: &Window, x: i32, y: i32, expected: [u8; 3]) {
+    let start = Instant::now();
+    loop {
+        let got = window.pixel(x, y);
+        if got.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1) {
+            return;
+        }
+        assert!(start.elapsed() < Duration::from_secs(1), "pixel ({x}, {y}) is {got:?}, expected {expected:?}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+const BACKENDS: [wgpu::Backends; 2] = [wgpu::Backends::VULKAN, wgpu::Backends::GL];
+
+#[test]
+fn what_is_presented_is_what_x_shows() {
+    let server = Server::start();
+    for backends in BACKENDS {
+        for by_xcb in [false, true] {
+            let window = Window::open(&server, 120, 80);
+            let native = if by_xcb { window.xcb() } else { window.xlib() };
+            let (device, mut surface) = open(&native, backends);
+            assert_eq!(surface.acquire().unwrap_err().status, Status::WrongOrder);
+            surface.configure(&size(120, 80)).unwrap();
+            // Linear 0.5 is 188 when sRGB-encoded (IEC 61966-2-1).
+            show(&device, &mut surface, [1.0, 0.5, 0.0]).unwrap();
+            assert_pixel(&window, 60, 40, [255, 188, 0]);
+            surface.configure(&SurfaceOptions { encoding: SurfaceEncoding::DisplaySrgb, ..size(120, 80) }).unwrap();
+            show(&device, &mut surface, [0.0, 0.5, 1.0]).unwrap();
+            assert_pixel(&window, 60, 40, [0, 128, 255]);
+        }
+    }
+    assert_eq!(X_ERRORS.load(Ordering::SeqCst), 0);
+}
+
+#[test]
+fn a_resized_window_is_filled_again() {
+    let server = Server::start();
+    for backends in BACKENDS {
+        let window = Window::open(&server, 100, 60);
+        let (device, mut surface) = open(&window.xlib(), backends);
+        surface.configure(&SurfaceOptions { pacing: Pacing::Immediate, ..size(100, 60) }).unwrap();
+        show(&device, &mut surface, [1.0, 0.0, 0.0]).unwrap();
+        assert_pixel(&window, 99, 59, [255, 0, 0]);
+        window.resize(300, 200);
+        // The host may hear of the new size before or after the surface does; both orders must do.
+        let mut told = false;
+        for _ in 0..4 {
+            match show(&device, &mut surface, [0.0, 1.0, 0.0]) {
+                Ok(()) => {}
+                Err(e) => {
+                    assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
+                    told = true;
+                }
+            }
+        }
+        // OpenGL stretches or crops without saying so; Vulkan tells.
+        assert!(told || backends == wgpu::Backends::GL, "{backends:?} never said that the window changed");
+        surface.configure(&size(300, 200)).unwrap();
+        assert_eq!(surface.size(), (300, 200));
+        for _ in 0..3 {
+            show(&device, &mut surface, [0.0, 0.0, 1.0]).unwrap();
+        }
+        assert_pixel(&window, 299, 199, [0, 0, 255]);
+        assert_pixel(&window, 0, 0, [0, 0, 255]);
+    }
+    assert_eq!(X_ERRORS.load(Ordering::SeqCst), 0);
+}
+
+#[test]
+fn no_area_and_hidden_are_answers() {
+    let server = Server::start();
+    for backends in BACKENDS {
+        let window = Window::open(&server, 100, 60);
+        let (device, mut surface) = open(&window.xlib(), backends);
+        surface.configure(&size(0, 0)).unwrap();
+        let e = surface.acquire().unwrap_err();
+        assert_eq!(e.status, Status::SurfaceOutdated);
+        assert!(e.message.contains("0 x 0"), "{e}");
+        assert_eq!(surface.present().unwrap_err().status, Status::WrongOrder);
+        surface.configure(&size(100, 60)).unwrap();
+        show(&device, &mut surface, [1.0, 0.0, 0.0]).unwrap();
+        window.unmap();
+        for _ in 0..3 {
+            if let Err(e) = show(&device, &mut surface, [0.0, 1.0, 0.0]) {
+                assert!(matches!(e.status, Status::Pending | Status::SurfaceOutdated), "{backends:?}: {e}");
+            }
+        }
+        window.map();
+        surface.configure(&size(100, 60)).unwrap();
+        show(&device, &mut surface, [0.0, 0.0, 1.0]).unwrap();
+        assert_pixel(&window, 50, 30, [0, 0, 255]);
+        // An image in hand does not stand in the way of a new set-up.
+        surface.acquire().unwrap();
+        surface.configure(&size(100, 60)).unwrap();
+        show(&device, &mut surface, [0.0, 1.0, 0.0]).unwrap();
+        assert_pixel(&window, 50, 30, [0, 255, 0]);
+        let e = surface.configure(&size(1 << 20, 60)).unwrap_err();
+        assert_eq!(e.status, Status::InvalidArgument);
+        assert!(e.message.starts_with("width"), "{e}");
+    }
+    assert_eq!(X_ERRORS.load(Ordering::SeqCst), 0);
+}
+
+#[test]
+fn a_window_that_went_is_an_answer() {
+    let server = Server::start();
+    for backends in BACKENDS {
+        let mut window = Window::open(&server, 100, 60);
+        let other = window.another(50, 50);
+        let (device, mut surface) = open(&window.xlib(), backends);
+        surface.configure(&size(100, 60)).unwrap();
+        show(&device, &mut surface, [1.0, 0.0, 0.0]).unwrap();
+        window.destroy();
+        let mut told = 0;
+        for _ in 0..4 {
+            let drawn = show(&device, &mut surface, [0.0, 1.0, 0.0]);
+            let configured = surface.configure(&size(100, 60));
+            for answer in [drawn, configured] {
+                let Err(e) = answer else { continue };
+                assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
+                told += 1;
+            }
+        }
+        // The software GL driver draws on as if nothing had happened until it is set up again.
+        assert!(told >= 7, "{backends:?}: {told} of 8 answers");
+        drop(surface);
+        // The device is not harmed: another window of its can be drawn to.
+        // SAFETY: the window outlives the surface.
+        let mut surface = unsafe { Surface::new(&device, &other.xlib()).unwrap() };
+        surface.configure(&size(50, 50)).unwrap();
+        show(&device, &mut surface, [0.0, 0.0, 1.0]).unwrap();
+        assert_pixel(&other, 25, 25, [0, 0, 255]);
+        drop(surface);
+
+        let NativeWindow::Xlib { display, screen, .. } = other.xlib() else { unreachable!() };
+        let never = NativeWindow::Xlib { display, screen, window: 0x00ab_cdef };
+        // SAFETY: there is no such window, which is found before a driver looks for it.
+        let e = unsafe { Surface::new(&device, &never) }.expect_err("there is no such window");
+        assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
+        let options = DeviceOptions { backends, ..DeviceOptions::default() };
+        // SAFETY: as above.
+        let e = unsafe { device_for_window(&never, &options) }.err().expect("there is no such window");
+        assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
+    }
+    assert_eq!(X_ERRORS.load(Ordering::SeqCst), 0);
+}
