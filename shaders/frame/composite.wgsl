@@ -1,30 +1,15 @@
 // One pixel of the frame: sky behind, air and fog between, tone on top. Host colour x T + L throughout.
 //!include "common/fullscreen.wgsl"
 //!include "frame/tone.wgsl"
-//!include "frame/uniform.wgsl"
+//!include "frame/veil.wgsl"
 //!include "frame/discs.wgsl"
-//!include "frame/sky_link.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 override TONE: bool = true;
-// Lights that count: 1 the sun, 2 the moon too.
-override LIGHTS: u32 = 1u;
 
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
-
-// Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
-struct Veil {
-    light: vec3f,
-    transmittance: vec3f,
-}
-
-fn local_to(light: FrameLight, d: vec3f) -> vec3f {
-    let horizontal = length(light.direction.xy);
-    let c = select(vec2f(1.0, 0.0), light.direction.xy / horizontal, horizontal > 1e-6);
-    return vec3f(dot(d.xy, c), c.x * d.y - c.y * d.x, d.z);
-}
 
 // Mean luminance of an overcast sky over elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
 fn overcast_gradation(sin_elevation: f32) -> f32 {
@@ -43,18 +28,6 @@ fn sky_behind(d: vec3f) -> vec3f {
         return clear;
     }
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
-}
-
-fn air_between(d: vec3f, distance: f32) -> Veil {
-    var veil = Veil(vec3f(0.0), vec3f(1.0));
-    for (var i = 0u; i < LIGHTS; i++) {
-        let light = frame.lights[i];
-        let air = aerial(i, local_to(light, d), distance);
-        veil.light += light.irradiance * frame.medium_share * air.light;
-        veil.transmittance = air.transmittance;
-    }
-    veil.light += frame.night_floor * (1.0 - veil.transmittance);
-    return veil;
 }
 
 // Display-linear value of scene luminance.

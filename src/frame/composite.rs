@@ -100,6 +100,11 @@ impl Composite {
         self.none_multi.is_some()
     }
 
+    /// Layout of group 0 for targets with one or several samples.
+    pub fn layout(&self, multi: bool) -> &wgpu::BindGroupLayout {
+        if multi { &self.layout_multi } else { &self.layout_single }
+    }
+
     /// The bind group of one view's uniform and one set of host textures.
     pub fn bind(
         &self,
@@ -122,7 +127,7 @@ impl Composite {
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
-            layout: if multi { &self.layout_multi } else { &self.layout_single },
+            layout: self.layout(multi),
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
                 entry(1, &color_view),
@@ -144,7 +149,7 @@ impl Composite {
     ) -> Result<&wgpu::RenderPipeline> {
         if !self.pipelines.contains_key(&variant) {
             let multi = variant.samples > 1;
-            let mut layouts = vec![if multi { &self.layout_multi } else { &self.layout_single }];
+            let mut layouts = vec![self.layout(multi)];
             layouts.extend_from_slice(groups);
             let yes = |b: bool| f64::from(u8::from(b));
             let pipeline = pass::fullscreen(

@@ -4,6 +4,7 @@
 //! that neighbour each other in one call are fused into one full-screen draw.
 
 mod composite;
+mod froxels;
 mod shared;
 mod sky_link;
 mod target;
@@ -11,6 +12,7 @@ pub mod tone;
 mod uniform;
 mod view;
 
+pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};

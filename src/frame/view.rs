@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3};
 use super::{
     Frame, FrameFlags,
     composite::Variant,
+    froxels::{FrameTextures, Froxels},
     shared::Shared,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
     uniform::{FrameUniform, LightUniform},
@@ -49,6 +50,8 @@ pub struct View {
     copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     sky: super::sky_link::ViewSky,
+    froxels: Option<Froxels>,
+    light_scale: f32,
     recorded: Stages,
     report: Report,
 }
@@ -78,6 +81,8 @@ impl View {
             copy: None,
             bound: None,
             sky,
+            froxels: None,
+            light_scale: 0.0,
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
         })
@@ -86,6 +91,20 @@ impl View {
     /// What the last frame took and showed.
     pub fn report(&self) -> &Report {
         &self.report
+    }
+
+    /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
+    /// the first call of this function on.
+    ///
+    /// # Errors
+    /// [`Status::DeviceLost`], or a GPU fault.
+    pub fn frame_textures(&mut self) -> Result<FrameTextures> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let froxels = self.froxels.get_or_insert_with(|| Froxels::new(&device));
+        device.check()?;
+        let (light, through) = (froxels.light.clone(), froxels.through.clone());
+        Ok(FrameTextures { light, through, light_scale: self.light_scale })
     }
 
     /// Records the stages of a frame and submits them: when it returns, the work is on the device's queue.
@@ -220,9 +239,20 @@ impl View {
         let layouts = self.shared.sky_layouts();
         let mut composite = self.shared.composite()?;
         let pipeline = composite.pipeline(&self.device, variant, &layouts)?;
-        let groups = self.sky.groups();
-        crate::gpu::pass::draw(encoder, "composite", pipeline, &[group, groups[0], groups[1]], target);
+        let [sky, fog] = self.sky.groups();
+        let groups = [group, sky, fog];
+        crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
+        drop(composite);
+        self.light_scale = match frame.color_space {
+            ColorSpace::SceneLinear => (1.0 / (exposure * frame.cd_m2_per_unit)) as f32,
+            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
+        };
+        if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
+            let variant = (variant.samples > 1, variant.lights);
+            froxels.draw(&self.device, &self.shared, encoder, variant, &groups)?;
+            self.report.passes += 1;
+        }
         Ok(())
     }
 
@@ -241,7 +271,7 @@ impl View {
             self.copy = Some(color_copy(&self.device.device, color));
             let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
             let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
-            self.report.bytes = self.sky.bytes() + texel * pixels;
+            self.report.bytes = self.sky.bytes() + texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
         }
         let Some(copy) = &self.copy else { return Ok(()) };
         let group = self.shared.composite()?.bind(&self.device, &self.uniform, copy, frame.depth, frame.mask);

@@ -92,11 +92,17 @@ impl Device {
     /// # Errors
     /// [`Status::NoAdapter`] if no driver serves the request.
     pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
-        let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
-        desc.backends = options.backends;
-        desc.flags = wgpu::InstanceFlags::empty();
-        desc.backend_options.noop.enable = options.backends.contains(wgpu::Backends::NOOP);
-        Self::from_instance(wgpu::Instance::new(desc), options, None)
+        // OpenGL is asked last and alone: merely opening it makes some drivers write to the host's terminal.
+        let gl = options.backends & wgpu::Backends::GL;
+        let first = options.backends - gl;
+        let mut answer =
+            Err(Error::range("backends", "at least one native interface", format!("{:?}", options.backends)));
+        for backends in [first, gl] {
+            if answer.is_err() && !backends.is_empty() {
+                answer = Self::from_instance(instance(backends), options, None);
+            }
+        }
+        answer
     }
 
     /// Makes an own device on `instance` that can present to `surface`, if one is given.
@@ -223,6 +229,14 @@ impl Device {
             .map_err(|e| Error::new(Status::DeviceLost, format!("waiting for the GPU failed: {e}")))?;
         self.check()
     }
+}
+
+fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+    let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
+    desc.backends = backends;
+    desc.flags = wgpu::InstanceFlags::empty();
+    desc.backend_options.noop.enable = backends.contains(wgpu::Backends::NOOP);
+    wgpu::Instance::new(desc)
 }
 
 /// The features and limits Welkin asks for: the adapter's own, so that a host's large targets fit.

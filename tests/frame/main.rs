@@ -1,5 +1,6 @@
 //! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
 
+mod froxels;
 mod host;
 mod spaces;
 mod stages;

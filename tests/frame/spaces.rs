@@ -9,7 +9,7 @@ use welkin::{
 
 use crate::host::{Host, SIZE, camera, texture};
 
-const EXPOSURE: f64 = 2e-4;
+pub const EXPOSURE: f64 = 2e-4;
 const WALL_DEPTH: f32 = 5e-5; // 2 km in front of the camera's 0.1 m near plane
 
 fn draw(host: &mut Host, space: ColorSpace, stages: Stages, value: f64) -> Vec<[f32; 4]> {
@@ -25,7 +25,7 @@ fn draw(host: &mut Host, space: ColorSpace, stages: Stages, value: f64) -> Vec<[
 }
 
 /// Light added and transmittance of the wall's pixels, from two scene-linear frames.
-fn veil() -> Vec<([f64; 3], [f64; 3])> {
+pub fn veil() -> Vec<([f64; 3], [f64; 3])> {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
     let black = draw(&mut host, ColorSpace::SceneLinear, Stages::MEDIUM, 0.0);
     let grey = draw(&mut host, ColorSpace::SceneLinear, Stages::MEDIUM, 8192.0);

@@ -1,0 +1,121 @@
+//! The veil of air and fog as textures, for the host's own transparent shaders (glass, lamps, smoke).
+//!
+//! Drawn only for views whose host asked for them. The mapping is that of `shaders/frame/froxels.wgsl` and of the
+//! published snippets.
+
+use std::sync::Arc;
+
+use super::{Shared, target::Stages};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+};
+
+/// Texels of one distance slice, and how many slices lie side by side and above each other.
+const TILE: (u32, u32) = (32, 18);
+const TILES: (u32, u32) = (8, 4);
+
+/// What a host's transparent shader samples; valid until the view is destroyed.
+#[derive(Clone, Debug)]
+pub struct FrameTextures {
+    /// Light that air and fog add, RGB, in units of [`light_scale`](Self::light_scale); for hosts with a tone-mapped
+    /// colour it is tone-mapped and linear.
+    pub light: wgpu::Texture,
+    /// Share of the light behind that gets through, RGB.
+    pub through: wgpu::Texture,
+    /// Multiply `light` by this to have it in units of the host's colour.
+    pub light_scale: f32,
+}
+
+/// WGSL text of the sampling functions; see [`FrameTextures`].
+pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.wgsl");
+/// GLSL 3.30 text of the sampling functions.
+pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
+
+/// The two textures and the pipeline that fills them.
+pub(super) struct Froxels {
+    pub light: wgpu::Texture,
+    pub through: wgpu::Texture,
+    views: [wgpu::TextureView; 2],
+    pipelines: [Option<wgpu::RenderPipeline>; 4],
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+impl Froxels {
+    pub fn new(device: &Device) -> Self {
+        let texture = |label| {
+            device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: TILE.0 * TILES.0, height: TILE.1 * TILES.1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
+        let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
+        Self { light, through, views, pipelines: [const { None }; 4] }
+    }
+
+    pub fn bytes(&self) -> u64 {
+        2 * 8 * u64::from(TILE.0 * TILES.0 * TILE.1 * TILES.1)
+    }
+
+    /// Fills the textures; `groups` are those of the composition.
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        shared: &Shared,
+        encoder: &mut wgpu::CommandEncoder,
+        (multi, lights): (bool, u32),
+        groups: &[&wgpu::BindGroup],
+    ) -> Result<()> {
+        let slot = &mut self.pipelines[usize::from(multi) * 2 + lights as usize - 1];
+        if slot.is_none() {
+            let composite = shared.composite()?;
+            let [sky, fog] = shared.sky_layouts();
+            let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+            let desc = FullscreenDesc {
+                shader: "frame/froxels.wgsl",
+                entry: "froxels",
+                layouts: &[composite.layout(multi), sky, fog],
+                targets: &[target.clone(), target],
+                constants: &[("LIGHTS", f64::from(lights))],
+                samples: 1,
+            };
+            *slot = Some(pass::fullscreen(device, &desc)?);
+        }
+        let Some(pipeline) = slot else { return Ok(()) };
+        let attach = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("froxels"),
+            color_attachments: &[attach(&self.views[0]), attach(&self.views[1])],
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        for (i, group) in groups.iter().enumerate() {
+            pass.set_bind_group(i as u32, *group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+
+    /// The stage after which the textures hold the frame's veil.
+    pub const STAGE: Stages = Stages::MEDIUM;
+}
