@@ -1,0 +1,95 @@
+# What a person types. `make help` lists it. Needs GNU make; every target installs or names what it lacks first.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.DEFAULT_GOAL := help
+
+PREFIX  ?= /usr/local
+DESTDIR ?=
+# release, or dev for a quick build that the tests use.
+PROFILE ?= release
+
+TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
+OUT_DIR    := $(TARGET_DIR)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
+# The library as `make install` lays it out, for the C hosts that are built here.
+STAGE      := $(abspath $(TARGET_DIR))/stage/$(PROFILE)
+
+VERSION   := $(shell sed -n '/^\[package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
+# Grows when a program linked against an older library would no longer run.
+ABI_MAJOR := 1
+
+ifeq ($(shell uname -s),Darwin)
+  SHARED      := libwelkin.dylib
+  SHARED_ABI  := libwelkin.$(ABI_MAJOR).dylib
+  SHARED_FULL := libwelkin.$(VERSION).dylib
+  LINK_NAME   := -C link-arg=-Wl,-install_name,@rpath/$(SHARED_ABI)
+else
+  SHARED      := libwelkin.so
+  SHARED_ABI  := libwelkin.so.$(ABI_MAJOR)
+  SHARED_FULL := libwelkin.so.$(VERSION)
+  LINK_NAME   := -C link-arg=-Wl,-soname,$(SHARED_ABI)
+endif
+
+# cargo-nextest where it is installed; its summary, or cargo test's, is the last thing that `make test` prints.
+NEXTEST  := $(shell cargo nextest --version >/dev/null 2>&1 && echo yes)
+RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test --locked --no-fail-fast --tests)
+
+export PATH := $(PATH):$(HOME)/.cargo/bin
+
+.PHONY: help setup setup-build lib stage install uninstall host demo fmt lint header docs test accept bench gallery
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+setup: ## install what building, testing and the demo need
+	@scripts/setup.sh
+
+setup-build:
+	@scripts/setup.sh build
+
+# Both libraries come from one compilation. What a static link needs beside libwelkin.a is the compiler's to say.
+lib: setup-build ## build the shared and the static library (PROFILE=release)
+	cargo rustc --locked --lib --profile $(PROFILE) --crate-type cdylib,staticlib -- \
+	    $(LINK_NAME) --print native-static-libs=$(abspath $(OUT_DIR))/native-static-libs.txt
+
+install: lib ## install to PREFIX (/usr/local), below DESTDIR if set
+	scripts/install.sh "$(OUT_DIR)" "$(DESTDIR)" "$(PREFIX)" "$(VERSION)" "$(ABI_MAJOR)"
+
+uninstall: ## remove what `make install` put there
+	rm -rf "$(DESTDIR)$(PREFIX)/lib/cmake/welkin"
+	rm -f "$(DESTDIR)$(PREFIX)/lib/"{$(SHARED),$(SHARED_ABI),$(SHARED_FULL),libwelkin.a} \
+	    "$(DESTDIR)$(PREFIX)/lib/pkgconfig/welkin.pc" "$(DESTDIR)$(PREFIX)/include/"{welkin.h,welkin.hpp}
+
+stage: lib
+	@scripts/install.sh "$(OUT_DIR)" "" "$(STAGE)" "$(VERSION)" "$(ABI_MAJOR)" >/dev/null
+
+fmt: ## format the sources
+	cargo fmt
+
+lint: ## formatting and clippy, warnings are errors
+	@cargo fmt --version >/dev/null 2>&1 || { $(call no_tool,rustfmt); exit 0; }; cargo fmt --check
+	@cargo clippy --version >/dev/null 2>&1 || { $(call no_tool,clippy); exit 0; }; \
+	    cargo clippy --locked --all-targets -- -D warnings
+
+# A check that cannot be made is said, and fails where nobody reads along.
+no_tool = echo "lint: $(1) is not installed (rustup component add $(1))" >&2; [ -z "$${CI:-}" ]
+
+header: setup-build ## write include/welkin.h and the ABI lists anew from the sources
+	WELKIN_BLESS=1 cargo test --locked --quiet --test abi_header
+
+# Lint, documentation examples, then every test; the header's drift and the C examples are among the tests.
+test: setup lint ## all checks, at most 25 minutes on two cores from a clean clone
+	$(MAKE) --no-print-directory lib PROFILE=dev
+	cargo test --locked --doc
+	$(RUN_TESTS)
+
+accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90 minutes
+	$(MAKE) --no-print-directory lib PROFILE=release
+	WELKIN_ACCEPT=1 cargo test --locked --release --doc
+	$(MAKE) --no-print-directory bench
+	WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
+
+bench: setup-build ## speed, as ratios measured within one run
+	$(if $(wildcard benches/*.rs benches/*/main.rs),cargo bench --locked --bench '*',@echo "bench: none yet")
