@@ -105,6 +105,18 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUD_LAYER 4
 /** wk_texture_desc */
 #define WK_STRUCT_TYPE_TEXTURE_DESC 5
+/** wk_context_desc */
+#define WK_STRUCT_TYPE_CONTEXT_DESC 6
+/** wk_given_direction */
+#define WK_STRUCT_TYPE_GIVEN_DIRECTION 7
+/** wk_view_desc */
+#define WK_STRUCT_TYPE_VIEW_DESC 8
+/** wk_report */
+#define WK_STRUCT_TYPE_REPORT 9
+/** wk_frame */
+#define WK_STRUCT_TYPE_FRAME 10
+/** wk_own_target */
+#define WK_STRUCT_TYPE_OWN_TARGET 11
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -814,6 +826,473 @@ wk_status wk_cloud_layer_init(wk_cloud_layer *out,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_weather_init(wk_weather *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Contexts
+ *
+ * A wk_context is the weather, the time and the place that all views of a simulator share. It is a function of its
+ * description, its timeline and its time: two contexts that were told the same answer the same, on every machine.
+ *
+ * The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
+ * with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
+ * are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
+ * unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+ * ====================================================================================================
+ */
+
+/** Weather, time and place. Child of a wk_device, parent of views. */
+typedef struct wk_context wk_context;
+
+/** How the host's world lies on the planet. */
+typedef uint32_t wk_world_kind;
+
+/** A plane: up is the same everywhere, altitude is the up coordinate plus the origin's. */
+#define WK_WORLD_FLAT 0
+/** East-north-up at the origin's place, the curved planet below. */
+#define WK_WORLD_TANGENT 1
+/** Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter. */
+#define WK_WORLD_ECEF 2
+
+/** Which of the host's axes point where, in flat and tangent worlds. */
+typedef uint32_t wk_axes;
+
+/** x east, y north, z up. */
+#define WK_AXES_Z_UP 0
+/** x east, y up, z south. */
+#define WK_AXES_Y_UP 1
+
+/** How exposure is chosen: one value for all channels of a simulator, never measured per view. */
+typedef uint32_t wk_exposure_mode;
+
+/** From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20]. */
+#define WK_EXPOSURE_AUTO 0
+/** exposure_value is an exposure value at ISO 100, [-20, 30]: 15 a sunny day, -4 a moonlit night. */
+#define WK_EXPOSURE_EV100 1
+/** exposure_value is display units per cd/m^2, (0, 1e6]. */
+#define WK_EXPOSURE_FACTOR 2
+/** In a wk_frame: as the context says; exposure_value is not used. */
+#define WK_EXPOSURE_OF_CONTEXT 3
+
+/** How exposed luminance becomes display values. */
+typedef uint32_t wk_tone_curve;
+
+/** Clamp. */
+#define WK_TONE_LINEAR 0
+/** 1 - exp(-x) a channel: bright skies never burn out. */
+#define WK_TONE_EXPONENTIAL 1
+/** Hable's filmic curve, white at 11.2. */
+#define WK_TONE_FILMIC 2
+
+/** How to make a context. */
+typedef struct wk_context_desc {
+    /** sizeof(wk_context_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CONTEXT_DESC. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_WORLD_FLAT. */
+    wk_world_kind world_kind;
+    /** Default WK_AXES_Z_UP. */
+    wk_axes axes;
+    /** Where the host's (0, 0, 0) lies: degrees north. Range [-90, 90], default 50. */
+    double latitude_deg;
+    /** Degrees east. Range [-360, 360], default 10. */
+    double longitude_deg;
+    /** Height above mean sea level, m. Range [-1e4, 1e9], default 0. */
+    double altitude_m;
+    /** Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double grid_bearing_deg;
+    /** Seed of everything that chance decides. Default 0. */
+    uint64_t seed;
+    /** A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth. */
+    const char *planet_toml;
+    /** Exposure of frames that bring none. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused here. */
+    wk_exposure_mode exposure_mode;
+    /** Default WK_TONE_EXPONENTIAL. */
+    wk_tone_curve tone_curve;
+    /** See wk_exposure_mode. Default 0. */
+    double exposure_value;
+} wk_context_desc;
+
+/** Every field of `wk_context_desc` at its default. */
+#define WK_CONTEXT_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_context_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_CONTEXT_DESC, \
+    /* next */ NULL, \
+    /* world_kind */ WK_WORLD_FLAT, \
+    /* axes */ WK_AXES_Z_UP, \
+    /* latitude_deg */ 50.0, \
+    /* longitude_deg */ 10.0, \
+    /* altitude_m */ 0.0, \
+    /* grid_bearing_deg */ 0.0, \
+    /* seed */ UINT64_C(0), \
+    /* planet_toml */ NULL, \
+    /* exposure_mode */ WK_EXPOSURE_AUTO, \
+    /* tone_curve */ WK_TONE_EXPONENTIAL, \
+    /* exposure_value */ 0.0 \
+}
+
+/** A direction to a light, given by the host in place of the almanac. */
+typedef struct wk_given_direction {
+    /** sizeof(wk_given_direction) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_GIVEN_DIRECTION. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Degrees clockwise from true north. Range [-360, 360], default 180. */
+    double azimuth_deg;
+    /** Degrees above the horizon, without refraction. Range [-90, 90], default 45. */
+    double elevation_deg;
+} wk_given_direction;
+
+/** Every field of `wk_given_direction` at its default. */
+#define WK_GIVEN_DIRECTION_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_given_direction), \
+    /* struct_type */ WK_STRUCT_TYPE_GIVEN_DIRECTION, \
+    /* next */ NULL, \
+    /* azimuth_deg */ 180.0, \
+    /* elevation_deg */ 45.0 \
+}
+
+/**
+ * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
+ * `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
+ * Thread: exclusive on the device.
+ * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+ */
+WK_API
+wk_status wk_context_create(wk_device *device,
+                            const wk_context_desc *desc,
+                            wk_context **out_context);
+
+/**
+ * Destroys a context. NULL does nothing.
+ * Thread: any; the GPU's part is released at the device's next call if it must be.
+ * Errors: WK_ERROR_IN_USE while it has views.
+ */
+WK_API wk_status wk_context_destroy(wk_context *context);
+
+/**
+ * Puts the sun where the host says; NULL returns it to the almanac.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_sun(wk_context *context, const wk_given_direction *direction);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CONTEXT_DESC_INIT`. `struct_size` is `sizeof(wk_context_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_context_desc_init(wk_context_desc *out,
+                               uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_given_direction_init(wk_given_direction *out,
+                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Frames and targets
+ *
+ * A wk_frame says what the host has drawn and from where: the camera, what the numbers in its depth and colour mean,
+ * and the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
+ *
+ * The camera's position is taken from position_m in double precision; the translation of `view` is ignored. Any
+ * projection serves: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+ *
+ * Depth is read as the projection gives it, z / w mapped to the depth buffer's 0 to 1; with WK_DEPTH_LOGARITHMIC the
+ * host's shaders have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+ *
+ * `target` leads to the images, in the struct of the device's kind: wk_own_target, wk_opengl_target, wk_vulkan_target.
+ * ====================================================================================================
+ */
+
+/** How depth grows with distance. */
+typedef uint32_t wk_depth_kind;
+
+/** As the projection matrix says: perspective (finite or infinite far) or orthographic. */
+#define WK_DEPTH_PROJECTION 0
+/** ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders. */
+#define WK_DEPTH_LOGARITHMIC 1
+
+/** What clip-space z runs over. */
+typedef uint32_t wk_clip_space;
+
+/** 0 to 1: Vulkan, Direct3D, Metal, OpenGL with GL_ZERO_TO_ONE. */
+#define WK_CLIP_ZERO_TO_ONE 0
+/** -1 to 1: OpenGL as it comes. */
+#define WK_CLIP_MINUS_ONE_TO_ONE 1
+
+/** Flags of a frame. */
+typedef uint32_t wk_frame_flags;
+
+/** The camera jumped: nothing of earlier frames may show. */
+#define WK_FRAME_CUT 1
+/** Draw the pure function of (seed, time, view): no history at all. */
+#define WK_FRAME_NO_HISTORY 2
+/** Depth is reversed: 1 is near, 0 is far. */
+#define WK_FRAME_DEPTH_REVERSED 4
+/**
+ * The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
+ * viewport of positive height. Without it the first row lies at clip y = +1.
+ */
+#define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
+
+/** What the numbers in the host's colour mean. */
+typedef uint32_t wk_color_space;
+
+/**
+ * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which TONE may tone-map the picture.
+ */
+#define WK_COLOR_SCENE_LINEAR 0
+/** Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
+#define WK_COLOR_DISPLAY_LINEAR 1
+/** Tone-mapped already and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes. */
+#define WK_COLOR_DISPLAY_SRGB 2
+
+/** One frame of one view. */
+typedef struct wk_frame {
+    /** sizeof(wk_frame) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FRAME. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** The host's frame number: the same in all calls of a frame and on all channels of a simulator. Default 0. */
+    uint64_t frame_id;
+    /** The camera in the host's world, m. Default 0, 0, 0. */
+    double position_m[3];
+    /** World to eye: only its rotation is used. Default identity. */
+    double view[16];
+    /** Eye to clip, invertible. Default identity. */
+    double projection[16];
+    /** Default WK_DEPTH_PROJECTION. */
+    wk_depth_kind depth_kind;
+    /** Default WK_CLIP_ZERO_TO_ONE. */
+    wk_clip_space clip_space;
+    /** C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1. */
+    double logarithmic_c;
+    /**
+     * Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
+     */
+    double logarithmic_far_m;
+    /** Default 0. */
+    wk_frame_flags flags;
+    /** Default WK_COLOR_SCENE_LINEAR. */
+    wk_color_space color_space;
+    /** Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range (0, 1e9], default 1. */
+    double cd_m2_per_unit;
+    /** Default WK_EXPOSURE_OF_CONTEXT. */
+    wk_exposure_mode exposure_mode;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** See wk_exposure_mode. Default 0. */
+    double exposure_value;
+    /**
+     * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
+     */
+    const void *target;
+} wk_frame;
+
+/** Every field of `wk_frame` at its default. */
+#define WK_FRAME_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_frame), \
+    /* struct_type */ WK_STRUCT_TYPE_FRAME, \
+    /* next */ NULL, \
+    /* frame_id */ UINT64_C(0), \
+    /* position_m */ { 0.0, 0.0, 0.0 }, \
+    /* view */ { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0 }, \
+    /* projection */ { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0 }, \
+    /* depth_kind */ WK_DEPTH_PROJECTION, \
+    /* clip_space */ WK_CLIP_ZERO_TO_ONE, \
+    /* logarithmic_c */ 1.0, \
+    /* logarithmic_far_m */ 1e7, \
+    /* flags */ 0, \
+    /* color_space */ WK_COLOR_SCENE_LINEAR, \
+    /* cd_m2_per_unit */ 1.0, \
+    /* exposure_mode */ WK_EXPOSURE_OF_CONTEXT, \
+    /* reserved0 */ 0, \
+    /* exposure_value */ 0.0, \
+    /* target */ NULL \
+}
+
+/** The images of a frame on an own device. */
+typedef struct wk_own_target {
+    /** sizeof(wk_own_target) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_OWN_TARGET. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** What is drawn into. Default NULL. */
+    const wk_texture *color;
+    /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
+    const wk_texture *depth;
+    /** Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL. */
+    const wk_texture *mask;
+} wk_own_target;
+
+/** Every field of `wk_own_target` at its default. */
+#define WK_OWN_TARGET_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_own_target), \
+    /* struct_type */ WK_STRUCT_TYPE_OWN_TARGET, \
+    /* next */ NULL, \
+    /* color */ NULL, \
+    /* depth */ NULL, \
+    /* mask */ NULL \
+}
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FRAME_INIT`. `struct_size` is `sizeof(wk_frame)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_frame_init(wk_frame *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_OWN_TARGET_INIT`. `struct_size` is `sizeof(wk_own_target)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Views
+ *
+ * A wk_view is one camera or projector channel with what it keeps between frames. A host draws opaque things, then
+ * glass and lamps, then the cab, then the HUD; wk_view_record puts Welkin's stages between them:
+ *
+ *   PREPARE     tables and simulation textures; needs no target
+ *   BACKGROUND  the sky behind everything; before or after the opaque things
+ *   SURFACE     what weather does to surfaces; after the opaque things
+ *   MEDIUM      fog and aerial perspective on all that was drawn so far
+ *   PARTICLES   what falls and flies
+ *   LENS        water on the windscreen
+ *   TONE        exposure, tone curve, encoding and dither of the whole picture
+ *
+ * The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
+ * in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
+ * work is submitted to the device's queue, not finished.
+ * ====================================================================================================
+ */
+
+/** One camera or projector channel. Child of a wk_context. */
+typedef struct wk_view wk_view;
+
+/** How to make a view. */
+typedef struct wk_view_desc {
+    /** sizeof(wk_view_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_VIEW_DESC. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+} wk_view_desc;
+
+/** Every field of `wk_view_desc` at its default. */
+#define WK_VIEW_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_view_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_VIEW_DESC, \
+    /* next */ NULL \
+}
+
+/** Which stages a call records. */
+typedef uint32_t wk_stage_flags;
+
+/** Tables and simulation textures; needs no target. */
+#define WK_STAGE_PREPARE 1
+/** Sky behind everything: pixels at the far depth, or all of them where there is no depth. */
+#define WK_STAGE_BACKGROUND 2
+/** What weather does to surfaces; after the host's opaque objects. */
+#define WK_STAGE_SURFACE 4
+/** Fog and aerial perspective on all that the host drew. */
+#define WK_STAGE_MEDIUM 8
+/** What falls and flies. */
+#define WK_STAGE_PARTICLES 16
+/** Water on the windscreen. */
+#define WK_STAGE_LENS 32
+/** Exposure, tone curve, encoding and dither of the whole picture. */
+#define WK_STAGE_TONE 64
+/** Everything in one call. */
+#define WK_STAGE_ALL 127
+
+/** What the last frame of a view took and showed. */
+typedef struct wk_report {
+    /** sizeof(wk_report) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_REPORT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** The host's frame number; UINT64_MAX before the first frame. */
+    uint64_t frame_id;
+    /** Full-screen draws recorded for this frame so far. */
+    uint32_t passes;
+    /** Tables rebuilt for this frame so far; 0 when only the camera turned. */
+    uint32_t tables_rebuilt;
+    /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
+    double exposure;
+    /** Bytes of GPU memory that the view holds for itself. */
+    uint64_t bytes;
+} wk_report;
+
+/** Every field of `wk_report` at its default. */
+#define WK_REPORT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_report), \
+    /* struct_type */ WK_STRUCT_TYPE_REPORT, \
+    /* next */ NULL, \
+    /* frame_id */ UINT64_C(0), \
+    /* passes */ 0, \
+    /* tables_rebuilt */ 0, \
+    /* exposure */ 0.0, \
+    /* bytes */ UINT64_C(0) \
+}
+
+/**
+ * Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
+ * `wk_view_destroy`.
+ * Thread: exclusive on the context.
+ */
+WK_API wk_status wk_view_create(wk_context *context, const wk_view_desc *desc, wk_view **out_view);
+
+/**
+ * Destroys a view. NULL does nothing.
+ * Thread: any; the GPU's part is released at the device's next call if it must be.
+ */
+WK_API wk_status wk_view_destroy(wk_view *view);
+
+/**
+ * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
+ * After an error nothing was drawn by this call.
+ * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
+ * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
+ * the field's name; WK_ERROR_DEVICE_LOST.
+ */
+WK_API wk_status wk_view_record(wk_view *view, const wk_frame *frame, wk_stage_flags stages);
+
+/**
+ * Says what the view's last frame took and showed.
+ * Thread: exclusive on the view.
+ */
+WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_VIEW_DESC_INIT`. `struct_size` is `sizeof(wk_view_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_view_desc_init(wk_view_desc *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_REPORT_INIT`. `struct_size` is `sizeof(wk_report)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -66,6 +66,12 @@ impl Error {
         Self::new(Status::InvalidArgument, format!("{name} must be {accepted}, got {got}"))
     }
 
+    /// The same error with `prefix` before its sentence.
+    #[must_use]
+    pub fn within(self, prefix: &str) -> Self {
+        Self { status: self.status, message: format!("{prefix}{}", self.message) }
+    }
+
     /// A feature that this device, tier or build does not have.
     pub fn unsupported(what: impl Into<String>) -> Self {
         Self::new(Status::Unsupported, what)

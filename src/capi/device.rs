@@ -197,7 +197,7 @@ pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status 
             let object = handles::get::<DeviceObject>("device", device)?;
             object.cell.check_home()?;
             drop(handles::remove::<DeviceObject>("device", device)?);
-            object.cell.release_retired();
+            object.cell.close();
         }
         Ok(Status::Ok)
     })

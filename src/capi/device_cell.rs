@@ -12,6 +12,7 @@ use std::{
 
 use crate::{
     error::{Error, Result, Status},
+    frame::Shared,
     gpu::{Device, Entered},
 };
 
@@ -22,18 +23,41 @@ pub(super) struct DeviceCell {
     /// The thread on which the host's context is current, for devices that have one.
     home: Option<ThreadId>,
     retired: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
+    /// What all contexts of the device share; made with the first of them.
+    shared: Mutex<Option<Arc<Shared>>>,
 }
 
 impl DeviceCell {
     /// `bound_to_thread`: GPU objects may only be released on this thread (an OpenGL host's context).
     pub(super) fn new(gpu: Arc<Device>, bound_to_thread: bool) -> Arc<Self> {
         let home = bound_to_thread.then(|| thread::current().id());
-        Arc::new(Self { gpu, poisoned: AtomicBool::new(false), home, retired: Mutex::default() })
+        Arc::new(Self {
+            gpu,
+            poisoned: AtomicBool::new(false),
+            home,
+            retired: Mutex::default(),
+            shared: Mutex::default(),
+        })
     }
 
     /// The device itself.
     pub(super) fn gpu(&self) -> &Arc<Device> {
         &self.gpu
+    }
+
+    /// Pipelines and tables that the device's contexts share.
+    ///
+    /// # Errors
+    /// Whatever keeps them from being made.
+    pub(super) fn shared(&self) -> Result<Arc<Shared>> {
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(shared) = &*shared {
+            return Ok(shared.clone());
+        }
+        let _entered = self.enter()?;
+        let made = Arc::new(Shared::new(&self.gpu)?);
+        *shared = Some(made.clone());
+        Ok(made)
     }
 
     /// Every later call but destroy is refused.
@@ -70,11 +94,19 @@ impl DeviceCell {
         Err(Error::new(Status::WrongOrder, text))
     }
 
-    /// Releases what waited; for the end of the device.
-    pub(super) fn release_retired(&self) {
+    /// Releases what waited for the host's context.
+    fn release_retired(&self) {
         let waiting = std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner));
         let _entered = self.gpu.enter().ok();
         drop(waiting);
+    }
+
+    /// Releases everything that it holds, at the end of the device.
+    pub(super) fn close(&self) {
+        self.release_retired();
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let _entered = self.gpu.enter().ok();
+        drop(shared);
     }
 
     /// Releases what waited for the host's context, before a call that enters it by itself.

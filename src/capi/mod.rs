@@ -20,6 +20,12 @@ pub mod weather_kinds;
 
 pub mod weather;
 
+pub mod context;
+
+pub mod frame;
+
+pub mod view;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -60,6 +60,18 @@ pub const WK_STRUCT_TYPE_WEATHER: wk_struct_type = 3;
 pub const WK_STRUCT_TYPE_CLOUD_LAYER: wk_struct_type = 4;
 /// wk_texture_desc
 pub const WK_STRUCT_TYPE_TEXTURE_DESC: wk_struct_type = 5;
+/// wk_context_desc
+pub const WK_STRUCT_TYPE_CONTEXT_DESC: wk_struct_type = 6;
+/// wk_given_direction
+pub const WK_STRUCT_TYPE_GIVEN_DIRECTION: wk_struct_type = 7;
+/// wk_view_desc
+pub const WK_STRUCT_TYPE_VIEW_DESC: wk_struct_type = 8;
+/// wk_report
+pub const WK_STRUCT_TYPE_REPORT: wk_struct_type = 9;
+/// wk_frame
+pub const WK_STRUCT_TYPE_FRAME: wk_struct_type = 10;
+/// wk_own_target
+pub const WK_STRUCT_TYPE_OWN_TARGET: wk_struct_type = 11;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -1,0 +1,303 @@
+//! Contexts
+//!
+//! A wk_context is the weather, the time and the place that all views of a simulator share. It is a function of its
+//! description, its timeline and its time: two contexts that were told the same answer the same, on every machine.
+//!
+//! The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
+//! with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
+//! are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are
+//! unit vectors (east, north, up) at the place asked for; azimuths are degrees clockwise from true north.
+
+use std::{
+    ffi::{c_char, c_void},
+    ptr::null,
+    sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard},
+};
+
+use super::{
+    boundary::guard,
+    device::{DeviceObject, wk_device},
+    device_cell::DeviceCell,
+    handles::{self, Object},
+    input::{self, out},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    context::{Context, ContextDesc, GivenDirection},
+    error::{Error, Result, Status},
+    frame::{Exposure, ToneCurve},
+    scene::{Axes, Place, WorldFrame, WorldKind},
+    sky::Planet,
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_context.rs"));
+
+/// Weather, time and place. Child of a wk_device, parent of views.
+pub struct wk_context {
+    _opaque: [u8; 0],
+}
+
+/// How the host's world lies on the planet.
+pub type wk_world_kind = u32;
+/// A plane: up is the same everywhere, altitude is the up coordinate plus the origin's.
+pub const WK_WORLD_FLAT: wk_world_kind = 0;
+/// East-north-up at the origin's place, the curved planet below.
+pub const WK_WORLD_TANGENT: wk_world_kind = 1;
+/// Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter.
+pub const WK_WORLD_ECEF: wk_world_kind = 2;
+
+/// Which of the host's axes point where, in flat and tangent worlds.
+pub type wk_axes = u32;
+/// x east, y north, z up.
+pub const WK_AXES_Z_UP: wk_axes = 0;
+/// x east, y up, z south.
+pub const WK_AXES_Y_UP: wk_axes = 1;
+
+/// How exposure is chosen: one value for all channels of a simulator, never measured per view.
+pub type wk_exposure_mode = u32;
+/// From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20].
+pub const WK_EXPOSURE_AUTO: wk_exposure_mode = 0;
+/// exposure_value is an exposure value at ISO 100, [-20, 30]: 15 a sunny day, -4 a moonlit night.
+pub const WK_EXPOSURE_EV100: wk_exposure_mode = 1;
+/// exposure_value is display units per cd/m^2, (0, 1e6].
+pub const WK_EXPOSURE_FACTOR: wk_exposure_mode = 2;
+/// In a wk_frame: as the context says; exposure_value is not used.
+pub const WK_EXPOSURE_OF_CONTEXT: wk_exposure_mode = 3;
+
+/// How exposed luminance becomes display values.
+pub type wk_tone_curve = u32;
+/// Clamp.
+pub const WK_TONE_LINEAR: wk_tone_curve = 0;
+/// 1 - exp(-x) a channel: bright skies never burn out.
+pub const WK_TONE_EXPONENTIAL: wk_tone_curve = 1;
+/// Hable's filmic curve, white at 11.2.
+pub const WK_TONE_FILMIC: wk_tone_curve = 2;
+
+/// How to make a context.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_context_desc {
+    /// sizeof(wk_context_desc) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CONTEXT_DESC.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Default WK_WORLD_FLAT.
+    pub world_kind: wk_world_kind,
+    /// Default WK_AXES_Z_UP.
+    pub axes: wk_axes,
+    /// Where the host's (0, 0, 0) lies: degrees north. Range [-90, 90], default 50.
+    pub latitude_deg: f64,
+    /// Degrees east. Range [-360, 360], default 10.
+    pub longitude_deg: f64,
+    /// Height above mean sea level, m. Range [-1e4, 1e9], default 0.
+    pub altitude_m: f64,
+    /// Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0.
+    pub grid_bearing_deg: f64,
+    /// Seed of everything that chance decides. Default 0.
+    pub seed: u64,
+    /// A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth.
+    pub planet_toml: *const c_char,
+    /// Exposure of frames that bring none. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused here.
+    pub exposure_mode: wk_exposure_mode,
+    /// Default WK_TONE_EXPONENTIAL.
+    pub tone_curve: wk_tone_curve,
+    /// See wk_exposure_mode. Default 0.
+    pub exposure_value: f64,
+}
+
+impl wk_context_desc {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CONTEXT_DESC,
+        next: null(),
+        world_kind: WK_WORLD_FLAT,
+        axes: WK_AXES_Z_UP,
+        latitude_deg: 50.0,
+        longitude_deg: 10.0,
+        altitude_m: 0.0,
+        grid_bearing_deg: 0.0,
+        seed: 0,
+        planet_toml: null(),
+        exposure_mode: WK_EXPOSURE_AUTO,
+        tone_curve: WK_TONE_EXPONENTIAL,
+        exposure_value: 0.0,
+    };
+}
+
+/// A direction to a light, given by the host in place of the almanac.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_given_direction {
+    /// sizeof(wk_given_direction) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_GIVEN_DIRECTION.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Degrees clockwise from true north. Range [-360, 360], default 180.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon, without refraction. Range [-90, 90], default 45.
+    pub elevation_deg: f64,
+}
+
+impl wk_given_direction {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_GIVEN_DIRECTION,
+        next: null(),
+        azimuth_deg: 180.0,
+        elevation_deg: 45.0,
+    };
+}
+
+/// A context behind the lock that orders its updates and everything that reads it.
+pub(super) struct ContextObject {
+    pub(super) cell: Arc<DeviceCell>,
+    context: RwLock<Context>,
+}
+
+impl ContextObject {
+    pub(super) fn read(&self) -> RwLockReadGuard<'_, Context> {
+        // A panic while it was held has poisoned the device already.
+        self.context.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn write(&self) -> RwLockWriteGuard<'_, Context> {
+        self.context.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Object for ContextObject {
+    type C = wk_context;
+    const KIND: u8 = 2;
+    const NAME: &'static str = "wk_context";
+    fn device(&self) -> Option<&Arc<DeviceCell>> {
+        Some(&self.cell)
+    }
+}
+
+/// An exposure as a context or a frame states it; `None` for WK_EXPOSURE_OF_CONTEXT.
+pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
+    match mode {
+        WK_EXPOSURE_AUTO => Some(Exposure::Auto { compensation_ev: value }),
+        WK_EXPOSURE_EV100 => Some(Exposure::Ev100(value)),
+        WK_EXPOSURE_FACTOR => Some(Exposure::Factor(value)),
+        _ => None,
+    }
+}
+
+/// Names the C field in an error of the Rust side: `latitude_deg must ..` becomes `desc.latitude_deg must ..`.
+pub(super) fn in_struct(param: &str, e: Error) -> Error {
+    let (name, rest) = e.message.split_once(' ').unwrap_or((e.message.as_str(), ""));
+    let name = if name.starts_with("exposure.") { "exposure_value" } else { name };
+    Error::new(e.status, format!("{param}.{name} {rest}"))
+}
+
+/// # Safety
+/// `desc.planet_toml` is NULL or a string.
+unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
+    let kind = match desc.world_kind {
+        WK_WORLD_TANGENT => WorldKind::Tangent,
+        WK_WORLD_ECEF => WorldKind::Ecef,
+        _ => WorldKind::Flat,
+    };
+    let axes = if desc.axes == WK_AXES_Y_UP { Axes::YUp } else { Axes::ZUp };
+    let origin =
+        Place { latitude_deg: desc.latitude_deg, longitude_deg: desc.longitude_deg, altitude_m: desc.altitude_m };
+    let world = WorldFrame { kind, axes, origin, grid_bearing_deg: desc.grid_bearing_deg };
+    world.validate().map_err(|e| in_struct("desc", e))?;
+    // SAFETY: the caller's promise.
+    let planet = match unsafe { input::optional_text("desc.planet_toml", desc.planet_toml)? } {
+        Some(text) => Planet::from_toml(text).map_err(|e| e.within("desc.planet_toml: "))?,
+        None => Planet::earth(),
+    };
+    let exposure = exposure(desc.exposure_mode, desc.exposure_value).ok_or_else(|| {
+        Error::range("desc.exposure_mode", "AUTO, EV100 or FACTOR in a context", "WK_EXPOSURE_OF_CONTEXT")
+    })?;
+    exposure.validate().map_err(|e| in_struct("desc", e))?;
+    let tone = match desc.tone_curve {
+        WK_TONE_LINEAR => ToneCurve::Linear,
+        WK_TONE_FILMIC => ToneCurve::Filmic,
+        _ => ToneCurve::Exponential,
+    };
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone })
+}
+
+/// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
+/// `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
+/// Thread: exclusive on the device.
+/// Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_create(
+    device: *mut wk_device,
+    desc: *const wk_context_desc,
+    out_context: *mut *mut wk_context,
+) -> wk_status {
+    guard("wk_context_create", |call| {
+        let object = call.get::<DeviceObject>("device", device)?;
+        let place = out("out_context", out_context)?;
+        // SAFETY: the caller's promise about `desc`.
+        let desc = unsafe { layout::read_or_default(&"desc", desc)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"desc", desc.next, &[])? };
+        // SAFETY: as above.
+        let description = unsafe { description(&desc)? };
+        let context = Context::new(object.cell.gpu().clone(), object.cell.shared()?, description)?;
+        let context = ContextObject { cell: object.cell.clone(), context: RwLock::new(context) };
+        let handle = handles::insert::<_, DeviceObject>(Arc::new(context), Some(device))?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(handle) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Destroys a context. NULL does nothing.
+/// Thread: any; the GPU's part is released at the device's next call if it must be.
+/// Errors: WK_ERROR_IN_USE while it has views.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_destroy(context: *mut wk_context) -> wk_status {
+    guard("wk_context_destroy", |_| {
+        if !context.is_null() {
+            let object = handles::remove::<ContextObject>("context", context)?;
+            object.cell.clone().retire(object);
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Puts the sun where the host says; NULL returns it to the almanac.
+/// Thread: exclusive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_sun(
+    context: *mut wk_context,
+    direction: *const wk_given_direction,
+) -> wk_status {
+    guard("wk_context_set_sun", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `direction`.
+        let given = unsafe { given_direction("direction", direction)? };
+        object.write().set_sun(given).map_err(|e| renamed("sun.", "direction.", e))?;
+        Ok(Status::Ok)
+    })
+}
+
+/// # Safety
+/// `p` is NULL or a `wk_given_direction`.
+unsafe fn given_direction(param: &str, p: *const wk_given_direction) -> Result<Option<GivenDirection>> {
+    if p.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&param, p)? };
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&param, c.next, &[])? };
+    Ok(Some(GivenDirection { azimuth_deg: c.azimuth_deg, elevation_deg: c.elevation_deg }))
+}
+
+/// Swaps the first part of the parameter's name in a message.
+fn renamed(from: &str, to: &str, e: Error) -> Error {
+    Error::new(e.status, e.message.replacen(from, to, 1))
+}

@@ -1,0 +1,222 @@
+//! Frames and targets
+//!
+//! A wk_frame says what the host has drawn and from where: the camera, what the numbers in its depth and colour mean,
+//! and the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
+//!
+//! The camera's position is taken from position_m in double precision; the translation of `view` is ignored. Any
+//! projection serves: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+//!
+//! Depth is read as the projection gives it, z / w mapped to the depth buffer's 0 to 1; with WK_DEPTH_LOGARITHMIC the
+//! host's shaders have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+//!
+//! `target` leads to the images, in the struct of the device's kind: wk_own_target, wk_opengl_target, wk_vulkan_target.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    context::{self, WK_EXPOSURE_OF_CONTEXT, wk_exposure_mode},
+    layout::{init_struct, struct_size},
+    status::*,
+    texture::wk_texture,
+};
+use crate::{
+    error::{Error, Result},
+    frame::{ColorSpace, Frame, FrameFlags},
+    scene::{Camera, ClipSpace, DepthKind, DepthMapping},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_frame.rs"));
+
+/// How depth grows with distance.
+pub type wk_depth_kind = u32;
+/// As the projection matrix says: perspective (finite or infinite far) or orthographic.
+pub const WK_DEPTH_PROJECTION: wk_depth_kind = 0;
+/// ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders.
+pub const WK_DEPTH_LOGARITHMIC: wk_depth_kind = 1;
+
+/// What clip-space z runs over.
+pub type wk_clip_space = u32;
+/// 0 to 1: Vulkan, Direct3D, Metal, OpenGL with GL_ZERO_TO_ONE.
+pub const WK_CLIP_ZERO_TO_ONE: wk_clip_space = 0;
+/// -1 to 1: OpenGL as it comes.
+pub const WK_CLIP_MINUS_ONE_TO_ONE: wk_clip_space = 1;
+
+/// What the numbers in the host's colour mean.
+pub type wk_color_space = u32;
+/// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which TONE may tone-map the picture.
+pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
+/// Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
+pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
+/// Tone-mapped already and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
+pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
+
+/// Flags of a frame.
+pub type wk_frame_flags = u32;
+/// The camera jumped: nothing of earlier frames may show.
+pub const WK_FRAME_CUT: wk_frame_flags = 1;
+/// Draw the pure function of (seed, time, view): no history at all.
+pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
+/// Depth is reversed: 1 is near, 0 is far.
+pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
+/// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
+/// viewport of positive height. Without it the first row lies at clip y = +1.
+pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
+
+/// One frame of one view.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_frame {
+    /// sizeof(wk_frame) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FRAME.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The host's frame number: the same in all calls of a frame and on all channels of a simulator. Default 0.
+    pub frame_id: u64,
+    /// The camera in the host's world, m. Default 0, 0, 0.
+    pub position_m: [f64; 3],
+    /// World to eye: only its rotation is used. Default identity.
+    pub view: [f64; 16],
+    /// Eye to clip, invertible. Default identity.
+    pub projection: [f64; 16],
+    /// Default WK_DEPTH_PROJECTION.
+    pub depth_kind: wk_depth_kind,
+    /// Default WK_CLIP_ZERO_TO_ONE.
+    pub clip_space: wk_clip_space,
+    /// C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1.
+    pub logarithmic_c: f64,
+    /// Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
+    pub logarithmic_far_m: f64,
+    /// Default 0.
+    pub flags: wk_frame_flags,
+    /// Default WK_COLOR_SCENE_LINEAR.
+    pub color_space: wk_color_space,
+    /// Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range (0, 1e9], default 1.
+    pub cd_m2_per_unit: f64,
+    /// Default WK_EXPOSURE_OF_CONTEXT.
+    pub exposure_mode: wk_exposure_mode,
+    /// Must be 0.
+    pub reserved0: u32,
+    /// See wk_exposure_mode. Default 0.
+    pub exposure_value: f64,
+    /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
+    pub target: *const c_void,
+}
+
+impl wk_frame {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FRAME,
+        next: null(),
+        frame_id: 0,
+        position_m: [0.0, 0.0, 0.0],
+        view: [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        projection: [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        depth_kind: WK_DEPTH_PROJECTION,
+        clip_space: WK_CLIP_ZERO_TO_ONE,
+        logarithmic_c: 1.0,
+        logarithmic_far_m: 1e7,
+        flags: 0,
+        color_space: WK_COLOR_SCENE_LINEAR,
+        cd_m2_per_unit: 1.0,
+        exposure_mode: WK_EXPOSURE_OF_CONTEXT,
+        reserved0: 0,
+        exposure_value: 0.0,
+        target: null(),
+    };
+}
+
+/// The images of a frame on an own device.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_own_target {
+    /// sizeof(wk_own_target) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_OWN_TARGET.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// What is drawn into. Default NULL.
+    pub color: *const wk_texture,
+    /// The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel.
+    pub depth: *const wk_texture,
+    /// Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL.
+    pub mask: *const wk_texture,
+}
+
+impl wk_own_target {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_OWN_TARGET,
+        next: null(),
+        color: null(),
+        depth: null(),
+        mask: null(),
+    };
+}
+
+/// The images of a frame as the Rust side takes them.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Images<'a> {
+    pub(super) color: Option<&'a wgpu::Texture>,
+    pub(super) depth: Option<&'a wgpu::Texture>,
+    pub(super) mask: Option<&'a wgpu::Texture>,
+}
+
+/// A checked C frame with its images, as the Rust side takes it.
+///
+/// # Errors
+/// The first field that is out of range, named as in the header.
+pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) -> Result<Frame<'a>> {
+    let kind = match c.depth_kind {
+        WK_DEPTH_LOGARITHMIC => DepthKind::Logarithmic { c: c.logarithmic_c, far_m: c.logarithmic_far_m },
+        _ if is_orthographic(&c.projection) => DepthKind::Orthographic,
+        _ => DepthKind::Perspective,
+    };
+    let clip = match c.clip_space {
+        WK_CLIP_MINUS_ONE_TO_ONE => ClipSpace::MinusOneToOne,
+        _ => ClipSpace::ZeroToOne,
+    };
+    let depth_mapping = DepthMapping { kind, reversed: c.flags & WK_FRAME_DEPTH_REVERSED != 0, clip };
+    depth_mapping.validate().map_err(|e| field(e, "depth.", ""))?;
+    let camera = Camera {
+        position: DVec3::from_array(c.position_m),
+        view: DMat4::from_cols_array(&c.view),
+        projection: DMat4::from_cols_array(&c.projection),
+    };
+    camera.validate().map_err(|e| field(e, "camera.", ""))?;
+    let exposure = context::exposure(c.exposure_mode, c.exposure_value);
+    if let Some(exposure) = &exposure {
+        exposure.validate().map_err(|e| context::in_struct("frame", e))?;
+    }
+    Ok(Frame {
+        frame_id: c.frame_id,
+        camera,
+        depth_mapping,
+        color: images.color,
+        depth: images.depth,
+        mask: images.mask,
+        color_space: match c.color_space {
+            WK_COLOR_DISPLAY_LINEAR => ColorSpace::DisplayLinear,
+            WK_COLOR_DISPLAY_SRGB => ColorSpace::DisplaySrgb,
+            _ => ColorSpace::SceneLinear,
+        },
+        cd_m2_per_unit: c.cd_m2_per_unit,
+        exposure,
+        origin_bottom_left: bottom_left || c.flags & WK_FRAME_FIRST_ROW_AT_MINUS_Y != 0,
+        flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY)),
+    })
+}
+
+/// A projection whose w does not depend on the point: parallel rays.
+fn is_orthographic(m: &[f64; 16]) -> bool {
+    m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0
+}
+
+/// `camera.view must ..` as C knows it: `frame.view must ..`.
+fn field(e: Error, from: &str, to: &str) -> Error {
+    Error::new(e.status, format!("frame.{}", e.message.replacen(from, to, 1)))
+}

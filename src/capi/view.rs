@@ -1,0 +1,277 @@
+//! Views
+//!
+//! A wk_view is one camera or projector channel with what it keeps between frames. A host draws opaque things, then
+//! glass and lamps, then the cab, then the HUD; wk_view_record puts Welkin's stages between them:
+//!
+//!   PREPARE     tables and simulation textures; needs no target
+//!   BACKGROUND  the sky behind everything; before or after the opaque things
+//!   SURFACE     what weather does to surfaces; after the opaque things
+//!   MEDIUM      fog and aerial perspective on all that was drawn so far
+//!   PARTICLES   what falls and flies
+//!   LENS        water on the windscreen
+//!   TONE        exposure, tone curve, encoding and dither of the whole picture
+//!
+//! The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
+//! in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
+//! work is submitted to the device's queue, not finished.
+
+use std::{
+    ffi::c_void,
+    ptr::null,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use super::{
+    boundary::{Call, guard},
+    context::{ContextObject, wk_context},
+    device_cell::DeviceCell,
+    frame::{self, Images, wk_frame, wk_own_target},
+    handles::{self, Object},
+    input::out,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    texture::{TextureObject, wk_texture},
+};
+use crate::{
+    error::{Error, Result, Status},
+    frame::{Stages, View},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
+
+/// One camera or projector channel. Child of a wk_context.
+pub struct wk_view {
+    _opaque: [u8; 0],
+}
+
+/// Which stages a call records.
+pub type wk_stage_flags = u32;
+/// Tables and simulation textures; needs no target.
+pub const WK_STAGE_PREPARE: wk_stage_flags = 1;
+/// Sky behind everything: pixels at the far depth, or all of them where there is no depth.
+pub const WK_STAGE_BACKGROUND: wk_stage_flags = 2;
+/// What weather does to surfaces; after the host's opaque objects.
+pub const WK_STAGE_SURFACE: wk_stage_flags = 4;
+/// Fog and aerial perspective on all that the host drew.
+pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
+/// What falls and flies.
+pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
+/// Water on the windscreen.
+pub const WK_STAGE_LENS: wk_stage_flags = 32;
+/// Exposure, tone curve, encoding and dither of the whole picture.
+pub const WK_STAGE_TONE: wk_stage_flags = 64;
+/// Everything in one call.
+pub const WK_STAGE_ALL: wk_stage_flags = 127;
+
+/// How to make a view.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_view_desc {
+    /// sizeof(wk_view_desc) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_VIEW_DESC.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+}
+
+impl wk_view_desc {
+    pub(crate) const INIT: Self =
+        Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_VIEW_DESC, next: null() };
+}
+
+/// What the last frame of a view took and showed.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_report {
+    /// sizeof(wk_report) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_REPORT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The host's frame number; UINT64_MAX before the first frame.
+    pub frame_id: u64,
+    /// Full-screen draws recorded for this frame so far.
+    pub passes: u32,
+    /// Tables rebuilt for this frame so far; 0 when only the camera turned.
+    pub tables_rebuilt: u32,
+    /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
+    pub exposure: f64,
+    /// Bytes of GPU memory that the view holds for itself.
+    pub bytes: u64,
+}
+
+impl wk_report {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_REPORT,
+        next: null(),
+        frame_id: 0,
+        passes: 0,
+        tables_rebuilt: 0,
+        exposure: 0.0,
+        bytes: 0,
+    };
+}
+
+/// A view, its context and the lock that makes its calls exclusive.
+pub(super) struct ViewObject {
+    cell: Arc<DeviceCell>,
+    context: Arc<ContextObject>,
+    view: Mutex<View>,
+}
+
+impl ViewObject {
+    fn lock(&self) -> MutexGuard<'_, View> {
+        // A panic while it was held has poisoned the device already.
+        self.view.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Object for ViewObject {
+    type C = wk_view;
+    const KIND: u8 = 3;
+    const NAME: &'static str = "wk_view";
+    fn device(&self) -> Option<&Arc<DeviceCell>> {
+        Some(&self.cell)
+    }
+}
+
+/// Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
+/// `wk_view_destroy`.
+/// Thread: exclusive on the context.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_create(
+    context: *mut wk_context,
+    desc: *const wk_view_desc,
+    out_view: *mut *mut wk_view,
+) -> wk_status {
+    guard("wk_view_create", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let place = out("out_view", out_view)?;
+        // SAFETY: the caller's promise about `desc`.
+        let desc = unsafe { layout::read_or_default(&"desc", desc)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"desc", desc.next, &[])? };
+        object.cell.drain();
+        let view = Mutex::new(View::new(&object.read())?);
+        let view = ViewObject { cell: object.cell.clone(), context: object, view };
+        let handle = handles::insert::<_, ContextObject>(Arc::new(view), Some(context))?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(handle) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Destroys a view. NULL does nothing.
+/// Thread: any; the GPU's part is released at the device's next call if it must be.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
+    guard("wk_view_destroy", |_| {
+        if !view.is_null() {
+            let object = handles::remove::<ViewObject>("view", view)?;
+            object.cell.clone().retire(object);
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
+/// After an error nothing was drawn by this call.
+/// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
+/// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
+/// the field's name; WK_ERROR_DEVICE_LOST.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_record(
+    view: *mut wk_view,
+    frame: *const wk_frame,
+    stages: wk_stage_flags,
+) -> wk_status {
+    guard("wk_view_record", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `frame`.
+        let c = unsafe { layout::read(&"frame", frame)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"frame", c.next, &[])? };
+        layout::WK_STAGE_FLAGS.check(&"stages", stages.into())?;
+        let stages = Stages::from_bits(stages)?;
+        object.cell.drain();
+        // SAFETY: as above.
+        unsafe { record_own(call, &object, &c, stages)? };
+        Ok(Status::Ok)
+    })
+}
+
+/// Records into textures of an own device.
+///
+/// # Safety
+/// `c.target` is NULL or a target struct.
+unsafe fn record_own(call: &mut Call, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
+    let target = c.target.cast::<wk_own_target>();
+    // SAFETY: the caller's promise.
+    let target = unsafe { layout::read_or_default(&"frame.target", target)? };
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&"frame.target", target.next, &[])? };
+    let color = texture(call, object, "frame.target.color", target.color)?;
+    let depth = texture(call, object, "frame.target.depth", target.depth)?;
+    let mask = texture(call, object, "frame.target.mask", target.mask)?;
+    let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
+    let (color, depth, mask) = (get(&color), get(&depth), get(&mask));
+    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref() };
+    let frame = frame::from_c(c, images, false)?;
+    object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+/// A texture of this device, or nothing for NULL.
+fn texture(
+    call: &mut Call,
+    object: &ViewObject,
+    param: &str,
+    handle: *const wk_texture,
+) -> Result<Option<Arc<TextureObject>>> {
+    if handle.is_null() {
+        return Ok(None);
+    }
+    let texture = call.get::<TextureObject>(param, handle)?;
+    if !texture.device().is_some_and(|d| Arc::ptr_eq(d, &object.cell)) {
+        let text = format!("{param} must be a texture of the view's own device, got one of another");
+        return Err(Error::new(Status::BadHandle, text));
+    }
+    call.blame(&object.cell);
+    Ok(Some(texture))
+}
+
+/// Names what the Rust side calls `color` or `cd_m2_per_unit` as the header does.
+fn in_frame(e: Error) -> Error {
+    let starts = |name: &str| e.message.starts_with(name);
+    let prefix = if ["color", "depth", "mask"].iter().any(|n| starts(n)) {
+        "frame.target."
+    } else if ["cd_m2_per_unit"].iter().any(|n| starts(n)) {
+        "frame."
+    } else {
+        ""
+    };
+    Error::new(e.status, format!("{prefix}{}", e.message))
+}
+
+/// Says what the view's last frame took and showed.
+/// Thread: exclusive on the view.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut wk_report) -> wk_status {
+    guard("wk_view_get_report", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `out_report`.
+        let place = unsafe { layout::out_struct(&"out_report", out_report)? };
+        let report = *object.lock().report();
+        place.set(&wk_report {
+            frame_id: report.frame_id,
+            passes: report.passes,
+            tables_rebuilt: report.tables_rebuilt,
+            exposure: report.exposure,
+            bytes: report.bytes,
+            ..wk_report::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
