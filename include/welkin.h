@@ -117,6 +117,18 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FRAME 10
 /** wk_own_target */
 #define WK_STRUCT_TYPE_OWN_TARGET 11
+/** wk_window */
+#define WK_STRUCT_TYPE_WINDOW 12
+/** wk_surface_config */
+#define WK_STRUCT_TYPE_SURFACE_CONFIG 13
+/** wk_vulkan_host_desc */
+#define WK_STRUCT_TYPE_VULKAN_HOST_DESC 14
+/** wk_vulkan_image */
+#define WK_STRUCT_TYPE_VULKAN_IMAGE 15
+/** wk_vulkan_semaphore */
+#define WK_STRUCT_TYPE_VULKAN_SEMAPHORE 16
+/** wk_vulkan_target */
+#define WK_STRUCT_TYPE_VULKAN_TARGET 17
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -402,6 +414,457 @@ wk_status wk_texture_read(wk_texture *texture,
 WK_API
 wk_status wk_texture_desc_init(wk_texture_desc *out,
                                uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Windows
+ *
+ * For hosts without graphics of their own: Welkin presents to a window that the host named by its native handle. The
+ * host makes the window, keeps its event loop, and says when its size changed. Nothing that a window may do is a fault:
+ * resized, hidden, minimised and lost are answers.
+ *
+ *   wk_device_create_for_window, wk_surface_create, wk_surface_configure
+ *   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
+ *   on WK_ERROR_SURFACE_OUTDATED: wk_surface_configure with the window's present size, next frame
+ *   on WK_PENDING: the window shows nothing now; skip the frame
+ * ====================================================================================================
+ */
+
+/** A window to present to. Child of a wk_device. */
+typedef struct wk_surface wk_surface;
+
+/** Window systems. */
+typedef uint32_t wk_window_kind;
+
+/** X11 by Xlib: `display` is the Display*, `id` the Window, `screen` the screen's number. */
+#define WK_WINDOW_XLIB 1
+/** X11 by XCB: `display` is the xcb_connection_t*, `id` the xcb_window_t, `screen` the screen's number. */
+#define WK_WINDOW_XCB 2
+/** Wayland: `display` is the wl_display*, `handle` the wl_surface*. */
+#define WK_WINDOW_WAYLAND 3
+/** Windows: `handle` is the HWND, `display` the HINSTANCE of the module that made the window. */
+#define WK_WINDOW_WIN32 4
+/** macOS: `handle` is the NSView*; all calls on the main thread. */
+#define WK_WINDOW_APPKIT 5
+
+/**
+ * A native window. What its kind does not use is ignored. The window outlives the surface, its connection the device.
+ */
+typedef struct wk_window {
+    /** sizeof(wk_window) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WINDOW. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_WINDOW_XLIB. */
+    wk_window_kind kind;
+    /** X11's screen number. Default 0. */
+    int32_t screen;
+    /** See wk_window_kind. Default NULL. */
+    void *display;
+    /** See wk_window_kind. Default NULL. */
+    void *handle;
+    /** See wk_window_kind. Default 0. */
+    uint64_t id;
+} wk_window;
+
+/** Every field of `wk_window` at its default. */
+#define WK_WINDOW_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_window), \
+    /* struct_type */ WK_STRUCT_TYPE_WINDOW, \
+    /* next */ NULL, \
+    /* kind */ WK_WINDOW_XLIB, \
+    /* screen */ 0, \
+    /* display */ NULL, \
+    /* handle */ NULL, \
+    /* id */ UINT64_C(0) \
+}
+
+/** What the values drawn to a surface mean; give the frame the same color_space. */
+typedef uint32_t wk_surface_encoding;
+
+/** Display-linear: the hardware encodes to sRGB (WK_COLOR_DISPLAY_LINEAR, or TONE from WK_COLOR_SCENE_LINEAR). */
+#define WK_SURFACE_DISPLAY_LINEAR 0
+/** Encoded already (WK_COLOR_DISPLAY_SRGB, or TONE from WK_COLOR_SCENE_LINEAR). */
+#define WK_SURFACE_DISPLAY_SRGB 1
+
+/** When images reach the screen. */
+typedef uint32_t wk_pacing;
+
+/** With the screen's refresh; acquire waits for it. */
+#define WK_PACING_REFRESH 0
+/** As soon as possible; may tear. */
+#define WK_PACING_IMMEDIATE 1
+
+/** How a surface is set up. */
+typedef struct wk_surface_config {
+    /** sizeof(wk_surface_config) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SURFACE_CONFIG. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Width of the window's drawable area, pixels; 0 (the default) while it is minimised. */
+    uint32_t width;
+    /** Height of the window's drawable area, pixels; 0 (the default) while it is minimised. */
+    uint32_t height;
+    /** Default WK_SURFACE_DISPLAY_LINEAR. */
+    wk_surface_encoding encoding;
+    /** Default WK_PACING_REFRESH. */
+    wk_pacing pacing;
+} wk_surface_config;
+
+/** Every field of `wk_surface_config` at its default. */
+#define WK_SURFACE_CONFIG_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_surface_config), \
+    /* struct_type */ WK_STRUCT_TYPE_SURFACE_CONFIG, \
+    /* next */ NULL, \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* encoding */ WK_SURFACE_DISPLAY_LINEAR, \
+    /* pacing */ WK_PACING_REFRESH \
+}
+
+/**
+ * Makes an own device that can present to `window`, and to other windows of the same connection. `desc` NULL means
+ * WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
+ * Thread: any; on macOS the main one. With X11 the host calls XInitThreads first if it uses Xlib from several threads.
+ * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window.
+ */
+WK_API
+wk_status wk_device_create_for_window(const wk_device_desc *desc,
+                                      const wk_window *window,
+                                      wk_device **out_device);
+
+/**
+ * Makes a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
+ * `wk_surface_destroy`.
+ * Thread: exclusive on the device; on macOS the main one.
+ * Errors: WK_ERROR_UNSUPPORTED if the device cannot present to this window.
+ */
+WK_API
+wk_status wk_surface_create(wk_device *device,
+                            const wk_window *window,
+                            wk_surface **out_surface);
+
+/** Destroys a surface; the window stays the host's. NULL does nothing. */
+WK_API wk_status wk_surface_destroy(wk_surface *surface);
+
+/**
+ * Sets a surface up, or up again after its window changed. An image in hand is given back undrawn. With a width or
+ * height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
+ */
+WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_config *config);
+
+/**
+ * Takes the next image to draw into; asked again before `wk_surface_present`, it is the same image.
+ * Thread: exclusive.
+ * Answers WK_PENDING if the window shows nothing now: skip this frame.
+ * Errors: WK_ERROR_SURFACE_OUTDATED: configure again, also while it is minimised.
+ */
+WK_API wk_status wk_surface_acquire(wk_surface *surface);
+
+/**
+ * Shows the image in hand, after the work that was recorded for it.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER if no image was acquired; WK_ERROR_SURFACE_OUTDATED.
+ */
+WK_API wk_status wk_surface_present(wk_surface *surface);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WINDOW_INIT`. `struct_size` is `sizeof(wk_window)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_window_init(wk_window *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SURFACE_CONFIG_INIT`. `struct_size` is `sizeof(wk_surface_config)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_surface_config_init(wk_surface_config *out,
+                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Vulkan hosts
+ *
+ * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits itself: when wk_view_record
+ * returns, its work is on the queue. Vulkan wants a queue used by one thread at a time, so the host stays away from the
+ * queue during Welkin's calls on this device, or passes lock_queue and unlock_queue, which Welkin calls round every
+ * submission; no Welkin function may be called inside them.
+ *
+ * An image is taken over in the layout the host left it in and comes back in the one it asks for. What the host
+ * submitted to the same queue before is waited for without a semaphore, and so is Welkin's work by what the host
+ * submits there afterwards. Semaphores order work with other queues.
+ *
+ * Handles are passed as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
+ * Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
+ * computes. Everything else is used if the host says that it enabled it, and else not.
+ * ====================================================================================================
+ */
+
+/** The host's vkGetInstanceProcAddr. Cast yours to this type: it answers a function pointer, or NULL. */
+typedef void *(*wk_vulkan_get_proc_fn)(void *instance, const char *name);
+
+/** Takes or releases the host's lock on its queue. */
+typedef void (*wk_vulkan_queue_fn)(void *user);
+
+/** The host's Vulkan device. All handles stay the host's and outlive the wk_device. */
+typedef struct wk_vulkan_host_desc {
+    /** sizeof(wk_vulkan_host_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_VULKAN_HOST_DESC. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** vkGetInstanceProcAddr. Default NULL; must be given. */
+    wk_vulkan_get_proc_fn get_instance_proc_addr;
+    /** VkInstance. Default NULL; must be given. */
+    void *instance;
+    /** VkPhysicalDevice. Default NULL; must be given. */
+    void *physical_device;
+    /** VkDevice. Default NULL; must be given. */
+    void *device;
+    /** VkApplicationInfo::apiVersion of the instance; 0 (the default) means 1.0, as in Vulkan. */
+    uint32_t instance_api_version;
+    /** Family of the queue; it must draw and compute. Default 0. */
+    uint32_t queue_family_index;
+    /** Which queue of the family. Default 0. */
+    uint32_t queue_index;
+    /** Number of enabled_instance_extensions. Default 0. */
+    uint32_t instance_extension_count;
+    /** Names of the instance extensions that the host enabled. Default NULL. */
+    const char *const *enabled_instance_extensions;
+    /** Names of the device extensions that the host enabled. Default NULL. */
+    const char *const *enabled_device_extensions;
+    /** Number of enabled_device_extensions. Default 0. */
+    uint32_t device_extension_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * What the host enabled: the VkDeviceCreateInfo it gave to vkCreateDevice, or a chain of VkPhysicalDevice..Features
+     * structs. Read during the call. NULL (the default): no feature is enabled.
+     */
+    const void *enabled_features;
+    /** Takes the host's queue lock; with unlock_queue, or both NULL (the default). */
+    wk_vulkan_queue_fn lock_queue;
+    /** Releases it. */
+    wk_vulkan_queue_fn unlock_queue;
+    /** Handed to both. Default NULL. */
+    void *user;
+} wk_vulkan_host_desc;
+
+/** Every field of `wk_vulkan_host_desc` at its default. */
+#define WK_VULKAN_HOST_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_vulkan_host_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_VULKAN_HOST_DESC, \
+    /* next */ NULL, \
+    /* get_instance_proc_addr */ NULL, \
+    /* instance */ NULL, \
+    /* physical_device */ NULL, \
+    /* device */ NULL, \
+    /* instance_api_version */ 0, \
+    /* queue_family_index */ 0, \
+    /* queue_index */ 0, \
+    /* instance_extension_count */ 0, \
+    /* enabled_instance_extensions */ NULL, \
+    /* enabled_device_extensions */ NULL, \
+    /* device_extension_count */ 0, \
+    /* reserved0 */ 0, \
+    /* enabled_features */ NULL, \
+    /* lock_queue */ NULL, \
+    /* unlock_queue */ NULL, \
+    /* user */ NULL \
+}
+
+/** A host's image, handed over for one wk_view_record. It has one mip level and 1, 2, 4 or 8 samples. */
+typedef struct wk_vulkan_image {
+    /** sizeof(wk_vulkan_image) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_VULKAN_IMAGE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** VkImage. Default 0; must be given. */
+    uint64_t image;
+    /** VkFormat that it was created with. Default 0; must be given. */
+    uint32_t format;
+    /** Pixels. Default 0; must be given. */
+    uint32_t width;
+    /** Pixels. Default 0; must be given. */
+    uint32_t height;
+    /** Samples a pixel. Default 1. */
+    uint32_t samples;
+    /**
+     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
+     */
+    uint32_t usage;
+    /** Array layers that it was created with. Default 1. */
+    uint32_t array_layers;
+    /** Layer that is handed over. Default 0. */
+    uint32_t layer;
+    /** VkImageLayout that the host left it in. Default 0 (UNDEFINED: its content may be dropped; colour only). */
+    uint32_t layout;
+    /** VkImageLayout that the host wants it back in. Default 0; must be given. */
+    uint32_t final_layout;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_vulkan_image;
+
+/** Every field of `wk_vulkan_image` at its default. */
+#define WK_VULKAN_IMAGE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_vulkan_image), \
+    /* struct_type */ WK_STRUCT_TYPE_VULKAN_IMAGE, \
+    /* next */ NULL, \
+    /* image */ UINT64_C(0), \
+    /* format */ 0, \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* samples */ 1, \
+    /* usage */ 0, \
+    /* array_layers */ 1, \
+    /* layer */ 0, \
+    /* layout */ 0, \
+    /* final_layout */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** Kinds of semaphore. */
+typedef uint32_t wk_vulkan_semaphore_kind;
+
+/** Binary. */
+#define WK_VULKAN_SEMAPHORE_BINARY 0
+/** Timeline; needs timelineSemaphore enabled and listed. */
+#define WK_VULKAN_SEMAPHORE_TIMELINE 1
+
+/** A host's semaphore. */
+typedef struct wk_vulkan_semaphore {
+    /** sizeof(wk_vulkan_semaphore) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_VULKAN_SEMAPHORE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** VkSemaphore. Default 0; must be given. */
+    uint64_t semaphore;
+    /** Value to wait for or to signal, of a timeline semaphore. Default 0. */
+    uint64_t value;
+    /** Default WK_VULKAN_SEMAPHORE_BINARY. */
+    wk_vulkan_semaphore_kind kind;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_vulkan_semaphore;
+
+/** Every field of `wk_vulkan_semaphore` at its default. */
+#define WK_VULKAN_SEMAPHORE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_vulkan_semaphore), \
+    /* struct_type */ WK_STRUCT_TYPE_VULKAN_SEMAPHORE, \
+    /* next */ NULL, \
+    /* semaphore */ UINT64_C(0), \
+    /* value */ UINT64_C(0), \
+    /* kind */ WK_VULKAN_SEMAPHORE_BINARY, \
+    /* reserved0 */ 0 \
+}
+
+/** The images of a frame on a host's Vulkan device. */
+typedef struct wk_vulkan_target {
+    /** sizeof(wk_vulkan_target) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_VULKAN_TARGET. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** What is drawn into. Default NULL. */
+    const wk_vulkan_image *color;
+    /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
+    const wk_vulkan_image *depth;
+    /** Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample. Default NULL. */
+    const wk_vulkan_image *mask;
+    /** Waited for before anything is drawn; a binary one must have its signal submitted. At most 16. */
+    const wk_vulkan_semaphore *waits;
+    /** Signalled when all is drawn and the images are in their final layouts. At most 16. */
+    const wk_vulkan_semaphore *signals;
+    /** Number of waits. Default 0. */
+    uint32_t wait_count;
+    /** Bytes from one wait to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
+    uint32_t wait_stride;
+    /** Number of signals. Default 0. */
+    uint32_t signal_count;
+    /** Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
+    uint32_t signal_stride;
+} wk_vulkan_target;
+
+/** Every field of `wk_vulkan_target` at its default. */
+#define WK_VULKAN_TARGET_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_vulkan_target), \
+    /* struct_type */ WK_STRUCT_TYPE_VULKAN_TARGET, \
+    /* next */ NULL, \
+    /* color */ NULL, \
+    /* depth */ NULL, \
+    /* mask */ NULL, \
+    /* waits */ NULL, \
+    /* signals */ NULL, \
+    /* wait_count */ 0, \
+    /* wait_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
+    /* signal_count */ 0, \
+    /* signal_stride */ (uint32_t)sizeof(wk_vulkan_semaphore) \
+}
+
+/**
+ * Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`, to be called before
+ * the host destroys its device; nothing of the host's is ever destroyed.
+ * Thread: any that may use the queue.
+ * Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong; WK_ERROR_UNSUPPORTED what the host's
+ * Vulkan lacks; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+ */
+WK_API
+wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc,
+                                  wk_device **out_device);
+
+/**
+ * Waits until the GPU no longer uses a VkImage and forgets it. Call it before destroying an image that was handed over:
+ * Vulkan may give a new image the old one's number. Not for every frame.
+ * Thread: exclusive on the device.
+ */
+WK_API
+wk_status wk_device_forget_vulkan_image(wk_device *device,
+                                        uint64_t image);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_VULKAN_HOST_DESC_INIT`. `struct_size` is `sizeof(wk_vulkan_host_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_vulkan_host_desc_init(wk_vulkan_host_desc *out,
+                                   uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_VULKAN_IMAGE_INIT`. `struct_size` is `sizeof(wk_vulkan_image)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_vulkan_image_init(wk_vulkan_image *out,
+                               uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_VULKAN_SEMAPHORE_INIT`. `struct_size` is `sizeof(wk_vulkan_semaphore)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_vulkan_semaphore_init(wk_vulkan_semaphore *out,
+                                   uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_VULKAN_TARGET_INIT`. `struct_size` is `sizeof(wk_vulkan_target)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_vulkan_target_init(wk_vulkan_target *out,
+                                uint32_t struct_size);
 
 /*
  * ====================================================================================================
@@ -1133,6 +1596,8 @@ typedef struct wk_own_target {
     const void *next;
     /** What is drawn into. Default NULL. */
     const wk_texture *color;
+    /** Or, where `color` is NULL, the image in hand of a surface. Default NULL. */
+    const wk_surface *surface;
     /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
     const wk_texture *depth;
     /** Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL. */
@@ -1145,6 +1610,7 @@ typedef struct wk_own_target {
     /* struct_type */ WK_STRUCT_TYPE_OWN_TARGET, \
     /* next */ NULL, \
     /* color */ NULL, \
+    /* surface */ NULL, \
     /* depth */ NULL, \
     /* mask */ NULL \
 }

@@ -18,6 +18,7 @@ use super::{
     boundary::guard,
     device_cell::DeviceCell,
     handles::{self, Object},
+    host::Host,
     input::out,
     layout::{self, init_struct, struct_size},
     status::*,
@@ -144,10 +145,10 @@ impl Object for DeviceObject {
 }
 
 /// Enters a new device into the handle table.
-pub(super) fn issue(gpu: Arc<Device>, bound_to_thread: bool) -> Result<*mut wk_device> {
+pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
     let text = |s: &str| CString::new(s.replace('\0', " ")).unwrap_or_default();
     let (adapter_name, driver) = (text(&gpu.caps().adapter_name), text(&gpu.caps().driver));
-    let cell = DeviceCell::new(gpu, bound_to_thread);
+    let cell = DeviceCell::new(gpu, host);
     handles::insert::<_, DeviceObject>(Arc::new(DeviceObject { cell, adapter_name, driver }), None)
 }
 
@@ -163,7 +164,7 @@ pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_devic
         let desc = unsafe { layout::read_or_default(&"desc", desc)? };
         // SAFETY: as above.
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
-        let handle = issue(Device::headless(&options(&desc))?, false)?;
+        let handle = issue(Device::headless(&options(&desc))?, Host::Own)?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };
         Ok(Status::Ok)
@@ -197,7 +198,9 @@ pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status 
             let object = handles::get::<DeviceObject>("device", device)?;
             object.cell.check_home()?;
             drop(handles::remove::<DeviceObject>("device", device)?);
-            object.cell.close();
+            let host = object.cell.close();
+            drop(object);
+            host.close()?;
         }
         Ok(Status::Ok)
     })

@@ -4,12 +4,13 @@
 use std::{
     any::Any,
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, PoisonError, RwLock, RwLockReadGuard,
         atomic::{AtomicBool, Ordering},
     },
     thread::{self, ThreadId},
 };
 
+use super::host::Host;
 use crate::{
     error::{Error, Result, Status},
     frame::Shared,
@@ -19,6 +20,7 @@ use crate::{
 /// A device as the boundary sees it; every child of the device holds one.
 pub(super) struct DeviceCell {
     gpu: Arc<Device>,
+    host: RwLock<Host>,
     poisoned: AtomicBool,
     /// The thread on which the host's context is current, for devices that have one.
     home: Option<ThreadId>,
@@ -28,11 +30,13 @@ pub(super) struct DeviceCell {
 }
 
 impl DeviceCell {
-    /// `bound_to_thread`: GPU objects may only be released on this thread (an OpenGL host's context).
-    pub(super) fn new(gpu: Arc<Device>, bound_to_thread: bool) -> Arc<Self> {
-        let home = bound_to_thread.then(|| thread::current().id());
+    /// A device with its owner.
+    pub(super) fn new(gpu: Arc<Device>, host: Host) -> Arc<Self> {
+        let home = host.is_bound_to_thread().then(|| thread::current().id());
+        let host = RwLock::new(host);
         Arc::new(Self {
             gpu,
+            host,
             poisoned: AtomicBool::new(false),
             home,
             retired: Mutex::default(),
@@ -43,6 +47,11 @@ impl DeviceCell {
     /// The device itself.
     pub(super) fn gpu(&self) -> &Arc<Device> {
         &self.gpu
+    }
+
+    /// Whose device it is.
+    pub(super) fn host(&self) -> RwLockReadGuard<'_, Host> {
+        self.host.read().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Pipelines and tables that the device's contexts share.
@@ -101,12 +110,13 @@ impl DeviceCell {
         drop(waiting);
     }
 
-    /// Releases everything that it holds, at the end of the device.
-    pub(super) fn close(&self) {
+    /// Releases everything that it holds, at the end of the device, and gives the owner back.
+    pub(super) fn close(&self) -> Host {
         self.release_retired();
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();
         let _entered = self.gpu.enter().ok();
         drop(shared);
+        std::mem::replace(&mut *self.host.write().unwrap_or_else(PoisonError::into_inner), Host::Own)
     }
 
     /// Releases what waited for the host's context, before a call that enters it by itself.

@@ -19,6 +19,7 @@ use super::{
     context::{self, WK_EXPOSURE_OF_CONTEXT, wk_exposure_mode},
     layout::{init_struct, struct_size},
     status::*,
+    surface::wk_surface,
     texture::wk_texture,
 };
 use crate::{
@@ -141,6 +142,8 @@ pub struct wk_own_target {
     pub next: *const c_void,
     /// What is drawn into. Default NULL.
     pub color: *const wk_texture,
+    /// Or, where `color` is NULL, the image in hand of a surface. Default NULL.
+    pub surface: *const wk_surface,
     /// The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel.
     pub depth: *const wk_texture,
     /// Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL.
@@ -153,6 +156,7 @@ impl wk_own_target {
         struct_type: WK_STRUCT_TYPE_OWN_TARGET,
         next: null(),
         color: null(),
+        surface: null(),
         depth: null(),
         mask: null(),
     };

@@ -94,23 +94,24 @@ fn check_count(param: &str, count: usize, limit: usize) -> Result<()> {
     Err(Error::range(&format!("{param}'s count"), &format!("at most {limit}"), count))
 }
 
-/// A list of tagged structs, `stride` bytes apart; each is read and checked as `name[i]`.
+/// Reads a list of tagged structs, `stride` bytes apart; each is checked as `name[i]`, and `take` gets it.
 ///
 /// # Safety
 /// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
 ///
 /// # Errors
-/// Too many, a stride that does not fit, or the first wrong field.
-pub(super) unsafe fn list<T: Layout>(
+/// Too many, a stride that does not fit, the first wrong field, or what `take` answers.
+pub(super) unsafe fn each<T: Layout>(
     param: &str,
     p: *const T,
     count: usize,
     stride: usize,
     limit: usize,
-) -> Result<Vec<T>> {
+    take: &mut dyn FnMut(usize, T) -> Result<()>,
+) -> Result<()> {
     check_count(param, count, limit)?;
     if count == 0 {
-        return Ok(Vec::new());
+        return Ok(());
     }
     layout::check_pointer(&param, p)?;
     let align = align_of::<T>();
@@ -118,19 +119,29 @@ pub(super) unsafe fn list<T: Layout>(
         let accepted = format!("sizeof({}) of your header, a multiple of {align}", T::INFO.name);
         return Err(Error::range(&format!("{param}'s stride"), &accepted, stride));
     }
-    (0..count)
-        .map(|i| {
-            let name = format!("{param}[{i}]");
-            // SAFETY: the caller promises `count` structs at this stride.
-            let at = unsafe { p.cast::<u8>().add(i * stride) }.cast::<T>();
-            // SAFETY: `at` points to a struct of the list, which begins with its size.
-            let size = unsafe { at.cast::<u32>().read() } as usize;
-            if size > stride {
-                let accepted = format!("at most the stride, {stride}");
-                return Err(Error::range(&format!("{name}.struct_size"), &accepted, size));
-            }
-            // SAFETY: the caller's promise.
-            unsafe { layout::read(&name, at) }
-        })
-        .collect()
+    for i in 0..count {
+        // SAFETY: the caller promises `count` structs at this stride.
+        let at = unsafe { p.cast::<u8>().add(i * stride) }.cast::<T>();
+        // SAFETY: `at` points to a struct of the list, which begins with its size.
+        let size = unsafe { at.cast::<u32>().read() } as usize;
+        if size > stride {
+            let accepted = format!("at most the stride, {stride}");
+            return Err(Error::range(&format!("{param}[{i}].struct_size"), &accepted, size));
+        }
+        // SAFETY: the caller's promise.
+        let value = unsafe { layout::read(&Indexed(param, i), at)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&Indexed(param, i), layout::head_of(&value).next, &[])? };
+        take(i, value)?;
+    }
+    Ok(())
+}
+
+/// `name[3]`, written only when an error needs it.
+struct Indexed<'a>(&'a str, usize);
+
+impl std::fmt::Display for Indexed<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}[{}]", self.0, self.1)
+    }
 }

@@ -212,11 +212,15 @@ unsafe fn head<T: Layout>(param: &dyn Display, p: *const T) -> Result<usize> {
     Ok(size)
 }
 
+/// The first fields of a tagged struct.
+pub(crate) fn head_of<T: Layout>(value: &T) -> Head {
+    // SAFETY: every tagged struct begins with a head.
+    unsafe { *std::ptr::from_ref(value).cast::<Head>() }
+}
+
 /// The `struct_type` of a tagged struct.
 fn expected_type<T: Layout>() -> u32 {
-    let default = T::DEFAULT;
-    // SAFETY: every tagged struct begins with a head.
-    unsafe { (*(&raw const default).cast::<Head>()).struct_type }
+    head_of(&T::DEFAULT).struct_type
 }
 
 /// A size must end where a field ends, and what lies beyond the fields this version knows must be zero.

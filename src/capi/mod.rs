@@ -16,6 +16,10 @@ pub mod device;
 
 pub mod texture;
 
+pub mod surface;
+
+pub mod vulkan;
+
 pub mod weather_kinds;
 
 pub mod weather;
@@ -29,6 +33,7 @@ pub mod view;
 mod boundary;
 mod device_cell;
 mod handles;
+mod host;
 mod input;
 mod layout;
 mod log_sink;

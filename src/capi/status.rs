@@ -72,6 +72,18 @@ pub const WK_STRUCT_TYPE_REPORT: wk_struct_type = 9;
 pub const WK_STRUCT_TYPE_FRAME: wk_struct_type = 10;
 /// wk_own_target
 pub const WK_STRUCT_TYPE_OWN_TARGET: wk_struct_type = 11;
+/// wk_window
+pub const WK_STRUCT_TYPE_WINDOW: wk_struct_type = 12;
+/// wk_surface_config
+pub const WK_STRUCT_TYPE_SURFACE_CONFIG: wk_struct_type = 13;
+/// wk_vulkan_host_desc
+pub const WK_STRUCT_TYPE_VULKAN_HOST_DESC: wk_struct_type = 14;
+/// wk_vulkan_image
+pub const WK_STRUCT_TYPE_VULKAN_IMAGE: wk_struct_type = 15;
+/// wk_vulkan_semaphore
+pub const WK_STRUCT_TYPE_VULKAN_SEMAPHORE: wk_struct_type = 16;
+/// wk_vulkan_target
+pub const WK_STRUCT_TYPE_VULKAN_TARGET: wk_struct_type = 17;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

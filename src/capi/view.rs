@@ -22,18 +22,18 @@ use std::{
 };
 
 use super::{
-    boundary::{Call, guard},
+    boundary::guard,
     context::{ContextObject, wk_context},
     device_cell::DeviceCell,
-    frame::{self, Images, wk_frame, wk_own_target},
+    frame::wk_frame,
     handles::{self, Object},
+    host,
     input::out,
     layout::{self, init_struct, struct_size},
     status::*,
-    texture::{TextureObject, wk_texture},
 };
 use crate::{
-    error::{Error, Result, Status},
+    error::Status,
     frame::{Stages, View},
 };
 
@@ -117,13 +117,13 @@ impl wk_report {
 
 /// A view, its context and the lock that makes its calls exclusive.
 pub(super) struct ViewObject {
-    cell: Arc<DeviceCell>,
-    context: Arc<ContextObject>,
+    pub(super) cell: Arc<DeviceCell>,
+    pub(super) context: Arc<ContextObject>,
     view: Mutex<View>,
 }
 
 impl ViewObject {
-    fn lock(&self) -> MutexGuard<'_, View> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, View> {
         // A panic while it was held has poisoned the device already.
         self.view.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -198,61 +198,9 @@ pub unsafe extern "C" fn wk_view_record(
         let stages = Stages::from_bits(stages)?;
         object.cell.drain();
         // SAFETY: as above.
-        unsafe { record_own(call, &object, &c, stages)? };
+        unsafe { host::record(call, &object, &c, stages)? };
         Ok(Status::Ok)
     })
-}
-
-/// Records into textures of an own device.
-///
-/// # Safety
-/// `c.target` is NULL or a target struct.
-unsafe fn record_own(call: &mut Call, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
-    let target = c.target.cast::<wk_own_target>();
-    // SAFETY: the caller's promise.
-    let target = unsafe { layout::read_or_default(&"frame.target", target)? };
-    // SAFETY: as above.
-    unsafe { layout::check_chain(&"frame.target", target.next, &[])? };
-    let color = texture(call, object, "frame.target.color", target.color)?;
-    let depth = texture(call, object, "frame.target.depth", target.depth)?;
-    let mask = texture(call, object, "frame.target.mask", target.mask)?;
-    let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
-    let (color, depth, mask) = (get(&color), get(&depth), get(&mask));
-    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref() };
-    let frame = frame::from_c(c, images, false)?;
-    object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
-}
-
-/// A texture of this device, or nothing for NULL.
-fn texture(
-    call: &mut Call,
-    object: &ViewObject,
-    param: &str,
-    handle: *const wk_texture,
-) -> Result<Option<Arc<TextureObject>>> {
-    if handle.is_null() {
-        return Ok(None);
-    }
-    let texture = call.get::<TextureObject>(param, handle)?;
-    if !texture.device().is_some_and(|d| Arc::ptr_eq(d, &object.cell)) {
-        let text = format!("{param} must be a texture of the view's own device, got one of another");
-        return Err(Error::new(Status::BadHandle, text));
-    }
-    call.blame(&object.cell);
-    Ok(Some(texture))
-}
-
-/// Names what the Rust side calls `color` or `cd_m2_per_unit` as the header does.
-fn in_frame(e: Error) -> Error {
-    let starts = |name: &str| e.message.starts_with(name);
-    let prefix = if ["color", "depth", "mask"].iter().any(|n| starts(n)) {
-        "frame.target."
-    } else if ["cd_m2_per_unit"].iter().any(|n| starts(n)) {
-        "frame."
-    } else {
-        ""
-    };
-    Error::new(e.status, format!("{prefix}{}", e.message))
 }
 
 /// Says what the view's last frame took and showed.

@@ -24,14 +24,14 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     // SAFETY: as above.
     unsafe { layout::check_chain(&param, c.next, &[])? };
     let (count, stride) = (c.cloud_count as usize, c.cloud_stride as usize);
-    // SAFETY: as above.
-    let layers = unsafe { input::list(&format!("{param}.clouds"), c.clouds, count, stride, MAX_CLOUD_LAYERS)? };
     let mut weather = fields(&c)?;
-    for (i, layer) in layers.iter().enumerate() {
-        // SAFETY: as above.
-        unsafe { layout::check_chain(&format!("{param}.clouds[{i}]"), layer.next, &[])? };
-        weather.clouds.push(cloud(layer)?);
-    }
+    let mut take = |_: usize, layer: wk_cloud_layer| {
+        weather.clouds.push(cloud(&layer)?);
+        Ok(())
+    };
+    let name = format!("{param}.clouds");
+    // SAFETY: as above.
+    unsafe { input::each(&name, c.clouds, count, stride, MAX_CLOUD_LAYERS, &mut take)? };
     weather.validate().map_err(|e| flat_name(param, e))?;
     Ok(weather)
 }

@@ -1,0 +1,85 @@
+//! Whose device it is, and how a frame's images come in and go back: one file a kind of host.
+
+pub(super) mod own;
+#[cfg_attr(any(target_os = "macos", target_os = "ios"), path = "vulkan_absent.rs")]
+pub(super) mod vulkan;
+
+use std::ffi::c_void;
+
+use super::{boundary::Call, frame::wk_frame, layout, status::wk_struct_type, view::ViewObject};
+use crate::{
+    error::{Error, Result},
+    frame::Stages,
+};
+
+/// What the boundary keeps of a device's owner.
+pub(super) enum Host {
+    /// Welkin's own device.
+    Own,
+    /// The host's Vulkan device.
+    #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+    Vulkan(Box<crate::gpu::vulkan::VulkanHost>),
+}
+
+impl Host {
+    /// Whether GPU objects may only be released on one thread: where a host's context is current.
+    pub(super) fn is_bound_to_thread(&self) -> bool {
+        false
+    }
+
+    /// Gives the host its device back.
+    ///
+    /// # Errors
+    /// Whatever the host should know before it destroys its device.
+    pub(super) fn close(self) -> Result<()> {
+        match self {
+            Self::Own => Ok(()),
+            #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+            Self::Vulkan(host) => host.close(),
+        }
+    }
+}
+
+/// Records a checked frame into the images of the device's kind of host.
+///
+/// # Safety
+/// `frame.target` is NULL or leads to a live target struct.
+///
+/// # Errors
+/// The first wrong field by name, and everything that recording may answer.
+pub(super) unsafe fn record(call: &mut Call, object: &ViewObject, frame: &wk_frame, stages: Stages) -> Result<()> {
+    match &*object.cell.host() {
+        // SAFETY: the caller's promise.
+        Host::Own => unsafe { own::record(call, object, frame, stages) },
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        // SAFETY: the caller's promise.
+        Host::Vulkan(host) => unsafe { vulkan::record(host, object, frame, stages) },
+    }
+}
+
+/// Reads a target struct and checks its chain; NULL gives the default, which has no images.
+///
+/// # Safety
+/// `p` is NULL or leads to a live tagged struct.
+unsafe fn target<T: layout::Layout>(p: *const c_void) -> Result<T> {
+    // SAFETY: the caller's promise.
+    let target = unsafe { layout::read_or_default(&"frame.target", p.cast::<T>())? };
+    let next = layout::head_of(&target).next;
+    let none: [wk_struct_type; 0] = [];
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&"frame.target", next, &none)? };
+    Ok(target)
+}
+
+/// Names what the Rust side calls `color` or `cd_m2_per_unit` as the header does.
+fn in_frame(e: Error) -> Error {
+    let starts = |names: &[&str]| names.iter().any(|n| e.message.starts_with(n));
+    let prefix = if starts(&["color", "depth", "mask"]) {
+        "frame.target."
+    } else if starts(&["cd_m2_per_unit"]) {
+        "frame."
+    } else {
+        ""
+    };
+    e.within(prefix)
+}

@@ -1,0 +1,59 @@
+//! Frames of an own device: its textures, or the image of a window.
+
+use std::sync::Arc;
+
+use super::{in_frame, target};
+use crate::{
+    capi::{
+        boundary::Call,
+        device_cell::DeviceCell,
+        frame::{self, Images, wk_frame, wk_own_target},
+        handles::Object,
+        surface::SurfaceObject,
+        texture::TextureObject,
+        view::ViewObject,
+    },
+    error::{Error, Result, Status},
+    frame::Stages,
+};
+
+/// # Safety
+/// `c.target` is NULL or a live target struct.
+pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let target = unsafe { target::<wk_own_target>(c.target)? };
+    if !target.color.is_null() && !target.surface.is_null() {
+        let text = "frame.target.surface must be NULL where frame.target.color is given";
+        return Err(Error::new(Status::InvalidArgument, text));
+    }
+    let here = &object.cell;
+    let color = of_device::<TextureObject>(call, here, "frame.target.color", target.color)?;
+    let depth = of_device::<TextureObject>(call, here, "frame.target.depth", target.depth)?;
+    let mask = of_device::<TextureObject>(call, here, "frame.target.mask", target.mask)?;
+    let surface = of_device::<SurfaceObject>(call, here, "frame.target.surface", target.surface)?;
+    let window = surface.map(|s| s.lock().acquire()).transpose()?;
+    let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
+    let (color, depth, mask) = (window.or_else(|| get(&color)), get(&depth), get(&mask));
+    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref() };
+    let frame = frame::from_c(c, images, false)?;
+    object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+/// An object of this device, or nothing for NULL.
+fn of_device<T: Object>(
+    call: &mut Call,
+    here: &Arc<DeviceCell>,
+    param: &str,
+    handle: *const T::C,
+) -> Result<Option<Arc<T>>> {
+    if handle.is_null() {
+        return Ok(None);
+    }
+    let found = call.get::<T>(param, handle)?;
+    call.blame(here);
+    if found.device().is_some_and(|d| Arc::ptr_eq(d, here)) {
+        return Ok(Some(found));
+    }
+    let text = format!("{param} must belong to the view's own device, got a {} of another", T::NAME);
+    Err(Error::new(Status::BadHandle, text))
+}

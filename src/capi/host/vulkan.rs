@@ -1,0 +1,201 @@
+//! Frames of a Vulkan host: images taken over and handed back, semaphores waited for and signalled.
+
+use std::ffi::{CStr, c_char, c_void};
+
+use ash::vk::{self, Handle};
+
+use super::{Host, in_frame, target};
+use crate::{
+    capi::{
+        device::{self, wk_device},
+        device_cell::DeviceCell,
+        frame::{self, Images, wk_frame},
+        input, layout,
+        view::ViewObject,
+        vulkan::*,
+    },
+    error::{Error, Result, Status},
+    frame::Stages,
+    gpu::vulkan::{EnabledFeatures, HandOver, HostImage, HostSemaphore, ImageRole, VulkanHost, VulkanHostDesc, adopt},
+};
+
+/// Most extension names in a list; there are about 400 device extensions.
+const MAX_NAMES: usize = 4096;
+/// Most semaphores in a list.
+const MAX_SEMAPHORES: usize = 16;
+
+type GetProc = unsafe extern "system" fn(*mut c_void, *const c_char) -> *mut c_void;
+
+/// # Safety
+/// The header's promises about `wk_vulkan_host_desc`.
+pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_device> {
+    let raw = |p: *mut c_void| p as usize as u64;
+    let (instance_count, device_count) = (c.instance_extension_count as usize, c.device_extension_count as usize);
+    // SAFETY: the caller's promise about the lists.
+    let (instance_names, device_names) = unsafe {
+        (
+            names("desc.enabled_instance_extensions", c.enabled_instance_extensions, instance_count)?,
+            names("desc.enabled_device_extensions", c.enabled_device_extensions, device_count)?,
+        )
+    };
+    // SAFETY: both types take (instance or NULL, name) and answer a function pointer or NULL.
+    let get_proc = |f: GetProc| unsafe { std::mem::transmute::<GetProc, vk::PFN_vkGetInstanceProcAddr>(f) };
+    let desc = VulkanHostDesc {
+        get_instance_proc_addr: c.get_instance_proc_addr.map(get_proc),
+        instance: vk::Instance::from_raw(raw(c.instance)),
+        instance_api_version: c.instance_api_version,
+        enabled_instance_extensions: &instance_names,
+        physical_device: vk::PhysicalDevice::from_raw(raw(c.physical_device)),
+        device: vk::Device::from_raw(raw(c.device)),
+        enabled_device_extensions: &device_names,
+        // SAFETY: the caller's promise about the chain.
+        enabled_features: unsafe { EnabledFeatures::from_chain(c.enabled_features) },
+        queue_family_index: c.queue_family_index,
+        queue_index: c.queue_index,
+        lock_queue: c.lock_queue,
+        unlock_queue: c.unlock_queue,
+        user: c.user,
+        wanted_features: wgpu::Features::empty(),
+    };
+    // SAFETY: the caller's promise about the handles and the queue.
+    let host = unsafe { adopt(&desc) }.map_err(|e| match e.status {
+        Status::InvalidArgument => e.within("desc."),
+        _ => e,
+    })?;
+    device::issue(host.device.clone(), Host::Vulkan(Box::new(host)))
+}
+
+/// # Safety
+/// `p` is NULL or points to `count` strings that live as long as `'a`.
+unsafe fn names<'a>(param: &str, p: *const *const c_char, count: usize) -> Result<Vec<&'a CStr>> {
+    // SAFETY: the caller's promise.
+    let list = unsafe { input::slice(param, p, count, MAX_NAMES)? };
+    let name = |(i, p): (usize, &*const c_char)| {
+        layout::check_pointer(&format_args!("{param}[{i}]"), *p)?;
+        // SAFETY: not NULL, and the caller's promise.
+        Ok(unsafe { CStr::from_ptr(*p) })
+    };
+    list.iter().enumerate().map(name).collect()
+}
+
+pub(in crate::capi) fn forget_image(cell: &DeviceCell, image: u64) -> Result<()> {
+    match &*cell.host() {
+        Host::Vulkan(host) => host.forget_image(vk::Image::from_raw(image)),
+        _ => Err(Error::unsupported("device must be a Vulkan host's")),
+    }
+}
+
+/// An image with the texture that stands for it.
+struct Imported {
+    image: HostImage,
+    role: ImageRole,
+    texture: wgpu::Texture,
+}
+
+/// # Safety
+/// `c.target` is NULL or a live target struct whose images and semaphores are live and truly described.
+pub(in crate::capi) unsafe fn record(
+    host: &VulkanHost,
+    object: &ViewObject,
+    c: &wk_frame,
+    stages: Stages,
+) -> Result<()> {
+    // SAFETY: the caller's promise, for this and what follows.
+    let (color, depth, mask, target) = unsafe {
+        let target = target::<wk_vulkan_target>(c.target)?;
+        (
+            import(host, "frame.target.color", target.color, ImageRole::Colour)?,
+            import(host, "frame.target.depth", target.depth, ImageRole::Depth)?,
+            import(host, "frame.target.mask", target.mask, ImageRole::Sampled)?,
+            target,
+        )
+    };
+    // SAFETY: as above.
+    let (waits, signals) = unsafe {
+        (
+            semaphores("frame.target.waits", target.waits, target.wait_count, target.wait_stride)?,
+            semaphores("frame.target.signals", target.signals, target.signal_count, target.signal_stride)?,
+        )
+    };
+    let images = Images {
+        color: color.as_ref().map(|i| &i.texture),
+        depth: depth.as_ref().map(|i| &i.texture),
+        mask: mask.as_ref().map(|i| &i.texture),
+    };
+    let frame = frame::from_c(c, images, false)?;
+    let gpu = object.cell.gpu();
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
+    let mut view = object.lock();
+    view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
+    let lent: Vec<_> = [&color, &depth, &mask].into_iter().flatten().map(|i| (i.image, i.role, &i.texture)).collect();
+    let over = HandOver { images: &lent, wait: waits.as_slice(), signal: signals.as_slice() };
+    // SAFETY: as above; the queue is used by the header's contract.
+    unsafe { host.submit(encoder, &over) }.map_err(|e| match e.status {
+        Status::InvalidArgument => e.within("frame.target."),
+        _ => e,
+    })
+}
+
+/// # Safety
+/// `p` is NULL or a truly described live image.
+unsafe fn import(
+    host: &VulkanHost,
+    param: &str,
+    p: *const wk_vulkan_image,
+    role: ImageRole,
+) -> Result<Option<Imported>> {
+    if p.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&param, p)? };
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&param, c.next, &[])? };
+    let image = HostImage {
+        image: vk::Image::from_raw(c.image),
+        format: vk::Format::from_raw(c.format as i32),
+        width: c.width,
+        height: c.height,
+        samples: c.samples,
+        usage: vk::ImageUsageFlags::from_raw(c.usage),
+        array_layers: c.array_layers,
+        layer: c.layer,
+        layout: vk::ImageLayout::from_raw(c.layout as i32),
+        final_layout: vk::ImageLayout::from_raw(c.final_layout as i32),
+    };
+    if image.array_layers > 1 {
+        return Err(Error::unsupported(format!("{param}.array_layers above 1: hand over an image of one layer")));
+    }
+    // SAFETY: as above.
+    let texture = unsafe { host.import(param, &image, role)? };
+    Ok(Some(Imported { image, role, texture }))
+}
+
+/// Semaphores on the stack: a frame allocates nothing for them.
+struct Semaphores {
+    list: [HostSemaphore; MAX_SEMAPHORES],
+    count: usize,
+}
+
+impl Semaphores {
+    fn as_slice(&self) -> &[HostSemaphore] {
+        &self.list[..self.count]
+    }
+}
+
+/// # Safety
+/// `p` is NULL or points to `count` structs, `stride` bytes apart.
+unsafe fn semaphores(param: &str, p: *const wk_vulkan_semaphore, count: u32, stride: u32) -> Result<Semaphores> {
+    let none = HostSemaphore { semaphore: vk::Semaphore::null(), value: None };
+    let mut found = Semaphores { list: [none; MAX_SEMAPHORES], count: 0 };
+    let mut take = |i: usize, c: wk_vulkan_semaphore| {
+        let timeline = c.kind == WK_VULKAN_SEMAPHORE_TIMELINE;
+        let value = timeline.then_some(c.value);
+        found.list[i] = HostSemaphore { semaphore: vk::Semaphore::from_raw(c.semaphore), value };
+        found.count = i + 1;
+        Ok(())
+    };
+    // SAFETY: the caller's promise.
+    unsafe { input::each(param, p, count as usize, stride as usize, MAX_SEMAPHORES, &mut take)? };
+    Ok(found)
+}

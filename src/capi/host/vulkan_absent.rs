@@ -1,0 +1,16 @@
+//! Vulkan hosts on Apple's systems, where the graphics interface is Metal: refused by name.
+
+use crate::{
+    capi::{device::wk_device, device_cell::DeviceCell, vulkan::wk_vulkan_host_desc},
+    error::{Error, Result},
+};
+
+/// # Safety
+/// None is needed; as the other systems' function.
+pub(in crate::capi) unsafe fn open(_: &wk_vulkan_host_desc) -> Result<*mut wk_device> {
+    Err(Error::unsupported("Vulkan hosts: on this system the graphics interface is Metal"))
+}
+
+pub(in crate::capi) fn forget_image(_: &DeviceCell, _: u64) -> Result<()> {
+    Err(Error::unsupported("device must be a Vulkan host's"))
+}
