@@ -4,3 +4,4 @@ mod froxels;
 mod host;
 mod spaces;
 mod stages;
+mod threads;
