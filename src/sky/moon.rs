@@ -1,0 +1,267 @@
+//! Where the moon stands, how it is lit, and how much light it gives.
+//!
+//! Position after Meeus, Astronomical Algorithms (2nd ed., 1998), chapter 47, with the leading terms of Chapront's
+//! ELP 2000-82; the terms left out add up to less than 0.01 degrees and 60 km.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::sun::{SunPosition, Utc, sun_position};
+use crate::{error::Result, scene::Place};
+
+/// Astronomical unit, m (IAU 2012).
+const AU_M: f64 = 1.495_978_707e11;
+/// Radius of the moon, m (IAU 2015 mean).
+const MOON_RADIUS_M: f64 = 1.7374e6;
+
+/// Terms in longitude (1e-6 degrees) and distance (1e-3 km): multiples of D, M, M', F, then the amplitudes.
+const LONGITUDE_DISTANCE: [[f64; 6]; 44] = [
+    [0.0, 0.0, 1.0, 0.0, 6_288_774.0, -20_905_355.0],
+    [2.0, 0.0, -1.0, 0.0, 1_274_027.0, -3_699_111.0],
+    [2.0, 0.0, 0.0, 0.0, 658_314.0, -2_955_968.0],
+    [0.0, 0.0, 2.0, 0.0, 213_618.0, -569_925.0],
+    [0.0, 1.0, 0.0, 0.0, -185_116.0, 48_888.0],
+    [0.0, 0.0, 0.0, 2.0, -114_332.0, -3_149.0],
+    [2.0, 0.0, -2.0, 0.0, 58_793.0, 246_158.0],
+    [2.0, -1.0, -1.0, 0.0, 57_066.0, -152_138.0],
+    [2.0, 0.0, 1.0, 0.0, 53_322.0, -170_733.0],
+    [2.0, -1.0, 0.0, 0.0, 45_758.0, -204_586.0],
+    [0.0, 1.0, -1.0, 0.0, -40_923.0, -129_620.0],
+    [1.0, 0.0, 0.0, 0.0, -34_720.0, 108_743.0],
+    [0.0, 1.0, 1.0, 0.0, -30_383.0, 104_755.0],
+    [2.0, 0.0, 0.0, -2.0, 15_327.0, 10_321.0],
+    [0.0, 0.0, 1.0, 2.0, -12_528.0, 0.0],
+    [0.0, 0.0, 1.0, -2.0, 10_980.0, 79_661.0],
+    [4.0, 0.0, -1.0, 0.0, 10_675.0, -34_782.0],
+    [0.0, 0.0, 3.0, 0.0, 10_034.0, -23_210.0],
+    [4.0, 0.0, -2.0, 0.0, 8_548.0, -21_636.0],
+    [2.0, 1.0, -1.0, 0.0, -7_888.0, 24_208.0],
+    [2.0, 1.0, 0.0, 0.0, -6_766.0, 30_824.0],
+    [1.0, 0.0, -1.0, 0.0, -5_163.0, -8_379.0],
+    [1.0, 1.0, 0.0, 0.0, 4_987.0, -16_675.0],
+    [2.0, -1.0, 1.0, 0.0, 4_036.0, -12_831.0],
+    [2.0, 0.0, 2.0, 0.0, 3_994.0, -10_445.0],
+    [4.0, 0.0, 0.0, 0.0, 3_861.0, -11_650.0],
+    [2.0, 0.0, -3.0, 0.0, 3_665.0, 14_403.0],
+    [0.0, 1.0, -2.0, 0.0, -2_689.0, -7_003.0],
+    [2.0, 0.0, -1.0, 2.0, -2_602.0, 0.0],
+    [2.0, -1.0, -2.0, 0.0, 2_390.0, 10_056.0],
+    [1.0, 0.0, 1.0, 0.0, -2_348.0, 6_322.0],
+    [2.0, -2.0, 0.0, 0.0, 2_236.0, -9_884.0],
+    [0.0, 1.0, 2.0, 0.0, -2_120.0, 5_751.0],
+    [0.0, 2.0, 0.0, 0.0, -2_069.0, 0.0],
+    [2.0, -2.0, -1.0, 0.0, 2_048.0, -4_950.0],
+    [2.0, 0.0, 1.0, -2.0, -1_773.0, 4_130.0],
+    [2.0, 0.0, 0.0, 2.0, -1_595.0, 0.0],
+    [4.0, -1.0, -1.0, 0.0, 1_215.0, -3_958.0],
+    [0.0, 0.0, 2.0, 2.0, -1_110.0, 0.0],
+    [3.0, 0.0, -1.0, 0.0, -892.0, 3_258.0],
+    [2.0, 1.0, 1.0, 0.0, -810.0, 2_616.0],
+    [4.0, -1.0, -2.0, 0.0, 759.0, -1_897.0],
+    [0.0, 2.0, -1.0, 0.0, -713.0, -2_117.0],
+    [2.0, 2.0, -1.0, 0.0, -700.0, 2_354.0],
+];
+
+/// Terms in latitude (1e-6 degrees): multiples of D, M, M', F, then the amplitude.
+const LATITUDE: [[f64; 5]; 32] = [
+    [0.0, 0.0, 0.0, 1.0, 5_128_122.0],
+    [0.0, 0.0, 1.0, 1.0, 280_602.0],
+    [0.0, 0.0, 1.0, -1.0, 277_693.0],
+    [2.0, 0.0, 0.0, -1.0, 173_237.0],
+    [2.0, 0.0, -1.0, 1.0, 55_413.0],
+    [2.0, 0.0, -1.0, -1.0, 46_271.0],
+    [2.0, 0.0, 0.0, 1.0, 32_573.0],
+    [0.0, 0.0, 2.0, 1.0, 17_198.0],
+    [2.0, 0.0, 1.0, -1.0, 9_266.0],
+    [0.0, 0.0, 2.0, -1.0, 8_822.0],
+    [2.0, -1.0, 0.0, -1.0, 8_216.0],
+    [2.0, 0.0, -2.0, -1.0, 4_324.0],
+    [2.0, 0.0, 1.0, 1.0, 4_200.0],
+    [2.0, 1.0, 0.0, -1.0, -3_359.0],
+    [2.0, -1.0, -1.0, 1.0, 2_463.0],
+    [2.0, -1.0, 0.0, 1.0, 2_211.0],
+    [2.0, -1.0, -1.0, -1.0, 2_065.0],
+    [0.0, 1.0, -1.0, -1.0, -1_870.0],
+    [4.0, 0.0, -1.0, -1.0, 1_828.0],
+    [0.0, 1.0, 0.0, 1.0, -1_794.0],
+    [0.0, 0.0, 0.0, 3.0, -1_749.0],
+    [0.0, 1.0, -1.0, 1.0, -1_565.0],
+    [1.0, 0.0, 0.0, 1.0, -1_491.0],
+    [0.0, 1.0, 1.0, 1.0, -1_475.0],
+    [0.0, 1.0, 1.0, -1.0, -1_410.0],
+    [0.0, 1.0, 0.0, -1.0, -1_344.0],
+    [1.0, 0.0, 0.0, -1.0, -1_335.0],
+    [0.0, 0.0, 3.0, 1.0, 1_107.0],
+    [4.0, 0.0, 0.0, -1.0, 1_021.0],
+    [4.0, 0.0, -1.0, 1.0, 833.0],
+    [0.0, 0.0, 1.0, -3.0, 777.0],
+    [4.0, 0.0, -2.0, 1.0, 671.0],
+];
+
+/// The moon over a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MoonPosition {
+    /// Towards the moon, (east, north, up), topocentric, without refraction.
+    pub direction: DVec3,
+    /// Degrees clockwise from true north.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon, topocentric, without refraction.
+    pub elevation_deg: f64,
+    /// Distance from the place, m.
+    pub distance_m: f64,
+    /// Angular radius, rad.
+    pub angular_radius: f64,
+    /// Angle sun - moon - observer, rad: 0 full, pi new.
+    pub phase_angle: f64,
+    /// Lit part of the disc, 0 to 1.
+    pub illuminated: f64,
+    /// Unit vector in the plane of the disc towards the middle of the lit limb, (east, north, up).
+    pub bright_limb: DVec3,
+    /// Illuminance above the air on a surface facing the moon, lux.
+    pub illuminance_lux: f64,
+}
+
+/// Ecliptic longitude and latitude of date (rad, nutation not included) and distance (m), from the Earth's centre.
+fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
+    let angle = |c: [f64; 4]| (c[0] + t * (c[1] + t * (c[2] + t * c[3]))).to_radians();
+    let l = angle([218.316_447_7, 481_267.881_234_21, -0.001_578_6, 1.0 / 538_841.0]);
+    let d = angle([297.850_192_1, 445_267.111_403_4, -0.001_881_9, 1.0 / 545_868.0]);
+    let m = angle([357.529_109_2, 35_999.050_290_9, -0.000_153_6, 1.0 / 24_490_000.0]);
+    let mp = angle([134.963_396_4, 477_198.867_505_5, 0.008_741_4, 1.0 / 69_699.0]);
+    let f = angle([93.272_095_0, 483_202.017_523_3, -0.003_653_9, -1.0 / 3_526_000.0]);
+    let [a1, a2, a3] = [(119.75, 131.849), (53.09, 479_264.290), (313.45, 481_266.484)]
+        .map(|(a, b): (f64, f64)| (a + b * t).to_radians());
+    // Terms with the sun's anomaly shrink with the eccentricity of the Earth's orbit.
+    let e = 1.0 - 0.002_516 * t - 0.000_007_4 * t * t;
+    let argument = |c: &[f64]| c[0] * d + c[1] * m + c[2] * mp + c[3] * f;
+    let weight = |c: &[f64]| e.powi(c[1].abs() as i32);
+    let mut longitude = 3958.0 * a1.sin() + 1962.0 * (l - f).sin() + 318.0 * a2.sin();
+    let mut latitude =
+        -2235.0 * l.sin() + 382.0 * a3.sin() + 175.0 * ((a1 - f).sin() + (a1 + f).sin()) + 127.0 * (l - mp).sin()
+            - 115.0 * (l + mp).sin();
+    let mut distance = 0.0;
+    for c in &LONGITUDE_DISTANCE {
+        longitude += c[4] * weight(c) * argument(c).sin();
+        distance += c[5] * weight(c) * argument(c).cos();
+    }
+    for c in &LATITUDE {
+        latitude += c[4] * weight(c) * argument(c).sin();
+    }
+    (
+        (l + (longitude * 1e-6).to_radians()).rem_euclid(TAU),
+        (latitude * 1e-6).to_radians(),
+        (385_000.56 + distance * 1e-3) * 1e3,
+    )
+}
+
+/// Nutation in longitude and true obliquity of the ecliptic, rad (Meeus chapter 22, the two leading terms: 0.5").
+fn nutation_obliquity(t: f64) -> (f64, f64) {
+    let node = (125.04452 - 1934.136_261 * t).to_radians();
+    let sun = (280.4665 + 36_000.7698 * t).to_radians();
+    let arc_seconds = -17.20 * node.sin() - 1.32 * (2.0 * sun).sin();
+    let obliquity = 23.439_291_1 - 0.013_004_2 * t + (9.20 * node.cos() + 0.57 * (2.0 * sun).cos()) / 3600.0;
+    ((arc_seconds / 3600.0).to_radians(), obliquity.to_radians())
+}
+
+/// Apparent sidereal time at Greenwich, rad (Meeus eq. 12.4 with the equation of the equinoxes).
+fn sidereal_time(utc: Utc, nutation: f64, obliquity: f64) -> f64 {
+    let days = utc.julian_date() - 2_451_545.0;
+    let t = days / 36_525.0;
+    let mean = 280.460_618_37 + 360.985_647_366_29 * days + t * t * (0.000_387_933 - t / 38_710_000.0);
+    (mean.rem_euclid(360.0)).to_radians() + nutation * obliquity.cos()
+}
+
+/// The moon over `place` at `utc`, to 0.01 degrees.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] for a place or time out of range.
+pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
+    let sun = sun_position(utc, place)?;
+    let t = utc.julian_centuries_tt();
+    let (longitude, latitude, distance) = geocentric_ecliptic(t);
+    let (nutation, obliquity) = nutation_obliquity(t);
+    let (sb, cb) = latitude.sin_cos();
+    let (sl, cl) = (longitude + nutation).sin_cos();
+    let ecliptic = DVec3::new(cl * cb, sl * cb, sb) * distance;
+    let equatorial = glam::DMat3::from_rotation_x(obliquity) * ecliptic;
+    let fixed = glam::DMat3::from_rotation_z(-sidereal_time(utc, nutation, obliquity)) * equatorial;
+    let seen = enu_of(place) * (fixed - place.to_ecef());
+    Ok(lit(seen, &sun))
+}
+
+fn enu_of(place: &Place) -> glam::DMat3 {
+    let frame = crate::scene::WorldFrame { kind: crate::scene::WorldKind::Ecef, ..Default::default() };
+    frame.frame_at(place.to_ecef()).world_to_enu
+}
+
+fn lit(seen: DVec3, sun: &SunPosition) -> MoonPosition {
+    let direction = seen.normalize();
+    let distance_m = seen.length();
+    let to_sun = sun.direction * sun.distance_au * AU_M - seen;
+    let phase_angle = to_sun.angle_between(-seen);
+    let in_disc = to_sun - direction * to_sun.dot(direction);
+    let azimuth = direction.x.atan2(direction.y).to_degrees().rem_euclid(360.0);
+    MoonPosition {
+        direction,
+        azimuth_deg: azimuth,
+        elevation_deg: direction.z.asin().to_degrees(),
+        distance_m,
+        angular_radius: (MOON_RADIUS_M / distance_m).asin(),
+        phase_angle,
+        illuminated: 0.5 * (1.0 + phase_angle.cos()),
+        bright_limb: in_disc.normalize_or(direction.any_orthonormal_vector()),
+        illuminance_lux: moon_illuminance_lux(phase_angle, distance_m),
+    }
+}
+
+/// Illuminance by the moon above the air, lux: V = -12.73 + 0.026 |a| + 4e-9 a^4 with a the phase angle in degrees
+/// (Krisciunas & Schaefer 1991, eq. 9 with Allen's magnitude of the full moon), at the mean distance; a lux is
+/// -14.18 magnitudes.
+pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
+    let a = phase_angle.abs().to_degrees();
+    let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);
+    10f64.powf(-0.4 * (magnitude + 14.18)) * (384.4e6 / distance_m).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meeus_example_47a() {
+        // 1992-04-12 0h TD: longitude 133.162655, latitude -3.229126 degrees, distance 368409.7 km.
+        let t = -0.077_221_081_451;
+        let (l, b, r) = geocentric_ecliptic(t);
+        assert!((l.to_degrees() - 133.162_655).abs() < 0.005, "{}", l.to_degrees());
+        assert!((b.to_degrees() + 3.229_126).abs() < 0.005, "{}", b.to_degrees());
+        assert!((r / 1e3 - 368_409.7).abs() < 60.0, "{}", r / 1e3);
+    }
+
+    #[test]
+    fn the_moons_place_and_phase_agree_with_another_almanac() {
+        // Computed with XEphem's libastro, topocentric, pressure 0:
+        // (utc, latitude, longitude, azimuth, elevation, lit percent).
+        let cases = include!("testdata/moon.in");
+        for (unix, latitude_deg, longitude_deg, azimuth, elevation, percent) in cases {
+            let place = Place { latitude_deg, longitude_deg, altitude_m: 0.0 };
+            let moon = moon_position(Utc(unix), &place).unwrap();
+            let apart = moon.direction.angle_between(super::super::sun::direction(azimuth, elevation)).to_degrees();
+            assert!(apart < 0.02, "{unix}: {moon:?} is {apart} degrees from {azimuth} {elevation}");
+            // That almanac's phase is the one at the Earth's centre: up to 0.95 degrees of parallax, 0.8 %.
+            assert!((moon.illuminated * 100.0 - percent).abs() < 0.9, "{moon:?} {percent}");
+        }
+    }
+
+    #[test]
+    fn the_lit_limb_faces_the_sun_and_the_full_moon_gives_a_quarter_lux() {
+        let place = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
+        for day in 0..60 {
+            let utc = Utc(1.7e9 + 86_400.0 * f64::from(day));
+            let (moon, sun) = (moon_position(utc, &place).unwrap(), sun_position(utc, &place).unwrap());
+            assert!(moon.bright_limb.dot(sun.direction) > 0.0 && moon.bright_limb.dot(moon.direction).abs() < 1e-9);
+        }
+        assert!((moon_illuminance_lux(0.0, 384.4e6) - 0.263).abs() < 0.01);
+        assert!(moon_illuminance_lux(3.1, 384.4e6) < 1e-3);
+    }
+}
