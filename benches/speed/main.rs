@@ -1,4 +1,4 @@
-//! Benchmarks that print ratios from one run: `make bench` (release).
+//! Benchmarks that print ratios measured within one run: `make bench`.
 
 mod record;
 
