@@ -45,3 +45,18 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
 pub fn panic_in_next_call() {
     super::boundary::panic_in_next_call();
 }
+
+/// Every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes wide.
+pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
+    let mut found = Vec::new();
+    for s in STRUCTS {
+        for f in s.fields.iter().skip(3) {
+            match f.kind {
+                Kind::Enum(info) => found.push((s.name, f.name, f.offset, info.wide)),
+                Kind::U32 if f.name.starts_with("reserved") => found.push((s.name, f.name, f.offset, false)),
+                _ => {}
+            }
+        }
+    }
+    found
+}

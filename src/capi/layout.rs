@@ -234,7 +234,8 @@ unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &Stru
             format!("sizeof({}), which is {} (start from {}_INIT)", info.name, info.size, info.name.to_uppercase());
         Err(Error::range(&format!("{param}.struct_size"), &accepted, got))
     };
-    if size < size_of::<Head>() || size > MAX_STRUCT_BYTES {
+    let later = size > info.size && !size.is_multiple_of(info.align);
+    if size < size_of::<Head>() || size > MAX_STRUCT_BYTES || later {
         return refuse(size);
     }
     if size <= info.size {

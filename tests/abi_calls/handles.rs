@@ -1,0 +1,139 @@
+//! NULL, dead, foreign and wrong-kind handles in every handle parameter.
+
+use std::collections::BTreeSet;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, view::*, vulkan::*};
+
+use super::world::{World, init, message, next_frame};
+
+/// A call with a handle in one parameter and everything else valid or not reached.
+struct Case {
+    function: &'static str,
+    parameter: &'static str,
+    /// NULL means "nothing" there and is not an error.
+    null_is_fine: bool,
+    call: Box<dyn Fn(*mut c_void) -> wk_status>,
+}
+
+fn case(
+    function: &'static str,
+    parameter: &'static str,
+    null_is_fine: bool,
+    call: impl Fn(*mut c_void) -> wk_status + 'static,
+) -> Case {
+    Case { function, parameter, null_is_fine, call: Box::new(call) }
+}
+
+/// One line a function. Outputs are NULL where the handle is checked first.
+fn cases(view: *mut wk_view) -> Vec<Case> {
+    // SAFETY, for all: the handle is what is tested; other pointers are NULL or live.
+    vec![
+        case("wk_device_destroy", "device", true, |h| unsafe { wk_device_destroy(h.cast()) }),
+        case("wk_device_get_status", "device", false, |h| unsafe { wk_device_get_status(h.cast()) }),
+        case("wk_device_get_caps", "device", false, |h| unsafe { wk_device_get_caps(h.cast(), null_mut()) }),
+        case("wk_device_forget_vulkan_image", "device", false, |h| unsafe {
+            wk_device_forget_vulkan_image(h.cast(), 1)
+        }),
+        case("wk_texture_create", "device", false, |h| unsafe { wk_texture_create(h.cast(), null(), null_mut()) }),
+        case("wk_texture_destroy", "texture", true, |h| unsafe { wk_texture_destroy(h.cast()) }),
+        case("wk_texture_write", "texture", false, |h| unsafe { wk_texture_write(h.cast(), null(), 0, 0) }),
+        case("wk_texture_read", "texture", false, |h| unsafe { wk_texture_read(h.cast(), null_mut(), 0, 0) }),
+        case("wk_surface_create", "device", false, |h| unsafe { wk_surface_create(h.cast(), null(), null_mut()) }),
+        case("wk_surface_destroy", "surface", true, |h| unsafe { wk_surface_destroy(h.cast()) }),
+        case("wk_surface_configure", "surface", false, |h| unsafe { wk_surface_configure(h.cast(), null()) }),
+        case("wk_surface_acquire", "surface", false, |h| unsafe { wk_surface_acquire(h.cast()) }),
+        case("wk_surface_present", "surface", false, |h| unsafe { wk_surface_present(h.cast()) }),
+        case("wk_context_create", "device", false, |h| unsafe { wk_context_create(h.cast(), null(), null_mut()) }),
+        case("wk_context_destroy", "context", true, |h| unsafe { wk_context_destroy(h.cast()) }),
+        case("wk_context_set_sun", "context", false, |h| unsafe { wk_context_set_sun(h.cast(), null()) }),
+        case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
+        case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
+        case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
+        case("wk_view_get_report", "view", false, |h| unsafe { wk_view_get_report(h.cast(), null_mut()) }),
+        case("wk_view_record", "frame.target.color", true, move |h| record(view, |t| t.color = h.cast())),
+        case("wk_view_record", "frame.target.depth", true, move |h| record(view, |t| t.depth = h.cast())),
+        case("wk_view_record", "frame.target.mask", true, move |h| record(view, |t| t.mask = h.cast())),
+        case("wk_view_record", "frame.target.surface", true, move |h| record(view, |t| t.surface = h.cast())),
+    ]
+}
+
+/// Records PREPARE with one handle of the target set.
+fn record(view: *mut wk_view, set: impl Fn(&mut wk_own_target)) -> wk_status {
+    let mut target = init::<wk_own_target>("wk_own_target");
+    set(&mut target);
+    let frame = wk_frame { frame_id: next_frame(), target: (&raw const target).cast(), ..init("wk_frame") };
+    // SAFETY: live pointers.
+    unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }
+}
+
+#[test]
+fn wrong_handles_are_named_and_never_followed() {
+    let world = World::new();
+    let dead = {
+        let other = World::new();
+        [other.device.cast::<c_void>(), other.context.cast(), other.view.cast(), other.texture.cast()]
+    };
+    let live: [(&str, *mut c_void); 4] = [
+        ("wk_device", world.device.cast()),
+        ("wk_context", world.context.cast()),
+        ("wk_view", world.view.cast()),
+        ("wk_texture", world.texture.cast()),
+    ];
+    let on_stack = [0_u64; 4];
+    for case in cases(world.view) {
+        let mut bad: Vec<(String, *mut c_void)> = vec![
+            ("an address".into(), (&raw const on_stack).cast_mut().cast()),
+            ("an odd number".into(), 0x55 as *mut c_void),
+            ("all bits".into(), usize::MAX as *mut c_void),
+        ];
+        bad.extend(dead.iter().map(|&h| ("dead".to_owned(), h)));
+        // `device` takes a wk_device, `frame.target.color` a wk_texture.
+        let noun = case.parameter.rsplit('.').next().expect("a name");
+        let own = match noun {
+            "color" | "depth" | "mask" => "wk_texture".to_owned(),
+            other => format!("wk_{other}"),
+        };
+        bad.extend(live.iter().filter(|l| l.0 != own).map(|l| (l.0.to_owned(), l.1)));
+        if !case.null_is_fine {
+            bad.push(("NULL".into(), null_mut()));
+        }
+        for (what, handle) in bad {
+            let status = (case.call)(handle);
+            let text = message();
+            let named = format!("{}: {} must be a live {own}", case.function, case.parameter);
+            assert_eq!(status, WK_ERROR_BAD_HANDLE, "{} with {what}: {text}", case.function);
+            assert!(text.starts_with(&named), "{} with {what}: {text}", case.function);
+        }
+        if case.null_is_fine {
+            assert_eq!((case.call)(null_mut()), WK_OK, "{} with NULL: {}", case.function, message());
+        }
+    }
+}
+
+/// Functions that take no handle.
+const WITHOUT: &[&str] = &[
+    "wk_status_name",
+    "wk_last_error_message",
+    "wk_version",
+    "wk_set_log_callback",
+    "wk_device_create",
+    "wk_device_create_for_window",
+    "wk_device_create_vulkan",
+];
+
+#[test]
+fn every_function_is_in_the_table() {
+    let covered: BTreeSet<&str> = cases(null_mut()).iter().map(|c| c.function).chain(WITHOUT.iter().copied()).collect();
+    let all: BTreeSet<&str> = abi::functions().iter().copied().filter(|f| !f.ends_with("_init")).collect();
+    assert_eq!(all.difference(&covered).collect::<Vec<_>>(), Vec::<&&str>::new(), "functions without a line");
+}
+
+#[test]
+fn a_texture_of_another_device_is_refused() {
+    let (world, other) = (World::new(), World::new());
+    let status = record(world.view, |t| t.color = other.texture);
+    assert_eq!(status, WK_ERROR_BAD_HANDLE);
+    assert!(message().contains("frame.target.color must belong to the view's own device"), "{}", message());
+}

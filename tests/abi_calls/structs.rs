@@ -1,0 +1,257 @@
+//! Every input struct: each float NaN and infinite, each enumeration unknown, each reserved field set, sizes of other
+//! versions, foreign types and extensions. The table of fields comes from the library; C's own view of it is checked
+//! elsewhere.
+
+use std::collections::BTreeSet;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, view::*, vulkan::*};
+
+use super::world::{Bytes, World, init, message, next_frame};
+
+/// A call that reads the struct at the pointer before it does anything else.
+struct Case {
+    structure: &'static str,
+    parameter: &'static str,
+    null_is_default: bool,
+    call: Box<dyn Fn(*mut c_void) -> wk_status>,
+}
+
+fn case(
+    structure: &'static str,
+    parameter: &'static str,
+    null_is_default: bool,
+    call: impl Fn(*mut c_void) -> wk_status + 'static,
+) -> Case {
+    Case { structure, parameter, null_is_default, call: Box::new(call) }
+}
+
+fn cases(world: &World) -> Vec<Case> {
+    let (device, context, view) = (world.device, world.context, world.view);
+    // SAFETY, for all: the struct is what is tested, other pointers are live.
+    vec![
+        case("wk_device_desc", "desc", true, |p| {
+            let mut out = null_mut();
+            let status = unsafe { wk_device_create(p.cast(), &mut out) };
+            kept(status, out);
+            unsafe { wk_device_destroy(out) };
+            status
+        }),
+        case("wk_texture_desc", "desc", false, move |p| {
+            let mut out = null_mut();
+            let status = unsafe { wk_texture_create(device, p.cast(), &mut out) };
+            kept(status, out);
+            unsafe { wk_texture_destroy(out) };
+            status
+        }),
+        case("wk_context_desc", "desc", true, move |p| {
+            let mut out = null_mut();
+            let status = unsafe { wk_context_create(device, p.cast(), &mut out) };
+            kept(status, out);
+            unsafe { wk_context_destroy(out) };
+            status
+        }),
+        case("wk_given_direction", "direction", true, move |p| unsafe { wk_context_set_sun(context, p.cast()) }),
+        case("wk_view_desc", "desc", true, move |p| {
+            let mut out = null_mut();
+            let status = unsafe { wk_view_create(context, p.cast(), &mut out) };
+            kept(status, out);
+            unsafe { wk_view_destroy(out) };
+            status
+        }),
+        case("wk_frame", "frame", false, move |p| {
+            // Each call is a frame of its own; whoever tests frame_id's bytes finds them as they were.
+            let at = p.cast::<wk_frame>();
+            let status = unsafe { wk_view_record(view, at, WK_STAGE_PREPARE) };
+            if status == WK_ERROR_WRONG_ORDER {
+                unsafe { record_again(view) };
+                return unsafe { wk_view_record(view, at, WK_STAGE_PREPARE) };
+            }
+            status
+        }),
+        case("wk_own_target", "frame.target", true, move |p| {
+            let frame = wk_frame { frame_id: next_frame(), target: p, ..init("wk_frame") };
+            unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }
+        }),
+        case("wk_report", "out_report", false, move |p| unsafe { wk_view_get_report(view, p.cast()) }),
+        case("wk_caps", "out_caps", false, move |p| unsafe { wk_device_get_caps(device, p.cast()) }),
+        case("wk_window", "window", false, |p| unsafe {
+            wk_device_create_for_window(null(), p.cast(), &mut null_mut())
+        }),
+        case("wk_vulkan_host_desc", "desc", false, |p| unsafe { wk_device_create_vulkan(p.cast(), &mut null_mut()) }),
+    ]
+}
+
+/// Structs that need a live window or a Vulkan host: their own tests reach them.
+const ELSEWHERE: &[&str] = &[
+    "wk_surface_config",
+    "wk_vulkan_image",
+    "wk_vulkan_semaphore",
+    "wk_vulkan_target",
+    "wk_weather",
+    "wk_cloud_layer",
+];
+
+/// Records a frame of another number, after which every number but that begins a new frame.
+unsafe fn record_again(view: *mut wk_view) {
+    let frame = wk_frame { frame_id: next_frame() + 1, ..init("wk_frame") };
+    assert_eq!(unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }, WK_OK, "{}", message());
+}
+
+/// A failed create leaves its out-parameter alone.
+fn kept<T>(status: wk_status, out: *mut T) {
+    assert_eq!(status == WK_OK, !out.is_null(), "{}", message());
+}
+
+/// Calls with changed bytes and expects a refusal that begins with the function's view of the parameter.
+fn refused(case: &Case, what: &str, bytes: &mut Bytes, names: &str, status: wk_status) {
+    let before = bytes.words().to_vec();
+    let got = (case.call)(bytes.ptr());
+    let text = message();
+    assert_eq!(got, status, "{} {what}: {text}", case.structure);
+    assert!(text.contains(names), "{} {what}: {names:?} is not in {text:?}", case.structure);
+    assert_eq!(before, bytes.words(), "{} {what}: something was written", case.structure);
+}
+
+#[test]
+fn every_struct_has_a_line() {
+    let world = World::new();
+    let covered: BTreeSet<&str> = cases(&world).iter().map(|c| c.structure).chain(ELSEWHERE.iter().copied()).collect();
+    let all: BTreeSet<&str> = abi::structs().iter().map(|s| s.0).collect();
+    assert_eq!(all.difference(&covered).collect::<Vec<_>>(), Vec::<&&str>::new(), "structs without a line");
+}
+
+#[test]
+fn floats_that_are_no_numbers_are_named() {
+    let world = World::new();
+    let mut tried = 0;
+    for case in cases(&world).iter().filter(|c| !c.parameter.starts_with("out_")) {
+        for (_, field, offset, wide, count) in abi::floats().into_iter().filter(|f| f.0 == case.structure) {
+            for i in 0..count {
+                let name = if count > 1 { format!("{field}[{i}]") } else { field.to_owned() };
+                let name = format!("{}.{name} must be finite, got", case.parameter);
+                for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    let mut bytes = Bytes::of(case.structure, 0);
+                    if wide {
+                        bytes.put(offset + 8 * i, bad);
+                    } else {
+                        bytes.put(offset + 4 * i, bad as f32);
+                    }
+                    refused(case, "float", &mut bytes, &name, WK_ERROR_INVALID_ARGUMENT);
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 100, "{tried}");
+}
+
+#[test]
+fn unknown_constants_and_reserved_fields_are_named() {
+    let world = World::new();
+    for case in cases(&world).iter().filter(|c| !c.parameter.starts_with("out_")) {
+        for (_, field, offset, wide) in abi::constants().into_iter().filter(|f| f.0 == case.structure) {
+            let mut bytes = Bytes::of(case.structure, 0);
+            if wide {
+                bytes.put(offset, 1_u64 << 63);
+            } else {
+                bytes.put(offset, 0x8000_0000_u32);
+            }
+            let name = format!("{}.{field} must be", case.parameter);
+            refused(case, field, &mut bytes, &name, WK_ERROR_INVALID_ARGUMENT);
+        }
+    }
+}
+
+#[test]
+fn sizes_of_other_versions_are_understood_or_refused() {
+    let world = World::new();
+    for case in &cases(&world) {
+        let plain = (case.call)(Bytes::of(case.structure, 0).ptr());
+        let name = format!("{}.struct_size must be sizeof({})", case.parameter, case.structure);
+        for wrong in [0_u32, 1, 8, 17, 1 << 20] {
+            let mut bytes = Bytes::of(case.structure, 64);
+            bytes.put(0, wrong);
+            refused(case, "size", &mut bytes, &name, WK_ERROR_INVALID_ARGUMENT);
+        }
+        // A later version whose new fields are zero is as before; one that is not zero asks for something unknown.
+        let mut later = Bytes::of(case.structure, 64);
+        later.put(0, (later.size + 32) as u32);
+        let size = later.size;
+        assert_eq!((case.call)(later.ptr()), plain, "{} later: {}", case.structure, message());
+        let mut later = Bytes::of(case.structure, 64);
+        later.put(0, (size + 32) as u32);
+        later.put(size + 24, 1_u8);
+        let beyond = format!("{} has a field beyond", case.parameter);
+        refused(case, "later", &mut later, &beyond, WK_ERROR_UNSUPPORTED);
+        // An earlier version ends at an earlier field; what it lacks has its default.
+        let fields = abi::structs().into_iter().find(|s| s.0 == case.structure).expect("known").3;
+        for (field, offset, _) in fields.iter().skip(3) {
+            let mut earlier = Bytes::of(case.structure, 0);
+            earlier.put(0, *offset as u32);
+            assert_eq!((case.call)(earlier.ptr()), plain, "{} up to {field}: {}", case.structure, message());
+        }
+    }
+}
+
+#[test]
+fn foreign_structs_and_extensions_are_refused() {
+    let world = World::new();
+    for case in &cases(&world) {
+        let mut bytes = Bytes::of(case.structure, 0);
+        bytes.put(4, 999_u32);
+        let name = format!("{}.struct_type must be WK_STRUCT_TYPE_", case.parameter);
+        refused(case, "type", &mut bytes, &name, WK_ERROR_INVALID_ARGUMENT);
+        let mut extension = Bytes::of("wk_view_desc", 0);
+        let mut bytes = Bytes::of(case.structure, 0);
+        bytes.put(8, extension.ptr());
+        let name = format!("{}.next holds an extension of type", case.parameter);
+        refused(case, "extension", &mut bytes, &name, WK_ERROR_UNSUPPORTED);
+        let mut bytes = Bytes::of(case.structure, 8);
+        // SAFETY: inside the words.
+        let odd = unsafe { bytes.ptr().cast::<u8>().add(1) }.cast();
+        assert_eq!((case.call)(odd), WK_ERROR_INVALID_ARGUMENT);
+        let name = format!("{} must be aligned to 8 bytes", case.parameter);
+        assert!(message().contains(&name), "{}", message());
+        if !case.null_is_default {
+            assert_eq!((case.call)(null_mut()), WK_ERROR_INVALID_ARGUMENT, "{}", case.structure);
+            let name = format!("{} must not be NULL", case.parameter);
+            assert!(message().contains(&name), "{}", message());
+        }
+    }
+}
+
+#[test]
+fn missing_places_for_answers_are_named() {
+    let world = World::new();
+    let t = init::<wk_texture_desc>("wk_texture_desc");
+    // SAFETY: live pointers and NULL.
+    let answers = unsafe {
+        [
+            ("out_device", wk_device_create(null(), null_mut()), message()),
+            ("out_device", wk_device_create_for_window(null(), null(), null_mut()), message()),
+            ("out_device", wk_device_create_vulkan(null(), null_mut()), message()),
+            ("out_texture", wk_texture_create(world.device, &t, null_mut()), message()),
+            ("out_surface", wk_surface_create(world.device, null(), null_mut()), message()),
+            ("out_context", wk_context_create(world.device, null(), null_mut()), message()),
+            ("out_view", wk_view_create(world.context, null(), null_mut()), message()),
+        ]
+    };
+    for (name, status, text) in answers {
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{name}: {text}");
+        assert!(text.contains(&format!(": {name} must not be NULL")), "{name}: {text}");
+    }
+}
+
+#[test]
+fn stages_are_checked() {
+    let world = World::new();
+    let frame = init::<wk_frame>("wk_frame");
+    for bad in [0_u32, 128, u32::MAX] {
+        // SAFETY: live pointers.
+        let status = unsafe { wk_view_record(world.view, &frame, bad) };
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{bad:#x}");
+        assert!(message().contains("stages must be"), "{}", message());
+    }
+}
