@@ -1,1 +1,317 @@
 //! Visibility and fog drawn into the host's picture from its depth.
+//!
+//! # Model
+//! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
+//! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No. 8,
+//! 2018, chapter 9). Air, tall haze and precipitation have their own rooms; what they leave ([`ExtinctionBudget`]) is a
+//! **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially
+//! ([`Profile::Exponential`]), on a flat or curved planet.
+//!
+//! * Transmittance along a ray is closed form: path lengths between the layer's altitudes on a sphere
+//!   ([`reference::layer_path`]), exact to f32.
+//! * Light: the layer is lit by the direct sun and the sky above and the ground below. Multiple scattering is the
+//!   delta-Eddington solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame
+//!   ([`light`]); the first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated
+//!   along the pixel's ray in closed form. So fog conserves energy: it neither glows nor blackens, is bright at noon,
+//!   brighter toward a low sun, dark at night, and everything far away converges to the same radiance, ground or sky.
+//! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
+//!   distance) are [`Law::Linear`] and its siblings.
+//!
+//! # Cost
+//! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
+//! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral.
+//!
+//! # What it needs of others
+//! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude and up at the
+//! camera. Extinctions of air, haze and precipitation at the station.
+
+pub mod laws;
+pub mod light;
+pub mod phase;
+pub mod queries;
+pub mod reference;
+mod uniforms;
+
+use glam::DVec3;
+
+use crate::error::{Error, Result, check_range};
+
+pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
+pub use queries::{
+    extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between, vertical_visibility_m,
+    visibility_between_m,
+};
+pub use reference::{FogModel, FogSample};
+pub use uniforms::FogUniform;
+
+/// Contrast left at the meteorological optical range (WMO-No. 8).
+pub const CONTRAST_THRESHOLD: f64 = 0.05;
+
+/// Total extinction at 550 nm, 1/m, of a visibility, m: -ln(0.05)/V (Koschmieder 1924 with the WMO threshold).
+pub fn koschmieder_extinction_per_m(visibility_m: f64) -> f64 {
+    -CONTRAST_THRESHOLD.ln() / visibility_m
+}
+
+/// Visibility, m, of a total extinction at 550 nm, 1/m; infinite for none. The inverse of
+/// [`koschmieder_extinction_per_m`].
+pub fn koschmieder_visibility_m(extinction_per_m: f64) -> f64 {
+    -CONTRAST_THRESHOLD.ln() / extinction_per_m
+}
+
+/// Who takes how much of the extinction that a reported visibility stands for. All at 550 nm and station height, 1/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtinctionBudget {
+    /// Molecules.
+    pub rayleigh_per_m: f64,
+    /// Haze reaching to kilometres, drawn by the sky's tables.
+    pub tall_aerosol_per_m: f64,
+    /// Rain, snow, hail: drawn as particles.
+    pub precipitation_per_m: f64,
+    /// What is left for the low layer.
+    pub layer_per_m: f64,
+}
+
+impl ExtinctionBudget {
+    /// Splits the total of `visibility_m` (\[1, 1e6\] m) so that nothing is counted twice: the layer takes what the
+    /// others leave, and nothing if they already exceed it (then the air is as clear as it can be).
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn new(
+        visibility_m: f64,
+        rayleigh_per_m: f64,
+        tall_aerosol_per_m: f64,
+        precipitation_per_m: f64,
+    ) -> Result<Self> {
+        check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
+        for (name, v) in [
+            ("rayleigh_per_m", rayleigh_per_m),
+            ("tall_aerosol_per_m", tall_aerosol_per_m),
+            ("precipitation_per_m", precipitation_per_m),
+        ] {
+            check_range(name, v, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
+        }
+        let others = rayleigh_per_m + tall_aerosol_per_m + precipitation_per_m;
+        let layer_per_m = (koschmieder_extinction_per_m(visibility_m) - others).max(0.0);
+        Ok(Self { rayleigh_per_m, tall_aerosol_per_m, precipitation_per_m, layer_per_m })
+    }
+
+    /// Sum of all parts, 1/m.
+    pub fn total_per_m(&self) -> f64 {
+        self.rayleigh_per_m + self.tall_aerosol_per_m + self.precipitation_per_m + self.layer_per_m
+    }
+}
+
+/// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
+pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
+
+/// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Profile {
+    /// Constant between base and top with linear flanks, so that the optical depth has no kink.
+    Slab {
+        /// Where the lower flank is half-way, m; far below the ground for fog that lies on it.
+        base_m: f64,
+        /// Where the upper flank is half-way, m.
+        top_m: f64,
+        /// Height of the lower flank, m, \[0, 1e4\].
+        base_softness_m: f64,
+        /// Height of the upper flank, m, \[0, 1e4\].
+        top_softness_m: f64,
+    },
+    /// Falls as exp(-(h - reference)/scale); not cut off above or below.
+    Exponential {
+        /// Altitude at which the extinction has its stated value, m.
+        reference_m: f64,
+        /// Scale height, m, \[1, 1e5\].
+        scale_height_m: f64,
+    },
+}
+
+/// How the layer's particles scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// Water droplets of this mean diameter, micrometres, \[5, 50\] (Jendersie and d'Eon 2023); fog has 10 to 25.
+    Droplets {
+        /// Mean diameter, micrometres.
+        diameter_um: f64,
+    },
+    /// Henyey and Greenstein (1941) with asymmetry g, \[-0.95, 0.95\]; haze and dust have 0.6 to 0.75.
+    HenyeyGreenstein {
+        /// Mean cosine of the scattering angle.
+        g: f64,
+    },
+}
+
+/// Horizontal patches (METAR BCFG): the extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern of
+/// mean 1, fixed to the world, that reaches 0 between the patches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patches {
+    /// 0 = even layer, 1 = clear gaps between patches.
+    pub amount: f64,
+    /// Typical distance between patches, m, \[5, 1e5\].
+    pub size_m: f64,
+    /// Chooses the pattern.
+    pub seed: u64,
+    /// How far the wind has carried the pattern (east, north), m.
+    pub drift_m: [f64; 2],
+}
+
+/// A low layer of fog or mist.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogLayer {
+    /// Extinction at 550 nm inside the slab, or at the reference altitude, 1/m, \[0, 10\].
+    pub extinction_per_m: f64,
+    /// Exponent of Angstrom's law sigma ~ wavelength^-a, \[-1, 4\]; 0 for droplets, about 1 for haze.
+    pub angstrom: f64,
+    /// Single-scattering albedo per channel, \[0, 1\]; 1 for water.
+    pub albedo: [f64; 3],
+    /// Shape in altitude.
+    pub profile: Profile,
+    /// Phase function.
+    pub phase: Phase,
+    /// Patches, if any.
+    pub patches: Option<Patches>,
+}
+
+impl FogLayer {
+    /// Water fog with the extinction of a budget's layer, lying on everything below `top_m`; droplets of 15 um.
+    pub fn ground_fog(extinction_per_m: f64, top_m: f64, top_softness_m: f64) -> Self {
+        Self {
+            extinction_per_m,
+            angstrom: 0.0,
+            albedo: [1.0; 3],
+            profile: Profile::Slab { base_m: -1e4, top_m, base_softness_m: 0.0, top_softness_m },
+            phase: Phase::Droplets { diameter_um: 15.0 },
+            patches: None,
+        }
+    }
+
+    /// Refuses what is not a layer, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("fog.extinction_per_m", self.extinction_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
+        check_range("fog.angstrom", self.angstrom, -1.0, 4.0, "")?;
+        for a in self.albedo {
+            check_range("fog.albedo", a, 0.0, 1.0, "")?;
+        }
+        match self.profile {
+            Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
+                check_range("fog.base_m", base_m, -1e5, 1e6, "m")?;
+                check_range("fog.top_m", top_m, base_m, 1e6, "m")?;
+                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e4, "m")?;
+                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e4, "m")?;
+            }
+            Profile::Exponential { reference_m, scale_height_m } => {
+                check_range("fog.reference_m", reference_m, -1e5, 1e6, "m")?;
+                check_range("fog.scale_height_m", scale_height_m, 1.0, 1e5, "m")?;
+            }
+        }
+        match self.phase {
+            Phase::Droplets { diameter_um } => check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?,
+            Phase::HenyeyGreenstein { g } => check_range("fog.g", g, -0.95, 0.95, "")?,
+        }
+        if let Some(p) = &self.patches {
+            check_range("fog.patches.amount", p.amount, 0.0, 1.0, "")?;
+            check_range("fog.patches.size_m", p.size_m, 5.0, 1e5, "m")?;
+            for d in p.drift_m {
+                check_range("fog.patches.drift_m", d, -1e12, 1e12, "m")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The light that falls on the layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogLight {
+    /// Unit vector to the sun, or at night to the moon, in the axes of the rays.
+    pub to_sun: DVec3,
+    /// Its direct irradiance at the layer's top, facing it, per channel (any unit; radiance comes out per that unit
+    /// and steradian).
+    pub sun_irradiance: [f64; 3],
+    /// Irradiance of the sky on a horizontal surface at the layer's top, per channel.
+    pub sky_irradiance: [f64; 3],
+    /// Diffuse reflectance of the ground, per channel, \[0, 1\].
+    pub ground_albedo: [f64; 3],
+}
+
+impl FogLight {
+    /// Refuses light that is negative or not finite, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.to_sun.length() - 1.0).abs().lt(&1e-3) {
+            return Err(Error::range("fog.to_sun", "a unit vector", self.to_sun));
+        }
+        for i in 0..3 {
+            check_range("fog.sun_irradiance", self.sun_irradiance[i], 0.0, 1e12, "")?;
+            check_range("fog.sky_irradiance", self.sky_irradiance[i], 0.0, 1e12, "")?;
+            check_range("fog.ground_albedo", self.ground_albedo[i], 0.0, 1.0, "")?;
+        }
+        Ok(())
+    }
+}
+
+/// Where the camera is, as the fog sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Altitude of the camera above mean sea level, m, \[-1e4, 1e9\].
+    pub altitude_m: f64,
+    /// East, north and up at the camera, in the axes of the rays (x, y, z if those are local already).
+    pub east_north_up: [DVec3; 3],
+    /// Place on the map, m east and north of any fixed point: only the patches' pattern depends on it.
+    pub map_m: [f64; 2],
+    /// Radius of the planet, m; infinite for a flat world.
+    pub planet_radius_m: f64,
+    /// Altitude of the planet's ground where the host drew none, m.
+    pub ground_m: f64,
+}
+
+impl Viewpoint {
+    /// A camera at `altitude_m` over a flat world whose z is up.
+    pub fn flat(altitude_m: f64) -> Self {
+        Self {
+            altitude_m,
+            east_north_up: [DVec3::X, DVec3::Y, DVec3::Z],
+            map_m: [0.0; 2],
+            planet_radius_m: f64::INFINITY,
+            ground_m: 0.0,
+        }
+    }
+
+    /// Refuses what is not a viewpoint, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("altitude_m", self.altitude_m, -1e5, 1e9, "m")?;
+        check_range("fog.ground_m", self.ground_m, -1e5, 1e5, "m")?;
+        if self.planet_radius_m.is_nan() || self.planet_radius_m <= 1e3 {
+            return Err(Error::range("planet_radius_m", "above 1000 m, or infinite", self.planet_radius_m));
+        }
+        for v in self.east_north_up {
+            if !(v.length() - 1.0).abs().lt(&1e-3) {
+                return Err(Error::range("east_north_up", "three unit vectors", v));
+            }
+        }
+        for v in self.map_m {
+            check_range("map_m", v, -1e12, 1e12, "m")?;
+        }
+        Ok(())
+    }
+}
+
+/// Which fog is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// None.
+    Clear,
+    /// A physical layer, lit by sun and sky.
+    Layer(FogLayer),
+    /// One of the older simulators' laws.
+    Compatibility(CompatibilityLaw),
+}

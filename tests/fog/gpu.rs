@@ -1,6 +1,6 @@
 //! Runs WGSL functions of the library on the GPU over a list of inputs: one texel a case, 32-bit floats.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use welkin::gpu::{Device, DeviceOptions, pass, readback, shader};
 
@@ -48,7 +48,7 @@ pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], i
     });
     d.queue.write_buffer(&buffer, 0, uniform);
     let layout = layout();
-    let pipeline = pipeline(&layout, include, body, uniform_type);
+    let pipeline = cached(&layout, include, body, uniform_type);
     let group = d.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
@@ -68,7 +68,25 @@ pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], i
     out
 }
 
+/// Compiling costs far more than drawing: each distinct function is compiled once.
+fn cached(layout: &wgpu::BindGroupLayout, include: &str, body: &str, uniform_type: &str) -> wgpu::RenderPipeline {
+    static KNOWN: Mutex<Vec<(String, wgpu::RenderPipeline)>> = Mutex::new(Vec::new());
+    let key = format!("{include}\n{body}\n{uniform_type}");
+    let mut known = KNOWN.lock().expect("no test panics while it compiles");
+    if let Some((_, p)) = known.iter().find(|(k, _)| *k == key) {
+        return p.clone();
+    }
+    let made = pipeline(layout, include, body, uniform_type);
+    known.push((key, made.clone()));
+    made
+}
+
 fn layout() -> wgpu::BindGroupLayout {
+    static LAYOUT: OnceLock<wgpu::BindGroupLayout> = OnceLock::new();
+    LAYOUT.get_or_init(make_layout).clone()
+}
+
+fn make_layout() -> wgpu::BindGroupLayout {
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
     device().device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

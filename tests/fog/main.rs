@@ -2,4 +2,8 @@
 
 mod cameras;
 mod depth;
+mod drawn;
 mod gpu;
+mod light;
+mod path;
+mod slab;

@@ -1,0 +1,177 @@
+//! Questions about visibility, answered in f64 without a device (queries of class A).
+
+use glam::DVec3;
+
+use super::reference::{FogModel, fog_along, layer_depth_above};
+use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, Viewpoint};
+use crate::error::{Error, Result, check_range};
+
+/// Light that plays no part where only extinction is asked for.
+const NO_LIGHT: FogLight =
+    FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
+
+/// Transmittance of the layer per channel (680, 550, 440 nm) from the viewpoint to the point `offset` metres away, in
+/// the host's axes. Multiply by those of air, haze and precipitation.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub fn transmittance_between(layer: &FogLayer, from: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
+    if !offset.is_finite() {
+        return Err(Error::range("offset", "finite, in metres", offset));
+    }
+    let m = FogModel::new(&Law::Layer(*layer), &NO_LIGHT, from)?;
+    let range = offset.length();
+    if range == 0.0 {
+        return Ok([1.0; 3]);
+    }
+    Ok(fog_along(&m, DVec3::ZERO, offset / range, range, range).transmittance.to_array())
+}
+
+/// Visibility along the line from the viewpoint to the point `offset` metres away, m: the meteorological optical range
+/// that a homogeneous medium of the same mean extinction would have. `background_per_m` is the extinction of air, haze
+/// and precipitation there at 550 nm. Infinite where nothing extinguishes.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub fn visibility_between_m(layer: &FogLayer, from: &Viewpoint, offset: DVec3, background_per_m: f64) -> Result<f64> {
+    check_range("background_per_m", background_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+    let range = offset.length();
+    if range.is_nan() || range <= 0.0 {
+        return Err(Error::range("offset", "longer than 0 m", range));
+    }
+    let depth = -transmittance_between(layer, from, offset)?[1].max(f64::MIN_POSITIVE).ln();
+    Ok(super::koschmieder_visibility_m(depth / range + background_per_m))
+}
+
+/// Vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5 % of its
+/// contrast in the layer and the `background_per_m` of the rest; infinite if it does so through all of the layer and
+/// nothing else extinguishes.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m: f64) -> Result<f64> {
+    check_range("background_per_m", background_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+    let m = FogModel::new(&Law::Layer(*layer), &NO_LIGHT, &Viewpoint::flat(altitude_m))?;
+    let wanted = -CONTRAST_THRESHOLD.ln();
+    let here = layer_depth_above(&m, altitude_m);
+    let depth = |z: f64| here - layer_depth_above(&m, altitude_m + z) + background_per_m * z;
+    let (mut lo, mut hi) = (0.0, 1.0);
+    while depth(hi) < wanted {
+        if hi > 1e9 {
+            return Ok(f64::INFINITY);
+        }
+        (lo, hi) = (hi, hi * 2.0);
+    }
+    for _ in 0..60 {
+        let mid = 0.5 * (lo + hi);
+        if depth(mid) < wanted { lo = mid } else { hi = mid }
+    }
+    Ok(0.5 * (lo + hi))
+}
+
+/// Illuminance at which a pilot still sees a light, lx, against a background of `background_cd_m2`:
+/// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667, not below 8e-7 lx, the value by night. The curve runs midway
+/// through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No. 8).
+pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
+    let b = background_cd_m2.max(1.0).log10();
+    10f64.powf(0.05 * b * b + 0.573 * b - 6.667).max(8e-7)
+}
+
+/// Distance at which a light of `intensity_cd` is just seen in air of extinction `extinction_per_m`, m: Allard's law
+/// (Allard 1876), E = I exp(-sigma R)/R^2 at the threshold of [`light_threshold_lx`].
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2: f64) -> Result<f64> {
+    check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;
+    check_range("extinction_per_m", extinction_per_m, 0.0, super::MAX_EXTINCTION_PER_M, "1/m")?;
+    check_range("background_cd_m2", background_cd_m2, 0.0, 1e6, "cd/m2")?;
+    let threshold = light_threshold_lx(background_cd_m2);
+    // ln(I/E) = sigma R + 2 ln R: the right side grows with R, so bisect.
+    let wanted = (intensity_cd / threshold).ln();
+    let (mut lo, mut hi) = (1e-6f64, (intensity_cd / threshold).sqrt().max(1e-6));
+    for _ in 0..200 {
+        let mid = 0.5 * (lo + hi);
+        if extinction_per_m * mid + 2.0 * mid.ln() < wanted { lo = mid } else { hi = mid }
+    }
+    Ok(0.5 * (lo + hi))
+}
+
+/// Runway visual range, m: the larger of the range of its lights (by night and in thick fog) and the meteorological
+/// optical range (by day), as ICAO Doc 9328 has it.
+///
+/// # Errors
+/// As [`lights_range_m`].
+pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2: f64) -> Result<f64> {
+    let lights = lights_range_m(intensity_cd, extinction_per_m, background_cd_m2)?;
+    Ok(lights.max(super::koschmieder_visibility_m(extinction_per_m)))
+}
+
+/// Extinction, 1/m, of a reported runway visual range: the inverse of [`runway_visual_range_m`].
+///
+/// # Errors
+/// As [`lights_range_m`].
+pub fn extinction_of_rvr_per_m(rvr_m: f64, intensity_cd: f64, background_cd_m2: f64) -> Result<f64> {
+    check_range("rvr_m", rvr_m, 1.0, 1e6, "m")?;
+    check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;
+    check_range("background_cd_m2", background_cd_m2, 0.0, 1e6, "cd/m2")?;
+    let lights = ((intensity_cd / light_threshold_lx(background_cd_m2)).ln() - 2.0 * rvr_m.ln()) / rvr_m;
+    Ok(lights.max(super::koschmieder_extinction_per_m(rvr_m)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{koschmieder_extinction_per_m, koschmieder_visibility_m};
+    use super::*;
+
+    /// The steps of the table, taken at the geometric middle of neighbouring ones.
+    #[test]
+    fn the_threshold_runs_through_the_steps() {
+        for (b, e) in [(50.0, 8e-7 * 1e-5), (1000.0, 1e-5 * 1e-4), (12_000.0, 1e-4 * 1e-3)] {
+            let middle = f64::sqrt(e);
+            assert!((light_threshold_lx(b) / middle - 1.0).abs() < 0.02, "{b}: {}", light_threshold_lx(b));
+        }
+        assert_eq!(light_threshold_lx(0.0), 8e-7);
+    }
+
+    #[test]
+    fn lights_obey_allards_law_and_rvr_inverts() {
+        for (intensity, background, visibility) in [(1e4, 0.1, 200.0), (1e3, 500.0, 600.0), (200.0, 2e4, 3000.0)] {
+            let sigma = koschmieder_extinction_per_m(visibility);
+            let r = lights_range_m(intensity, sigma, background).unwrap();
+            let e = intensity * (-sigma * r).exp() / (r * r);
+            assert!((e / light_threshold_lx(background) - 1.0).abs() < 1e-9, "{e}");
+            let rvr = runway_visual_range_m(intensity, sigma, background).unwrap();
+            assert!(rvr >= visibility * (1.0 - 1e-12) && rvr >= r);
+            let back = extinction_of_rvr_per_m(rvr, intensity, background).unwrap();
+            assert!((back / sigma - 1.0).abs() < 1e-9, "{back} {sigma}");
+        }
+        // By night a strong light is seen far beyond the optical range, by bright day it is not.
+        let sigma = koschmieder_extinction_per_m(350.0);
+        assert!(lights_range_m(1e4, sigma, 0.1).unwrap() > 700.0);
+        assert!((runway_visual_range_m(10.0, sigma, 2e4).unwrap() - 350.0).abs() < 1e-9);
+        assert!((koschmieder_visibility_m(sigma) - 350.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn visibility_along_a_line_and_straight_up() {
+        let sigma = koschmieder_extinction_per_m(150.0);
+        let fog = FogLayer::ground_fog(sigma, 40.0, 10.0);
+        let eye = Viewpoint::flat(2.0);
+        let level = visibility_between_m(&fog, &eye, DVec3::new(300.0, 0.0, 0.0), 0.0).unwrap();
+        assert!((level - 150.0).abs() < 1e-9, "{level}");
+        let out = visibility_between_m(&fog, &eye, DVec3::new(0.0, 0.0, 300.0), 0.0).unwrap();
+        assert!((out - 150.0 * 300.0 / 38.0).abs() < 1e-6, "38 of 300 m lie in fog: {out}");
+        let t = transmittance_between(&fog, &eye, DVec3::new(150.0, 0.0, 0.0)).unwrap();
+        assert!((t[1] - 0.05).abs() < 1e-12);
+        assert!(vertical_visibility_m(&fog, 2.0, 0.0).unwrap().is_infinite());
+        let deep = FogLayer::ground_fog(sigma, 400.0, 10.0);
+        assert!((vertical_visibility_m(&deep, 2.0, 0.0).unwrap() - 150.0).abs() < 1e-6);
+        let hazy = vertical_visibility_m(&fog, 2.0, 1e-4).unwrap();
+        assert!((sigma * 38.0 + 1e-4 * hazy + CONTRAST_THRESHOLD.ln()).abs() < 1e-9, "{hazy}");
+        let bad = FogLayer { extinction_per_m: f64::NAN, ..fog };
+        assert!(visibility_between_m(&bad, &eye, DVec3::X, 0.0).unwrap_err().message.contains("fog.extinction_per_m"));
+        assert!(transmittance_between(&bad, &eye, DVec3::X).unwrap_err().message.contains("fog.extinction_per_m"));
+        assert!(transmittance_between(&fog, &eye, DVec3::NAN).unwrap_err().message.contains("offset"));
+    }
+}

@@ -1,0 +1,430 @@
+//! The fog along one ray in f64: the truth that tests and queries call, and the twin of `shaders/fog/lookup.wgsl`
+//! (same names, same order of parameters).
+//!
+//! # Path through a layer
+//! With r0 the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical and
+//! k = 1/r0, the altitude after t metres is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t): exact, and without the
+//! cancellation of sqrt(r^2) - R. An altitude h is met where k t^2 + 2 mu t + c = 0, c = d (2 - k d), d = h0 - h; the
+//! roots are taken in the form that adds. On each side of the ray's lowest point the altitude is monotone, so a slab
+//! with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
+//!
+//! # Light along the ray
+//! The source of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the ray
+//! that depth is taken as linear in optical path between its exact values at both ends (exact for flat layers), so
+//! each exponential of it integrates to an exponential. Forward-scattered light is not lost: the source is
+//! attenuated by the scaled depth, while a host's object is attenuated by the full depth; the difference is filled
+//! with the radiance of the fog behind the object, as the transfer equation demands:
+//! L = integral of J' e^(-t') dt' + I_behind (e^(-tau') - e^(-tau)).
+
+use glam::DVec3;
+
+use super::laws::DistanceKind;
+use super::phase::{PhaseLobes, fog_phase_after};
+use crate::scene::depth::RANGE_SKY_M;
+
+/// What a model does: the shader's switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum FogKind {
+    /// Nothing.
+    Clear = 0,
+    /// Slab with linear flanks.
+    Slab = 1,
+    /// Exponential layer.
+    Exponential = 2,
+    /// Linear law.
+    Linear = 3,
+    /// Exponential law.
+    ExponentialLaw = 4,
+    /// Exponential-squared law.
+    ExponentialSquared = 5,
+}
+
+/// A band of this height, rad, or more covers all of the sky: pi, less what f32 rounds away.
+const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
+
+/// Number of plane waves in the patches' pattern: the pairs of four.
+pub const PATCH_WAVES: usize = 6;
+
+/// One light source term c(mu) = `even` + mu `odd`, per channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Term {
+    /// Independent of direction.
+    pub even: DVec3,
+    /// Times the cosine of the view with up.
+    pub odd: DVec3,
+}
+
+impl Term {
+    fn at(&self, mu: f64) -> DVec3 {
+        self.even + self.odd * mu
+    }
+}
+
+/// All that a frame's fog needs, prepared in f64; [`FogModel::uniform`] is its form for shaders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogModel {
+    /// What is drawn.
+    pub kind: FogKind,
+    /// Distance of the compatibility laws.
+    pub distance: DistanceKind,
+    /// Up at the camera, host axes.
+    pub up: DVec3,
+    /// Altitude of the camera, m.
+    pub altitude: f64,
+    /// 1/(planet radius + altitude), 1/m; 0 for a flat world.
+    pub curvature: f64,
+    /// Altitude at which rays without an object end in the ground, m.
+    pub ground: f64,
+    /// Slab: altitudes where the flanks begin and end (base 0, base 1, top 0, top 1), m. Exponential: reference
+    /// altitude, scale height.
+    pub knots: [f64; 4],
+    /// Extinction at 550 nm, 1/m; density of the compatibility laws.
+    pub extinction: f64,
+    /// Start and end of the linear law, m.
+    pub linear: [f64; 2],
+    /// Band of the sky that the compatibility laws cover, rad.
+    pub sky_band: f64,
+    /// Extinction of each channel over that at 550 nm.
+    pub ratio: DVec3,
+    /// Scaled (delta) optical depth over depth at 550 nm.
+    pub scaling: DVec3,
+    /// Depth at 550 nm from the layer's top to the ground.
+    pub depth_total: f64,
+    /// Unit vector to the sun.
+    pub to_sun: DVec3,
+    /// 1/cosine of the sun's zenith angle, as the slab was solved.
+    pub inverse_mu0: f64,
+    /// Phase function.
+    pub lobes: PhaseLobes,
+    /// Share of scattering counted as forward, and asymmetry of the rest.
+    pub forward: f64,
+    /// See `forward`.
+    pub smooth: f64,
+    /// Whether the exponential terms are used.
+    pub absorbing: bool,
+    /// Diffusion exponent per channel.
+    pub k: DVec3,
+    /// Source terms: constant, per scaled depth, beam, from the top, from the bottom.
+    pub constant: Term,
+    /// Per scaled depth.
+    pub slope: Term,
+    /// Times e^(-depth/mu0).
+    pub beam: Term,
+    /// Times e^(-k depth).
+    pub rise: Term,
+    /// Times e^(-k (total - depth)).
+    pub fall: Term,
+    /// First scattering: times phase and e^(-depth/mu0). The colour of the compatibility laws.
+    pub first: DVec3,
+    /// Mean radiance of the sky above the layer.
+    pub sky_radiance: DVec3,
+    /// Radiance of the ground below it.
+    pub ground_radiance: DVec3,
+    /// Patches: share, and waves as (wave vector in host axes, phase at the camera).
+    pub patch_amount: f64,
+    /// See `patch_amount`.
+    pub patch_waves: [(DVec3, f64); PATCH_WAVES],
+}
+
+/// What fog does to one pixel: `colour * transmittance + radiance`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogSample {
+    /// Light scattered into the ray.
+    pub radiance: DVec3,
+    /// Share of the object's light that is left.
+    pub transmittance: DVec3,
+    /// Mean distance from which the fog's light comes, m: where air in front of it begins to count.
+    pub distance: f64,
+}
+
+/// A ray's way through the layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerPath {
+    /// Optical depth at 550 nm.
+    pub depth: f64,
+    /// Where the ray enters the layer and leaves it, m.
+    pub first: f64,
+    /// See `first`.
+    pub last: f64,
+    /// Altitude of the ray's end, m.
+    pub end_altitude: f64,
+    /// Cosine of the ray with the vertical at its end.
+    pub end_mu: f64,
+}
+
+/// Rise from the start of a ray after `t` metres, m.
+pub fn layer_rise(curvature: f64, mu: f64, t: f64) -> f64 {
+    let q = t * (2.0 * mu + curvature * t);
+    q / (1.0 + (1.0 + curvature * q).max(0.0).sqrt())
+}
+
+/// Depth at 550 nm of the layer above altitude `h`.
+pub fn layer_depth_above(m: &FogModel, h: f64) -> f64 {
+    if m.kind == FogKind::Exponential {
+        return m.extinction * ((m.knots[0] - h) / m.knots[1]).min(60.0).exp() * m.knots[1];
+    }
+    let [b0, b1, t0, t1] = m.knots;
+    let in_top = t1 - h.clamp(t0, t1);
+    let in_base = h.clamp(b0, b1);
+    let top = in_top * in_top * 0.5 / (t1 - t0).max(1e-3);
+    let base = (b1 - in_base) * (b1 + in_base - 2.0 * b0) * 0.5 / (b1 - b0).max(1e-3);
+    m.extinction * (top + (t0 - h.clamp(b1, t0)) + base)
+}
+
+/// Where a ray of cosine `mu` that starts `drop` above an altitude reaches it going down; 0 if it starts below, the
+/// lowest point `turn` if it stays above.
+fn layer_enter(curvature: f64, mu: f64, turn: f64, drop: f64) -> f64 {
+    let c = drop * (2.0 - curvature * drop);
+    let disc = mu * mu - curvature * c;
+    if drop <= 0.0 {
+        0.0
+    } else if disc < 0.0 {
+        turn
+    } else {
+        (c / (disc.sqrt() - mu).max(1e-20)).min(turn)
+    }
+}
+
+/// Where it reaches it going up, after its lowest point; that point if it is above already.
+fn layer_leave(curvature: f64, mu: f64, turn: f64, drop: f64) -> f64 {
+    let c = drop * (2.0 - curvature * drop);
+    let disc = mu * mu - curvature * c;
+    if disc < 0.0 || (mu >= 0.0 && drop >= 0.0) {
+        return turn;
+    }
+    let root = disc.sqrt();
+    let t = if mu >= 0.0 { -c / (mu + root).max(1e-20) } else { (root - mu) / curvature.max(1e-30) };
+    t.max(turn)
+}
+
+/// Optical depth over extinction of a monotone part of a ray: `cross` are the distances at which it meets the knots,
+/// `low` and `high` the altitudes between which it runs.
+fn slab_part(m: &FogModel, bend: f64, cross: [f64; 4], low: f64, high: f64) -> f64 {
+    let length = [(cross[1] - cross[0]).abs(), (cross[2] - cross[1]).abs(), (cross[3] - cross[2]).abs()];
+    let h = m.knots.map(|k| k.clamp(low, high));
+    let share = |i: usize| {
+        let mean = 0.5 * (h[i] + h[i + 1]) - bend * length[i] * length[i] / 12.0;
+        ((mean - m.knots[i]) / (m.knots[i + 1] - m.knots[i]).max(1e-3)).clamp(0.0, 1.0)
+    };
+    length[0] * share(0) + length[1] + length[2] * (1.0 - share(2))
+}
+
+/// The way of a ray from altitude `h0` with cosine `mu` through the layer, `t` metres long.
+pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
+    let k = m.curvature;
+    let end_altitude = h0 + layer_rise(k, mu, t);
+    let end_mu = ((mu + k * t) / (1.0 + k * (end_altitude - h0))).clamp(-1.0, 1.0);
+    if m.kind == FogKind::Exponential {
+        let depth = exponential_path(m, h0, mu, t, end_altitude, end_mu);
+        // Where the weight lies: beside the denser end.
+        let dense = m.extinction * ((m.knots[0] - h0.min(end_altitude)) / m.knots[1]).min(60.0).exp();
+        let length = (depth / dense.max(1e-20)).min(t);
+        let first = if end_altitude < h0 { t - length } else { 0.0 };
+        return LayerPath { depth, first, last: first + length, end_altitude, end_mu };
+    }
+    let turn = if mu < 0.0 { (-mu / k.max(1e-30)).min(t) } else { 0.0 };
+    let low = h0 + layer_rise(k, mu, turn);
+    let bend = k * (1.0 - mu * mu);
+    let turn_free = if mu < 0.0 { -mu / k.max(1e-30) } else { 0.0 };
+    let down = m.knots.map(|h| layer_enter(k, mu, turn_free, h0 - h).min(turn));
+    let up = m.knots.map(|h| layer_leave(k, mu, turn_free, h0 - h).clamp(turn, t));
+    let down_length = slab_part(m, bend, down, low.min(h0), h0);
+    let up_length = slab_part(m, bend, up, low, end_altitude.max(low));
+    let first = if down_length > 0.0 { down[3] } else { up[0] };
+    let last = if up_length > 0.0 { up[3] } else { down[0] };
+    LayerPath { depth: m.extinction * (down_length + up_length), first, last, end_altitude, end_mu }
+}
+
+/// e^(z^2) erfc(z) for z >= 0, to 1.2e-7 relative (Chebyshev fit of Press et al., Numerical Recipes, 1992, 6.2).
+fn scaled_erfc(z: f64) -> f64 {
+    const C: [f64; 10] = [
+        -1.265_512_23,
+        1.000_023_68,
+        0.374_091_96,
+        0.096_784_18,
+        -0.186_288_06,
+        0.278_868_07,
+        -1.135_203_98,
+        1.488_515_87,
+        -0.822_152_23,
+        0.170_872_77,
+    ];
+    let t = 1.0 / (1.0 + 0.5 * z);
+    t * C.iter().rev().fold(0.0, |a, c| a * t + c).exp()
+}
+
+/// Optical depth over (extinction at the start) of an upward exponential path whose altitude grows by `rise`, from a
+/// point where the ray has cosine `mu` >= 0: the Chapman integral with a parabolic altitude.
+fn exponential_up(k: f64, scale: f64, mu: f64, rise: f64) -> f64 {
+    let z = mu / (2.0 * k * scale).sqrt();
+    let x = rise / scale;
+    (std::f64::consts::FRAC_PI_2 * scale / k).sqrt()
+        * (scaled_erfc(z) - (-x).exp() * scaled_erfc((z * z + x).max(0.0).sqrt()))
+}
+
+fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, end_mu: f64) -> f64 {
+    let k = m.curvature.max(1e-15);
+    let scale = m.knots[1];
+    let at = |h: f64| m.extinction * ((m.knots[0] - h) / scale).min(60.0).exp();
+    let turn = if mu < 0.0 { (-mu / k).min(t) } else { 0.0 };
+    let low = h0 + layer_rise(m.curvature, mu, turn);
+    if (end_altitude - low).max(h0 - low) < scale {
+        // Short in altitude: three Gauss nodes, where the closed form would subtract equal numbers.
+        let node = |x: f64| (-layer_rise(m.curvature, mu, t * x) / scale).exp();
+        let sum = (node(0.112_701_665) + node(0.887_298_335)) * 5.0 / 18.0 + node(0.5) * 8.0 / 18.0;
+        return at(h0) * t * sum;
+    }
+    if mu >= 0.0 {
+        return at(h0) * exponential_up(k, scale, mu, end_altitude - h0);
+    }
+    if end_mu <= 0.0 {
+        return at(end_altitude) * exponential_up(k, scale, -end_mu, h0 - end_altitude);
+    }
+    at(low) * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low))
+}
+
+/// Integral of e^(-rate s) ds over [0, path], times `first`, where `last` = first e^(-rate path): in the form that does
+/// not divide by a small rate.
+fn attenuated(rate: DVec3, first: DVec3, last: DVec3, path: DVec3) -> DVec3 {
+    let one = |rate: f64, first: f64, last: f64, path: f64| {
+        let x = rate * path;
+        if x.abs() < 0.03 {
+            first * path * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0)))
+        } else {
+            (first - last) / rate
+        }
+    };
+    DVec3::new(
+        one(rate.x, first.x, last.x, path.x),
+        one(rate.y, first.y, last.y, path.y),
+        one(rate.z, first.z, last.z, path.z),
+    )
+}
+
+/// Mean of x over [0, 1] weighted by e^(-r x).
+fn mean_place(r: f64) -> f64 {
+    let (size, e) = (r.abs(), (-r.abs()).exp());
+    let mean = if size < 0.1 { 0.5 - size / 12.0 } else { 1.0 / size - e / (1.0 - e) };
+    if r < 0.0 { 1.0 - mean } else { mean }
+}
+
+fn exp3(v: DVec3) -> DVec3 {
+    DVec3::new(v.x.exp(), v.y.exp(), v.z.exp())
+}
+
+/// The source of scattered light at scaled depth `a` below the top, looking with cosine `mu`.
+fn source_at(m: &FogModel, mu: f64, beam: DVec3, a: DVec3) -> DVec3 {
+    let mut j = m.constant.at(mu) + m.slope.at(mu) * a + beam * exp3(-a * m.inverse_mu0);
+    if m.absorbing {
+        let below = m.scaling * m.depth_total - a;
+        j += m.rise.at(mu) * exp3(-m.k * a) + m.fall.at(mu) * exp3(-m.k * below);
+    }
+    j
+}
+
+/// Light scattered into a ray of `path` through the layer, looking with cosine `mu`, `versine` = 1 - cos of its angle
+/// with the sun, depths above its ends `above0` and `above1`.
+fn layer_radiance(m: &FogModel, mu: f64, versine: f64, path: &LayerPath, above: [f64; 2], depth: f64) -> DVec3 {
+    let [a0, a1] = above.map(|a| m.scaling * a);
+    let p = m.scaling * depth;
+    let through = exp3(-p);
+    // Change of scaled depth below the top per scaled path: the mean of mu, exact in flat layers.
+    let slant = if depth > 1e-12 { ((above[0] - above[1]) / depth).clamp(-1.0, 1.0) } else { mu };
+    let slant3 = DVec3::splat(slant);
+    let one = DVec3::ONE;
+    // Optical path of the sunlight by way of the mean place where the ray scatters it.
+    let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - m.forward) * depth);
+    let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
+    let beam = m.beam.at(mu) + m.first * fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
+
+    let filled = attenuated(one, one, through, p);
+    let ramp = a0 * filled - slant * (filled - p * through);
+    let (b0, b1) = (exp3(-a0 * m.inverse_mu0), exp3(-a1 * m.inverse_mu0));
+    let mut l = m.constant.at(mu) * filled
+        + m.slope.at(mu) * ramp
+        + beam * attenuated(one - slant3 * m.inverse_mu0, b0, b1 * through, p);
+    if m.absorbing {
+        let total = m.scaling * m.depth_total;
+        l += m.rise.at(mu) * attenuated(one - slant3 * m.k, exp3(-m.k * a0), exp3(-m.k * a1) * through, p);
+        l += m.fall.at(mu)
+            * attenuated(one + slant3 * m.k, exp3(-m.k * (total - a0)), exp3(-m.k * (total - a1)) * through, p);
+    }
+    // The fog behind the object fills what its full extinction takes beyond the scaled one.
+    let grazing = 0.005;
+    let toward_sky = ((path.end_mu / grazing) * 0.5 + 0.5).clamp(0.0, 1.0);
+    let behind = m.ground_radiance.lerp(m.sky_radiance, toward_sky);
+    let rest = (m.scaling * m.depth_total - a1).lerp(a1, toward_sky) / path.end_mu.abs().max(grazing);
+    let clear = exp3(-rest);
+    let end = behind * clear + source_at(m, mu, beam, a1) * (one - clear);
+    l += end * (through - exp3(-m.ratio * depth));
+    l.max(DVec3::ZERO)
+}
+
+/// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
+pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, last: f64) -> f64 {
+    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
+    let mut sum = 0.0;
+    for (wave, phase) in &m.patch_waves {
+        let along = wave.dot(direction);
+        let x = along * half;
+        let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
+        sum += (phase + wave.dot(origin) + along * middle).cos() * sinc;
+    }
+    // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
+    (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
+}
+
+/// What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with an object
+/// at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
+pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
+    match m.kind {
+        FogKind::Clear => FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0 },
+        FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range),
+        _ => fog_compatible(m, direction, range, plane),
+    }
+}
+
+fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSample {
+    let mu = direction.dot(m.up).clamp(-1.0, 1.0);
+    let lift = origin.dot(m.up);
+    let h0 = m.altitude + lift + 0.5 * m.curvature * (origin.length_squared() - lift * lift);
+    let mut t = range;
+    if range >= RANGE_SKY_M {
+        // A ray without an object ends in the ground, if it meets it from above.
+        let turn = if mu < 0.0 { -mu / m.curvature.max(1e-30) } else { 0.0 };
+        let ground = layer_enter(m.curvature, mu, turn, h0 - m.ground);
+        if mu < 0.0 && h0 > m.ground && ground < turn {
+            t = ground;
+        }
+    }
+    let path = layer_path(m, h0, mu, t);
+    let mut depth = path.depth;
+    if m.patch_amount > 0.0 {
+        depth *= patch_mean(m, origin, direction, path.first, path.last);
+    }
+    let above = [h0, path.end_altitude].map(|h| layer_depth_above(m, h).min(m.depth_total));
+    let versine = 0.5 * (direction - m.to_sun).length_squared();
+    let radiance = layer_radiance(m, mu, versine, &path, above, depth);
+    let transmittance = exp3(-m.ratio * depth);
+    // Mean distance of the scattered light, as in an even medium between entry and exit.
+    let distance = path.first + (path.last - path.first) * mean_place(depth);
+    FogSample { radiance, transmittance, distance }
+}
+
+fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> FogSample {
+    let d = if m.distance == DistanceKind::Plane { plane } else { range };
+    let mut v = match m.kind {
+        FogKind::Linear => ((m.linear[1] - d) / (m.linear[1] - m.linear[0])).clamp(0.0, 1.0),
+        FogKind::ExponentialLaw => (-m.extinction * d).exp(),
+        _ => (-(m.extinction * d).powi(2)).exp(),
+    };
+    if range >= RANGE_SKY_M {
+        let x = (direction.dot(m.up).clamp(-1.0, 1.0).asin() / m.sky_band.max(1e-6)).clamp(0.0, 1.0);
+        v = if m.sky_band > 0.0 { x * x * (3.0 - 2.0 * x) } else { 1.0 };
+        if m.sky_band >= WHOLE_SKY {
+            v = 0.0;
+        }
+    }
+    FogSample { radiance: m.first * (1.0 - v), transmittance: DVec3::splat(v), distance: 0.0 }
+}

@@ -1,0 +1,271 @@
+//! From settings to a frame's model, and from the model to the form that shaders read.
+
+use glam::DVec3;
+
+use super::laws::{Curve, DistanceKind};
+use super::light::{Slab, Solution, delta_scaling};
+use super::phase::PhaseLobes;
+use super::reference::{FogKind, FogModel, PATCH_WAVES, Term, layer_depth_above};
+use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
+use crate::error::Result;
+
+/// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
+const WAVELENGTHS_NM: [f64; 3] = [680.0, 550.0, 440.0];
+
+/// The sun's zenith cosine is not taken smaller: a plane-parallel layer would let no light in, the curved one of the
+/// real planet lets a low sun pass sqrt(2 thickness/radius), some thousandths.
+const MIN_MU0: f64 = 0.01;
+
+/// Diffusion exponent times depth below which a channel's two exponentials are drawn as a straight line, whose error
+/// is an eighth of the square.
+const LINEAR_DIFFUSION: f64 = 0.05;
+
+impl FogModel {
+    /// Prepares the fog of one view and frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn new(law: &Law, light: &FogLight, view: &Viewpoint) -> Result<Self> {
+        light.validate()?;
+        view.validate()?;
+        let mut m = Self::clear(light, view);
+        match law {
+            Law::Clear => {}
+            Law::Layer(layer) => {
+                layer.validate()?;
+                m.set_layer(layer, light, view);
+            }
+            Law::Compatibility(law) => {
+                law.validate()?;
+                m.distance = law.distance;
+                m.sky_band = law.sky_band;
+                m.first = law.colour.map_or_else(|| deep_layer_radiance(light, view), DVec3::from);
+                (m.kind, m.extinction) = match law.curve {
+                    Curve::Linear { .. } => (FogKind::Linear, 0.0),
+                    Curve::Exponential { density_per_m } => (FogKind::ExponentialLaw, density_per_m),
+                    Curve::ExponentialSquared { density_per_m } => (FogKind::ExponentialSquared, density_per_m),
+                };
+                if let Curve::Linear { start_m, end_m } = law.curve {
+                    m.linear = [start_m, end_m];
+                }
+            }
+        }
+        Ok(m)
+    }
+
+    fn clear(light: &FogLight, view: &Viewpoint) -> Self {
+        Self {
+            kind: FogKind::Clear,
+            distance: DistanceKind::Range,
+            up: view.east_north_up[2],
+            altitude: view.altitude_m,
+            curvature: 1.0 / (view.planet_radius_m + view.altitude_m),
+            ground: view.ground_m,
+            knots: [0.0; 4],
+            extinction: 0.0,
+            linear: [0.0, 1.0],
+            sky_band: 0.0,
+            ratio: DVec3::ONE,
+            scaling: DVec3::ONE,
+            depth_total: 0.0,
+            to_sun: light.to_sun,
+            inverse_mu0: 1.0 / light.to_sun.dot(view.east_north_up[2]).max(MIN_MU0),
+            lobes: PhaseLobes::new(&Phase::HenyeyGreenstein { g: 0.0 }),
+            forward: 0.0,
+            smooth: 0.0,
+            absorbing: false,
+            k: DVec3::ZERO,
+            constant: Term::default(),
+            slope: Term::default(),
+            beam: Term::default(),
+            rise: Term::default(),
+            fall: Term::default(),
+            first: DVec3::ZERO,
+            sky_radiance: DVec3::from(light.sky_irradiance) / std::f64::consts::PI,
+            ground_radiance: DVec3::ZERO,
+            patch_amount: 0.0,
+            patch_waves: [(DVec3::ZERO, 0.0); PATCH_WAVES],
+        }
+    }
+
+    fn set_layer(&mut self, layer: &FogLayer, light: &FogLight, view: &Viewpoint) {
+        self.extinction = layer.extinction_per_m;
+        (self.kind, self.knots) = match layer.profile {
+            Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
+                let most = top_m - base_m;
+                let (b, t) = (0.5 * base_softness_m.min(most), 0.5 * top_softness_m.min(most));
+                (FogKind::Slab, [base_m - b, base_m + b, top_m - t, top_m + t])
+            }
+            Profile::Exponential { reference_m, scale_height_m } => {
+                (FogKind::Exponential, [reference_m, scale_height_m, 0.0, 0.0])
+            }
+        };
+        self.depth_total = layer_depth_above(self, view.ground_m);
+        self.lobes = PhaseLobes::new(&layer.phase);
+        (self.forward, _, self.smooth) = delta_scaling(1.0, self.lobes.moments());
+        for (i, nm) in WAVELENGTHS_NM.iter().enumerate() {
+            self.ratio[i] = (nm / WAVELENGTHS_NM[1]).powf(-layer.angstrom);
+            let (wf, albedo, asymmetry) = delta_scaling(layer.albedo[i], self.lobes.moments());
+            self.scaling[i] = self.ratio[i] * (1.0 - wf);
+            let slab = Slab {
+                depth: self.scaling[i] * self.depth_total,
+                albedo,
+                asymmetry,
+                mu0: 1.0 / self.inverse_mu0,
+                sun: light.sun_irradiance[i],
+                sky: light.sky_irradiance[i],
+                ground: light.ground_albedo[i],
+            };
+            self.set_source(i, &slab.solve());
+            self.first[i] = layer.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
+        }
+        if let Some(patches) = &layer.patches {
+            self.set_patches(patches, view);
+        }
+    }
+
+    /// The source w (I0 + g mu I1) of channel `i`; the first scattering has its own term.
+    fn set_source(&mut self, i: usize, s: &Solution) {
+        let (w, g, depth) = (s.slab.albedo, s.slab.asymmetry, s.slab.depth);
+        let set = |term: &mut Term, v: [f64; 2]| {
+            term.even[i] = w * v[0];
+            term.odd[i] = w * g * v[1];
+        };
+        set(&mut self.beam, s.beam.map(|v| -v));
+        let e = (-s.k * depth).exp();
+        if s.k * depth < LINEAR_DIFFUSION {
+            let top = [0, 1].map(|j| s.constant[j] + s.rise[j] + s.fall[j] * e);
+            let bottom = [0, 1].map(|j| s.constant[j] + s.slope[j] * depth + s.rise[j] * e + s.fall[j]);
+            set(&mut self.constant, top);
+            set(&mut self.slope, if s.k == 0.0 { s.slope } else { [0, 1].map(|j| (bottom[j] - top[j]) / depth) });
+        } else {
+            self.absorbing = true;
+            self.k[i] = s.k;
+            set(&mut self.rise, s.rise);
+            set(&mut self.fall, s.fall);
+        }
+        self.ground_radiance[i] = s.irradiance_up(depth) / std::f64::consts::PI;
+    }
+
+    /// Four waves of like length and different direction; the pattern is the square of their sum.
+    fn set_patches(&mut self, patches: &Patches, view: &Viewpoint) {
+        self.patch_amount = patches.amount;
+        let mut state = patches.seed;
+        let mut random = move || {
+            // SplitMix64 (Steele, Lea and Flood 2014).
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let tau = std::f64::consts::TAU;
+        let place = [view.map_m[0] - patches.drift_m[0], view.map_m[1] - patches.drift_m[1]];
+        let waves: [([f64; 2], f64); 4] = std::array::from_fn(|i| {
+            let angle = tau * (i as f64 + 0.8 * random()) / 4.0;
+            let number = tau / patches.size_m * (0.45 + 0.3 * random());
+            ([number * angle.cos(), number * angle.sin()], tau * random())
+        });
+        let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+        for (slot, (a, b)) in self.patch_waves.iter_mut().zip(pairs) {
+            let [ka, kb] = [waves[a].0, waves[b].0];
+            let k = [ka[0] - kb[0], ka[1] - kb[1]];
+            let phase = k[0] * place[0] + k[1] * place[1] + waves[a].1 - waves[b].1;
+            *slot = (view.east_north_up[0] * k[0] + view.east_north_up[1] * k[1], phase.rem_euclid(tau));
+        }
+    }
+
+    /// The form the shaders read (`FogUniform` of `fog/lookup.wgsl`).
+    pub fn uniform(&self) -> FogUniform {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let lobes = &self.lobes;
+        // Powers are taken on the GPU by exponentials of these; an asymmetry of 0 stays small to any power.
+        let log = |x: f64| x.abs().max(1e-9).ln() as f32;
+        FogUniform {
+            up: v(self.up),
+            kind: self.kind as u32,
+            to_sun: v(self.to_sun),
+            altitude: self.altitude as f32,
+            knots: self.knots.map(|k| k as f32),
+            ratio: v(self.ratio),
+            extinction: self.extinction as f32,
+            scaling: v(self.scaling),
+            depth_total: self.depth_total as f32,
+            linear: self.linear.map(|k| k as f32),
+            sky_band: self.sky_band as f32,
+            plane_distance: u32::from(self.distance == DistanceKind::Plane),
+            lobes: [log(lobes.g_hg), log(lobes.g_draine), lobes.alpha as f32, lobes.w_draine as f32],
+            forward: self.forward as f32,
+            curvature: self.curvature as f32,
+            ground: self.ground as f32,
+            inverse_mu0: self.inverse_mu0 as f32,
+            k: v(self.k),
+            absorbing: u32::from(self.absorbing),
+            first: v(self.first),
+            patch_amount: self.patch_amount as f32,
+            sky_radiance: v(self.sky_radiance),
+            smooth_g: self.smooth as f32,
+            ground_radiance: v(self.ground_radiance),
+            hg_sign: lobes.g_hg.signum() as f32,
+            constant: term(&self.constant),
+            slope: term(&self.slope),
+            beam: term(&self.beam),
+            rise: term(&self.rise),
+            fall: term(&self.fall),
+            patch_waves: self.patch_waves.map(|(k, p)| [k.x as f32, k.y as f32, k.z as f32, p as f32]),
+        }
+    }
+}
+
+/// What a deep layer of droplets under this light shows in the horizontal, one scaled depth below its top.
+fn deep_layer_radiance(light: &FogLight, view: &Viewpoint) -> DVec3 {
+    let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 15.0 });
+    let (_, albedo, asymmetry) = delta_scaling(1.0, lobes.moments());
+    let mu0 = light.to_sun.dot(view.east_north_up[2]).max(MIN_MU0);
+    DVec3::from(std::array::from_fn(|i| {
+        let (sun, sky, ground) = (light.sun_irradiance[i], light.sky_irradiance[i], light.ground_albedo[i]);
+        Slab { depth: 10.0, albedo, asymmetry, mu0, sun, sky, ground }.solve().intensities(1.0)[0].max(0.0)
+    }))
+}
+
+fn term(t: &Term) -> [[f32; 4]; 2] {
+    [t.even, t.odd].map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0])
+}
+
+/// [`FogModel`] as shaders read it; offsets are tested against naga's.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
+pub struct FogUniform {
+    pub up: [f32; 3],
+    pub kind: u32,
+    pub to_sun: [f32; 3],
+    pub altitude: f32,
+    pub knots: [f32; 4],
+    pub ratio: [f32; 3],
+    pub extinction: f32,
+    pub scaling: [f32; 3],
+    pub depth_total: f32,
+    pub linear: [f32; 2],
+    pub sky_band: f32,
+    pub plane_distance: u32,
+    pub lobes: [f32; 4],
+    pub forward: f32,
+    pub curvature: f32,
+    pub ground: f32,
+    pub inverse_mu0: f32,
+    pub k: [f32; 3],
+    pub absorbing: u32,
+    pub first: [f32; 3],
+    pub patch_amount: f32,
+    pub sky_radiance: [f32; 3],
+    pub smooth_g: f32,
+    pub ground_radiance: [f32; 3],
+    pub hg_sign: f32,
+    pub constant: [[f32; 4]; 2],
+    pub slope: [[f32; 4]; 2],
+    pub beam: [[f32; 4]; 2],
+    pub rise: [[f32; 4]; 2],
+    pub fall: [[f32; 4]; 2],
+    pub patch_waves: [[f32; 4]; PATCH_WAVES],
+}

@@ -1,0 +1,283 @@
+//! The drawn functions against their f64 twins, and the accuracy that is promised of them.
+
+use glam::{DVec2, DVec3};
+use welkin::fog::reference::{FogModel, fog_along};
+use welkin::fog::{
+    CompatibilityLaw, DistanceKind, FogLayer, FogUniform, Law, Patches, Phase, Viewpoint, koschmieder_extinction_per_m,
+    laws::Curve,
+};
+use welkin::gpu::shader;
+use welkin::scene::ViewRays;
+use welkin::scene::depth::RANGE_SKY_M;
+
+use super::path::{EARTH_M, exponential, model, noon, slab, view};
+use super::{cameras, gpu};
+
+/// Fog along rays given as (azimuth, mu, range, plane); answers radiance and transmittance of the green channel,
+/// distance, and transmittance of the red one.
+const BODY: &str = "fn answer(i: vec4f) -> vec4f {
+    let s = sqrt(max(1.0 - i.y * i.y, 0.0));
+    let fog = fog_along(u, vec3f(0.0), vec3f(s * sin(i.x), s * cos(i.x), i.y), i.z, i.w);
+    return vec4f(fog.radiance.y, fog.transmittance.y, fog.distance, fog.transmittance.x);
+}";
+
+fn drawn(m: &FogModel, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    gpu::evaluate("fog/lookup.wgsl", BODY, "FogUniform", bytemuck::bytes_of(&m.uniform()), inputs)
+}
+
+fn twin(m: &FogModel, i: [f32; 4]) -> [f64; 4] {
+    let [a, mu, range, plane] = i.map(f64::from);
+    let s = (1.0 - mu * mu).max(0.0).sqrt();
+    let range = if i[2] >= RANGE_SKY_M as f32 { RANGE_SKY_M } else { range };
+    let f = fog_along(m, DVec3::ZERO, DVec3::new(s * a.sin(), s * a.cos(), mu), range, plane);
+    [f.radiance.y, f.transmittance.y, f.distance, f.transmittance.x]
+}
+
+fn rays() -> Vec<[f32; 4]> {
+    let mut out = Vec::new();
+    for azimuth in [0.54f32, 2.0, 4.0] {
+        for mu in [-1.0f32, -0.4, -0.03, -0.004, -0.0005, 0.0, 0.001, 0.02, 0.3, 0.81, 1.0] {
+            for range in [0.3f32, 20.0, 150.0, 1e3, 8e3, 4e4, RANGE_SKY_M as f32] {
+                out.push([azimuth, mu, range, range * 0.8]);
+            }
+        }
+    }
+    out
+}
+
+fn compare(name: &str, m: &FogModel, tolerance: f64) {
+    let inputs = rays();
+    for (i, g) in inputs.iter().zip(drawn(m, &inputs)) {
+        let want = twin(m, *i);
+        assert!(g.iter().all(|v| v.is_finite() && *v >= 0.0), "{name} {i:?}: drawn {g:?}");
+        for j in [0, 1, 3] {
+            let error = (f64::from(g[j]) - want[j]).abs();
+            assert!(error < tolerance * want[j].max(1.0), "{name} {i:?} [{j}]: drawn {} of {}", g[j], want[j]);
+        }
+    }
+}
+
+#[test]
+fn every_profile_is_drawn_as_the_reference_has_it() {
+    for h in [1.7, 19.0, 50.0, 400.0, 3000.0, 12_000.0] {
+        for radius in [EARTH_M, f64::INFINITY] {
+            let layers = [
+                slab(150.0, -1e4, 60.0, 20.0),
+                slab(30.0, 0.0, 2.0, 1.0),
+                slab(1000.0, 0.0, 200.0, 0.0),
+                slab(5000.0, 100.0, 400.0, 120.0),
+                exponential(2000.0, 50.0),
+                exponential(20_000.0, 1200.0),
+                FogLayer { albedo: [0.97, 0.93, 0.85], angstrom: 1.3, ..slab(400.0, 0.0, 300.0, 50.0) },
+                FogLayer {
+                    albedo: [1.0, 0.5, 0.0],
+                    phase: Phase::HenyeyGreenstein { g: 0.3 },
+                    ..slab(80.0, 0.0, 90.0, 9.0)
+                },
+            ];
+            for layer in layers {
+                compare(&format!("h {h} radius {radius} {layer:?}"), &model(layer, &view(h, radius)), 6e-4);
+            }
+        }
+    }
+}
+
+#[test]
+fn patches_are_drawn_as_the_reference_has_them() {
+    let patches = Patches { amount: 1.0, size_m: 80.0, seed: 7, drift_m: [1.2e7, -3e6] };
+    let layer = FogLayer { patches: Some(patches), ..slab(100.0, 0.0, 30.0, 5.0) };
+    for h in [2.0, 60.0] {
+        let m = model(layer, &Viewpoint { map_m: [5.5e6, -2e6], ..view(h, EARTH_M) });
+        compare(&format!("patches h {h}"), &m, 2e-3);
+    }
+}
+
+#[test]
+fn the_compatibility_laws_are_drawn_on_range_and_plane() {
+    for curve in [
+        Curve::Linear { start_m: 100.0, end_m: 3000.0 },
+        Curve::Exponential { density_per_m: 2e-3 },
+        Curve::ExponentialSquared { density_per_m: 1e-3 },
+    ] {
+        for distance in [DistanceKind::Range, DistanceKind::Plane] {
+            for sky_band in [0.0, 0.2, std::f64::consts::PI] {
+                for colour in [None, Some([0.5, 0.6, 0.7])] {
+                    let law = CompatibilityLaw { curve, distance, colour, sky_band };
+                    let m = FogModel::new(&Law::Compatibility(law), &noon(), &view(2.0, EARTH_M)).unwrap();
+                    compare(&format!("{law:?}"), &m, 1e-5);
+                    let d = if distance == DistanceKind::Range { 150.0 } else { 120.0 };
+                    let v = twin(&m, [0.0, 0.0, 150.0, 120.0])[1];
+                    assert!((v - law.visibility(d)).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+/// Truth: a flat homogeneous layer keeps 0.05 +- 0.001 at the visibility as drawn, at any depth mapping, and at the
+/// picture's edge as in its centre.
+#[test]
+fn five_percent_at_every_depth_mapping_and_pixel() {
+    let body = "struct Both { depth: DepthUniform, fog: FogUniform }
+        fn answer(i: vec4f) -> vec4f {
+            let ray = view_ray(u.depth, i.xy);
+            let fog = fog_along(u.fog, ray.origin, ray.direction, view_range(u.depth, i.z, i.xy), view_plane(u.depth, i.z, i.xy));
+            return vec4f(fog.transmittance, fog.radiance.y);
+        }";
+    let pixels = [(0.0, 0.0), (0.999, -0.999), (-0.999, 0.999), (1.0, 1.0), (-0.4, -0.7)];
+    for case in cameras::all() {
+        let rays = ViewRays::new(&case.camera, &case.mapping).unwrap();
+        for v in [50.0, 150.0, 1e3, 5e3, 2e4, 5e4] {
+            let m = model(slab(v, -1e5, 1e5, 0.0), &view(2.0, f64::INFINITY));
+            // A depth in f32 separates what the host's convention separates; the rest must not add to that.
+            let inputs: Vec<_> = pixels
+                .iter()
+                .map(|(x, y)| [*x as f32, *y as f32, rays.depth_at(v, DVec2::new(*x, *y)) as f32, 0.0])
+                .collect();
+            let mut bytes = bytemuck::bytes_of(&rays.uniform()).to_vec();
+            bytes.extend_from_slice(bytemuck::bytes_of(&m.uniform()));
+            for (i, g) in inputs.iter().zip(gpu::evaluate("fog/lookup.wgsl", body, "Both", &bytes, &inputs)) {
+                let ndc = DVec2::new(f64::from(i[0]), f64::from(i[1]));
+                let held = rays.view_range(f64::from(i[2]), ndc);
+                let want = (-koschmieder_extinction_per_m(v) * held).exp();
+                let name = format!("{} V {v} at {ndc}", case.name);
+                assert!((f64::from(g[1]) - want).abs() < 1e-4, "{name}: drawn {} of {want}", g[1]);
+                let lost = (held - v).abs() / v;
+                if lost < 5e-3 {
+                    assert!((f64::from(g[1]) - 0.05).abs() < 1e-3, "{name}: {}", g[1]);
+                } else {
+                    assert!(!case.mapping.reversed && case.name.contains("perspective"), "{name}: depth lost {lost}");
+                }
+            }
+        }
+    }
+}
+
+/// The horizon, from ground at the end of its ray to sky: a picture whose ground and sky are as bright as the far fog
+/// must show no line there, however much of them is seen.
+#[test]
+fn no_seam_at_the_horizon() {
+    // At 5 km a sixteenth of the ground at the horizon is seen: its darkness is seen with it.
+    let cases =
+        [(150.0, 60.0, [1.7, 30.0], 0.004), (1000.0, 100.0, [1.7, 70.0], 0.004), (5000.0, 300.0, [1.7, 500.0], 0.015)];
+    for (v, top, heights, step) in cases {
+        for h in heights {
+            let m = model(slab(v, -1e4, top, 0.2 * top), &view(h, EARTH_M));
+            let dip = -(2.0 * h / EARTH_M).sqrt();
+            let n = 400;
+            let sky = RANGE_SKY_M as f32;
+            let inputs: Vec<_> =
+                (0..=n).map(|i| [0.2, (dip + 0.004 * (i as f64 / n as f64 - 0.5)) as f32, sky, sky]).collect();
+            let got = drawn(&m, &inputs);
+            let far = got.iter().map(|g| g[0]).fold(0.0, f32::max);
+            let picture: Vec<_> = got.iter().map(|g| g[0] + g[1] * far).collect();
+            for (pair, i) in picture.windows(2).zip(&inputs) {
+                assert!((pair[1] - pair[0]).abs() < step * far, "V {v} h {h} mu {}: {pair:?} of {far}", i[1]);
+            }
+        }
+    }
+}
+
+/// Everything far away in deep fog has one radiance: ground and sky converge.
+#[test]
+fn far_ground_and_sky_converge() {
+    let m = model(slab(150.0, -1e4, 150.0, 30.0), &view(2.0, EARTH_M));
+    let far = |mu: f32, range: f32| drawn(&m, &[[0.2, mu, range, range]])[0];
+    let sky = far(0.001, RANGE_SKY_M as f32);
+    for ground in [far(-0.001, 1900.0), far(-0.0005, RANGE_SKY_M as f32), far(0.0, 5000.0)] {
+        assert!((ground[0] / sky[0] - 1.0).abs() < 0.01 && ground[1] < 1e-4, "{ground:?} {sky:?}");
+    }
+}
+
+#[test]
+fn edges_of_the_ranges_stay_finite() {
+    let mut cases = Vec::new();
+    for v in [1.0, 1e6] {
+        for top in [0.0, 2.0, 1e4] {
+            for h in [-100.0, 1.7, 1e7] {
+                for radius in [EARTH_M, f64::INFINITY] {
+                    cases.push((slab(v, 0.0, top, 1.0), h, radius));
+                }
+            }
+        }
+        cases.push((exponential(v, 1.0), 1e7, EARTH_M));
+        cases.push((exponential(v, 1.0), -1e3, EARTH_M));
+        cases.push((exponential(v, 1e5), 0.0, f64::INFINITY));
+    }
+    cases.push((FogLayer { extinction_per_m: 0.0, ..slab(1.0, 0.0, 10.0, 1.0) }, 1.0, EARTH_M));
+    cases.push((FogLayer { extinction_per_m: 0.0, albedo: [0.0; 3], ..slab(1.0, 0.0, 10.0, 1.0) }, 1.0, EARTH_M));
+    let inputs = rays();
+    for (layer, h, radius) in cases {
+        for sun in [DVec3::Z, DVec3::X, -DVec3::Z] {
+            let mut light = noon();
+            light.to_sun = sun;
+            let m = FogModel::new(&Law::Layer(layer), &light, &view(h, radius)).unwrap();
+            for (i, g) in inputs.iter().zip(drawn(&m, &inputs)) {
+                let ok = g.iter().all(|v| v.is_finite() && *v >= 0.0) && g[1] <= 1.0;
+                assert!(ok, "{layer:?} h {h} radius {radius} sun {sun} {i:?}: {g:?}");
+                if layer.extinction_per_m == 0.0 {
+                    assert!(g[0] == 0.0 && g[1] == 1.0, "no fog changed the picture: {g:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_numbers_are_refused_by_name() {
+    let good = slab(150.0, 0.0, 10.0, 1.0);
+    let says = |layer: FogLayer| FogModel::new(&Law::Layer(layer), &noon(), &view(2.0, EARTH_M)).unwrap_err().message;
+    assert!(says(FogLayer { extinction_per_m: f64::NAN, ..good }).contains("fog.extinction_per_m"));
+    assert!(says(FogLayer { albedo: [0.5, 1.5, 0.5], ..good }).contains("fog.albedo"));
+    assert!(says(slab(150.0, 10.0, 0.0, 1.0)).contains("fog.top_m"));
+    assert!(says(slab(150.0, 0.0, 10.0, f64::INFINITY)).contains("softness"));
+    assert!(says(FogLayer { phase: Phase::Droplets { diameter_um: 1.0 }, ..good }).contains("fog.diameter_um"));
+    let mut light = noon();
+    light.sun_irradiance[1] = f64::NAN;
+    let e = FogModel::new(&Law::Layer(good), &light, &view(2.0, EARTH_M)).unwrap_err();
+    assert!(e.message.contains("fog.sun_irradiance"));
+    let e = FogModel::new(&Law::Layer(good), &noon(), &view(f64::NAN, EARTH_M)).unwrap_err();
+    assert!(e.message.contains("altitude_m"));
+}
+
+#[test]
+fn offsets_are_those_of_the_shader() {
+    let text = shader::assemble("fog/lookup.wgsl").unwrap();
+    let (size, members) = shader::struct_layout(&text, "FogUniform").unwrap();
+    assert_eq!(size as usize, size_of::<FogUniform>());
+    macro_rules! offsets { ($($f:ident),*) => { vec![$((stringify!($f).to_owned(), std::mem::offset_of!(FogUniform, $f) as u32)),*] } }
+    let ours = offsets!(
+        up,
+        kind,
+        to_sun,
+        altitude,
+        knots,
+        ratio,
+        extinction,
+        scaling,
+        depth_total,
+        linear,
+        sky_band,
+        plane_distance,
+        lobes,
+        forward,
+        curvature,
+        ground,
+        inverse_mu0,
+        k,
+        absorbing,
+        first,
+        patch_amount,
+        sky_radiance,
+        smooth_g,
+        ground_radiance,
+        hg_sign,
+        constant,
+        slope,
+        beam,
+        rise,
+        fall,
+        patch_waves
+    );
+    assert_eq!(members, ours);
+}
