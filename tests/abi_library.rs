@@ -30,17 +30,28 @@ fn library() -> PathBuf {
 
 /// Compiles one of the C programs beside these tests.
 fn program(name: &str, library: Option<&Path>) -> PathBuf {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("library");
+    // The tests run at the same time: each has a folder of its own.
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("library-{}", std::process::id()));
     fs::create_dir_all(&dir).expect("the target directory is writable");
     let out = dir.join(name);
     let mut cc = Command::new("gcc");
     cc.args(["-std=c99", "-g", "-Wall", "-Wextra", "-Werror", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
     cc.arg(root().join(format!("tests/c/{name}.c"))).arg("-o").arg(&out);
     if let Some(library) = library {
-        cc.arg(library).arg(format!("-Wl,-rpath,{}", library.parent().expect("a folder").display()));
+        // A library with a SONAME is looked for under that name, which only an installed one has.
+        for link in ["libwelkin.so", "libwelkin.so.1"] {
+            let _ = fs::remove_file(dir.join(link));
+            std::os::unix::fs::symlink(library, dir.join(link)).expect("the folder is writable");
+        }
+        cc.arg("-L").arg(&dir).arg("-lwelkin").arg(format!("-Wl,-rpath,{}", dir.display()));
     }
     run(cc.arg("-ldl"));
     out
+}
+
+/// Removes the folder of this test's programs.
+fn tidy(program: &Path) {
+    fs::remove_dir_all(program.parent().expect("a folder")).expect("the folder is ours");
 }
 
 fn committed_symbols() -> Vec<String> {
@@ -58,18 +69,23 @@ fn the_library_exports_the_committed_list_and_nothing_else() {
 
 #[test]
 fn the_library_loads_at_run_time() {
-    let out = run(Command::new(program("dlopen", None)).arg(library()).args(committed_symbols()));
+    let program = program("dlopen", None);
+    let out = run(Command::new(&program).arg(library()).args(committed_symbols()));
+    tidy(&program);
     assert_eq!(out, format!("{} functions\n", committed_symbols().len()));
 }
 
 #[test]
 fn a_c_host_makes_uses_and_destroys_everything() {
-    assert_eq!(run(&mut Command::new(program("noop", Some(&library())))), "ok\n");
+    let noop = program("noop", Some(&library()));
+    assert_eq!(run(&mut Command::new(&noop)), "ok\n");
+    tidy(&noop);
 }
 
 #[test]
 fn valgrind_finds_no_error_and_no_leak() {
     let noop = program("noop", Some(&library()));
     let options = ["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect"];
-    assert_eq!(run(Command::new("valgrind").args(options).arg(noop)), "ok\n");
+    assert_eq!(run(Command::new("valgrind").args(options).arg(&noop)), "ok\n");
+    tidy(&noop);
 }
