@@ -83,13 +83,13 @@ header: setup-build ## write include/welkin.h and the ABI lists anew from the so
 test: setup lint ## all checks, at most 25 minutes on two cores from a clean clone
 	$(MAKE) --no-print-directory lib PROFILE=dev
 	cargo test --locked --doc
-	$(RUN_TESTS)
+	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
 accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_ACCEPT=1 cargo test --locked --release --doc
 	$(MAKE) --no-print-directory bench
-	WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
+	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
 bench: setup-build ## speed, as ratios measured within one run
 	$(if $(wildcard benches/*.rs benches/*/main.rs),cargo bench --locked --bench '*',@echo "bench: none yet")
