@@ -129,6 +129,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_VULKAN_SEMAPHORE 16
 /** wk_vulkan_target */
 #define WK_STRUCT_TYPE_VULKAN_TARGET 17
+/** wk_frame_textures */
+#define WK_STRUCT_TYPE_FRAME_TEXTURES 18
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -1759,6 +1761,81 @@ WK_API wk_status wk_view_desc_init(wk_view_desc *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Textures for the host's transparent things
+ *
+ * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
+ * light that air and fog add on the way to a point, and the share of the light behind that gets through. The mapping
+ * from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
+ * ====================================================================================================
+ */
+
+/** The veil of the view's last frame. */
+typedef struct wk_frame_textures {
+    /** sizeof(wk_frame_textures) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FRAME_TEXTURES. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage. */
+    uint64_t light;
+    /** Share of the light behind that gets through, RGB half floats: as `light`. */
+    uint64_t through;
+    /** Pixels of both. */
+    uint32_t width;
+    /** Pixels of both. */
+    uint32_t height;
+    /** Multiply `light` by this to have it in units of the host's colour. */
+    double light_scale;
+} wk_frame_textures;
+
+/** Every field of `wk_frame_textures` at its default. */
+#define WK_FRAME_TEXTURES_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_frame_textures), \
+    /* struct_type */ WK_STRUCT_TYPE_FRAME_TEXTURES, \
+    /* next */ NULL, \
+    /* light */ UINT64_C(0), \
+    /* through */ UINT64_C(0), \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* light_scale */ 0.0 \
+}
+
+/** Shading languages of the sampling functions. */
+typedef uint32_t wk_shading_language;
+
+/** GLSL 3.30. */
+#define WK_SHADING_GLSL 0
+/** WGSL. */
+#define WK_SHADING_WGSL 1
+
+/**
+ * The native textures of the veil. From the first call on, each frame's MEDIUM stage fills them; they stay the same
+ * until the view is destroyed and belong to it. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+ * wk_view_record calls with MEDIUM. Ask after each frame for its light_scale.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_view_get_frame_textures(wk_view *view,
+                                     wk_frame_textures *out_textures);
+
+/**
+ * Gives the text of the sampling functions, NUL-terminated UTF-8 that lives as long as the process.
+ * Thread: any.
+ */
+WK_API wk_status wk_get_veil_snippet(wk_shading_language language, const char **out_text);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FRAME_TEXTURES_INIT`. `struct_size` is `sizeof(wk_frame_textures)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_frame_textures_init(wk_frame_textures *out,
+                                 uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

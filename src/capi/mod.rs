@@ -30,6 +30,8 @@ pub mod frame;
 
 pub mod view;
 
+pub mod veil;
+
 mod boundary;
 mod device_cell;
 mod handles;

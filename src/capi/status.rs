@@ -84,6 +84,8 @@ pub const WK_STRUCT_TYPE_VULKAN_IMAGE: wk_struct_type = 15;
 pub const WK_STRUCT_TYPE_VULKAN_SEMAPHORE: wk_struct_type = 16;
 /// wk_vulkan_target
 pub const WK_STRUCT_TYPE_VULKAN_TARGET: wk_struct_type = 17;
+/// wk_frame_textures
+pub const WK_STRUCT_TYPE_FRAME_TEXTURES: wk_struct_type = 18;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -18,7 +18,10 @@
 use std::{
     ffi::c_void,
     ptr::null,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use super::{
@@ -120,9 +123,21 @@ pub(super) struct ViewObject {
     pub(super) cell: Arc<DeviceCell>,
     pub(super) context: Arc<ContextObject>,
     view: Mutex<View>,
+    /// Whether the host samples the veil, which then is handed over after each frame.
+    veil: AtomicBool,
 }
 
 impl ViewObject {
+    /// From now on the veil is handed over.
+    pub(super) fn uses_veil(&self) {
+        self.veil.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the host samples the veil.
+    pub(super) fn has_veil(&self) -> bool {
+        self.veil.load(Ordering::Relaxed)
+    }
+
     pub(super) fn lock(&self) -> MutexGuard<'_, View> {
         // A panic while it was held has poisoned the device already.
         self.view.lock().unwrap_or_else(PoisonError::into_inner)
@@ -156,7 +171,7 @@ pub unsafe extern "C" fn wk_view_create(
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         object.cell.drain();
         let view = Mutex::new(View::new(&object.read())?);
-        let view = ViewObject { cell: object.cell.clone(), context: object, view };
+        let view = ViewObject { cell: object.cell.clone(), context: object, view, veil: AtomicBool::new(false) };
         let handle = handles::insert::<_, ContextObject>(Arc::new(view), Some(context))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };

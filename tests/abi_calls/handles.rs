@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, view::*, vulkan::*};
+use welkin::capi::{
+    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, veil::*, view::*, vulkan::*,
+};
 
 use super::world::{World, init, message, next_frame};
 
@@ -51,6 +53,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
+        case("wk_view_get_frame_textures", "view", false, |h| unsafe {
+            wk_view_get_frame_textures(h.cast(), null_mut())
+        }),
         case("wk_view_get_report", "view", false, |h| unsafe { wk_view_get_report(h.cast(), null_mut()) }),
         case("wk_view_record", "frame.target.color", true, move |h| record(view, |t| t.color = h.cast())),
         case("wk_view_record", "frame.target.depth", true, move |h| record(view, |t| t.depth = h.cast())),
@@ -117,6 +122,7 @@ const WITHOUT: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
     "wk_version",
+    "wk_get_veil_snippet",
     "wk_set_log_callback",
     "wk_device_create",
     "wk_device_create_for_window",

@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, view::*, vulkan::*};
+use welkin::capi::{
+    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, veil::*, view::*, vulkan::*,
+};
 
 use super::world::{Bytes, World, init, message, next_frame};
 
@@ -73,6 +75,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_own_target", "frame.target", true, move |p| {
             let frame = wk_frame { frame_id: next_frame(), target: p, ..init("wk_frame") };
             unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }
+        }),
+        case("wk_frame_textures", "out_textures", false, move |p| unsafe {
+            wk_view_get_frame_textures(view, p.cast())
         }),
         case("wk_report", "out_report", false, move |p| unsafe { wk_view_get_report(view, p.cast()) }),
         case("wk_caps", "out_caps", false, move |p| unsafe { wk_device_get_caps(device, p.cast()) }),
@@ -241,6 +246,21 @@ fn missing_places_for_answers_are_named() {
     for (name, status, text) in answers {
         assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{name}: {text}");
         assert!(text.contains(&format!(": {name} must not be NULL")), "{name}: {text}");
+    }
+}
+
+#[test]
+fn snippets_are_texts_and_their_language_is_checked() {
+    let mut text = null();
+    // SAFETY: live pointers.
+    unsafe {
+        for (language, word) in [(WK_SHADING_GLSL, "vec3"), (WK_SHADING_WGSL, "fn ")] {
+            assert_eq!(wk_get_veil_snippet(language, &mut text), WK_OK);
+            assert!(std::ffi::CStr::from_ptr(text).to_str().unwrap().contains(word));
+        }
+        assert_eq!(wk_get_veil_snippet(2, &mut text), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("language must be one of WK_SHADING_GLSL, WK_SHADING_WGSL"), "{}", message());
+        assert_eq!(wk_get_veil_snippet(0, null_mut()), WK_ERROR_INVALID_ARGUMENT);
     }
 }
 

@@ -6,7 +6,9 @@ pub(super) mod vulkan;
 
 use std::ffi::c_void;
 
-use super::{boundary::Call, frame::wk_frame, layout, status::wk_struct_type, view::ViewObject};
+use super::{
+    boundary::Call, device_cell::DeviceCell, frame::wk_frame, layout, status::wk_struct_type, view::ViewObject,
+};
 use crate::{
     error::{Error, Result},
     frame::Stages,
@@ -25,6 +27,19 @@ impl Host {
     /// Whether GPU objects may only be released on one thread: where a host's context is current.
     pub(super) fn is_bound_to_thread(&self) -> bool {
         false
+    }
+
+    /// # Errors
+    /// [`Status::Unsupported`] where the host draws nothing itself.
+    pub(super) fn check_own_shaders(&self) -> Result<()> {
+        match self {
+            Self::Own => {
+                let text = "frame textures: they are for hosts that draw with OpenGL, Vulkan or wgpu themselves";
+                Err(Error::unsupported(text))
+            }
+            #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+            Self::Vulkan(_) => Ok(()),
+        }
     }
 
     /// Gives the host its device back.
@@ -54,6 +69,18 @@ pub(super) unsafe fn record(call: &mut Call, object: &ViewObject, frame: &wk_fra
         #[cfg(not(any(target_os = "macos", target_os = "ios")))]
         // SAFETY: the caller's promise.
         Host::Vulkan(host) => unsafe { vulkan::record(host, object, frame, stages) },
+    }
+}
+
+/// The host's own name for a texture of Welkin's: a VkImage or an OpenGL name.
+///
+/// # Errors
+/// [`Status::Unsupported`] on an own device.
+pub(super) fn native_texture(cell: &DeviceCell, texture: &wgpu::Texture) -> Result<u64> {
+    match &*cell.host() {
+        Host::Own => Err(Error::unsupported("native textures of an own device")),
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        Host::Vulkan(_) => vulkan::native_texture(texture),
     }
 }
 

@@ -85,6 +85,15 @@ pub(in crate::capi) fn forget_image(cell: &DeviceCell, image: u64) -> Result<()>
     }
 }
 
+/// The VkImage of a texture.
+pub(super) fn native_texture(texture: &wgpu::Texture) -> Result<u64> {
+    // SAFETY: the handle is only read.
+    let hal = unsafe { texture.as_hal::<wgpu::hal::vulkan::Api>() };
+    let lost = || Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one");
+    // SAFETY: as above.
+    Ok(unsafe { hal.ok_or_else(lost)?.raw_handle() }.as_raw())
+}
+
 /// An image with the texture that stands for it.
 struct Imported {
     image: HostImage,
@@ -127,6 +136,16 @@ pub(in crate::capi) unsafe fn record(
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
     let mut view = object.lock();
     view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
+    if object.has_veil() && stages.has(Stages::MEDIUM) {
+        let veil = view.frame_textures()?;
+        let read = [veil.light, veil.through];
+        let transitions = read.iter().map(|texture| wgpu::TextureTransition {
+            texture,
+            selector: None,
+            state: wgpu::TextureUses::RESOURCE,
+        });
+        encoder.transition_resources(std::iter::empty(), transitions);
+    }
     let lent: Vec<_> = [&color, &depth, &mask].into_iter().flatten().map(|i| (i.image, i.role, &i.texture)).collect();
     let over = HandOver { images: &lent, wait: waits.as_slice(), signal: signals.as_slice() };
     // SAFETY: as above; the queue is used by the header's contract.

@@ -1,0 +1,113 @@
+//! Textures for the host's transparent things
+//!
+//! Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
+//! light that air and fog add on the way to a point, and the share of the light behind that gets through. The mapping
+//! from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
+
+use std::{
+    ffi::{CString, c_char, c_void},
+    ptr::null,
+    sync::OnceLock,
+};
+
+use super::{
+    boundary::guard,
+    host,
+    input::out,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    view::{ViewObject, wk_view},
+};
+use crate::{
+    error::Status,
+    frame::{SNIPPET_GLSL, SNIPPET_WGSL},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_veil.rs"));
+
+/// The veil of the view's last frame.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_frame_textures {
+    /// sizeof(wk_frame_textures) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FRAME_TEXTURES.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage.
+    pub light: u64,
+    /// Share of the light behind that gets through, RGB half floats: as `light`.
+    pub through: u64,
+    /// Pixels of both.
+    pub width: u32,
+    /// Pixels of both.
+    pub height: u32,
+    /// Multiply `light` by this to have it in units of the host's colour.
+    pub light_scale: f64,
+}
+
+impl wk_frame_textures {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FRAME_TEXTURES,
+        next: null(),
+        light: 0,
+        through: 0,
+        width: 0,
+        height: 0,
+        light_scale: 0.0,
+    };
+}
+
+/// Shading languages of the sampling functions.
+pub type wk_shading_language = u32;
+/// GLSL 3.30.
+pub const WK_SHADING_GLSL: wk_shading_language = 0;
+/// WGSL.
+pub const WK_SHADING_WGSL: wk_shading_language = 1;
+
+/// The native textures of the veil. From the first call on, each frame's MEDIUM stage fills them; they stay the same
+/// until the view is destroyed and belong to it. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+/// wk_view_record calls with MEDIUM. Ask after each frame for its light_scale.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_frame_textures(
+    view: *mut wk_view,
+    out_textures: *mut wk_frame_textures,
+) -> wk_status {
+    guard("wk_view_get_frame_textures", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `out_textures`.
+        let place = unsafe { layout::out_struct(&"out_textures", out_textures)? };
+        object.cell.host().check_own_shaders()?;
+        object.cell.drain();
+        let textures = object.lock().frame_textures()?;
+        object.uses_veil();
+        place.set(&wk_frame_textures {
+            light: host::native_texture(&object.cell, &textures.light)?,
+            through: host::native_texture(&object.cell, &textures.through)?,
+            width: textures.light.width(),
+            height: textures.light.height(),
+            light_scale: f64::from(textures.light_scale),
+            ..wk_frame_textures::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
+
+/// Gives the text of the sampling functions, NUL-terminated UTF-8 that lives as long as the process.
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_get_veil_snippet(language: wk_shading_language, out_text: *mut *const c_char) -> wk_status {
+    static TEXTS: OnceLock<[CString; 2]> = OnceLock::new();
+    guard("wk_get_veil_snippet", |_| {
+        layout::WK_SHADING_LANGUAGE.check(&"language", language.into())?;
+        let place = out("out_text", out_text)?;
+        let texts = TEXTS.get_or_init(|| [SNIPPET_GLSL, SNIPPET_WGSL].map(|t| CString::new(t).unwrap_or_default()));
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(texts[language as usize].as_ptr()) };
+        Ok(Status::Ok)
+    })
+}
