@@ -6,6 +6,7 @@ mod draw;
 mod host;
 mod refusals;
 mod sharing;
+mod weather;
 
 use ash::vk;
 use host::{Host, Owned, Setup};
@@ -192,6 +193,30 @@ fn the_layout_wanted_back_holds_whatever_the_last_use_was() {
     assert_all(&host.read(&picture.colour.image, &[]), [64, 255, 128, 255]);
     welkin.close().unwrap();
     picture.destroy(&host);
+    host.finish();
+}
+
+#[test]
+fn more_images_than_are_kept_pass_through() {
+    use vk::ImageUsageFlags as U;
+    let host = Host::new(Setup::modern());
+    let welkin = adopted(&host);
+    let usage = U::COLOR_ATTACHMENT | U::TRANSFER_SRC | U::TRANSFER_DST;
+    let images: Vec<_> = (0..70).map(|_| host.image(vk::Format::R8G8B8A8_UNORM, SIZE, 1, usage)).collect();
+    let layout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
+    let back = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+    for _ in 0..2 {
+        for owned in &images {
+            host.run(&[], &[], false, |c| host.clear_colour(c, &owned.image, [0.0, 0.0, 0.5, 1.0], layout));
+            draw::green(&welkin, &HostImage { layout, final_layout: back, ..owned.image }).unwrap();
+        }
+        for owned in &images {
+            assert_all(&host.read(&owned.image, &[]), [0, 255, 128, 255]);
+        }
+    }
+    host.assert_valid();
+    welkin.close().unwrap();
+    images.into_iter().for_each(|i| host.destroy_image(i));
     host.finish();
 }
 

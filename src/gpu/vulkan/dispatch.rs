@@ -4,7 +4,7 @@
 //! Vulkan entry points carry no user pointer, so the record behind each is found by the handle in its first
 //! argument. Every other function goes straight to the driver.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -91,6 +91,18 @@ pub(super) fn while_adopting<R>(record: &Arc<HostRecord>, f: impl FnOnce() -> R)
     ADOPTING.with_borrow_mut(|a| *a = Some(Arc::clone(record)));
     let _reset = Reset;
     f()
+}
+
+thread_local! {
+    /// Command buffers to run before and after those of this thread's next submission on a queue.
+    static BRACKET: Cell<Option<(vk::Queue, [vk::CommandBuffer; 2])>> = const { Cell::new(None) };
+}
+
+/// Runs `f`, which submits once on `queue`, with `bracket` round the commands. Says whether it did submit.
+pub(super) fn with_bracket<R>(queue: vk::Queue, bracket: [vk::CommandBuffer; 2], f: impl FnOnce() -> R) -> bool {
+    BRACKET.set(Some((queue, bracket)));
+    f();
+    BRACKET.take().is_none()
 }
 
 fn find(matches: impl Fn(&HostRecord) -> bool) -> Option<Arc<HostRecord>> {
@@ -291,8 +303,31 @@ unsafe extern "system" fn queue_submit(
 ) -> vk::Result {
     let Some(host) = find(|h| h.queue == queue) else { return vk::Result::ERROR_DEVICE_LOST };
     let _held = Held::new(&host);
-    // SAFETY: the arguments are passed on as they came, with the queue held.
-    unsafe { (host.real.queue_submit)(queue, count, submits, fence) }
+    let real = host.real.queue_submit;
+    let bracket = BRACKET.get().filter(|b| b.0 == queue && count == 1);
+    if bracket.is_some() {
+        BRACKET.set(None);
+    }
+    // SAFETY: `submits` has `count` valid elements, of which the one bracketed is copied with the same command
+    // buffers and two more round them; the queue is held.
+    unsafe {
+        let Some((_, [before, after])) = bracket else { return real(queue, count, submits, fence) };
+        let theirs = std::slice::from_raw_parts((*submits).p_command_buffers, (*submits).command_buffer_count as usize);
+        let mut few = [vk::CommandBuffer::null(); 16];
+        let many: Vec<vk::CommandBuffer>;
+        let all = if theirs.len() + 2 <= few.len() {
+            few[0] = before;
+            few[1..=theirs.len()].copy_from_slice(theirs);
+            few[theirs.len() + 1] = after;
+            &few[..theirs.len() + 2]
+        } else {
+            many = std::iter::once(before).chain(theirs.iter().copied()).chain([after]).collect();
+            &many[..]
+        };
+        let whole =
+            vk::SubmitInfo { p_command_buffers: all.as_ptr(), command_buffer_count: all.len() as u32, ..*submits };
+        real(queue, 1, &raw const whole, fence)
+    }
 }
 
 unsafe extern "system" fn queue_wait_idle(queue: vk::Queue) -> vk::Result {

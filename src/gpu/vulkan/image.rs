@@ -21,7 +21,7 @@ const MAX_IMPORTS: usize = 64;
 /// What Welkin does with a host's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageRole {
-    /// Drawn into: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT`.
+    /// Drawn into, and copied to be read: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`.
     Colour,
     /// Depth that is read: needs `VK_IMAGE_USAGE_SAMPLED_BIT`.
     Depth,
@@ -189,7 +189,11 @@ impl VulkanHost {
             keep
         });
         drop(images);
-        self.device.wait()
+        let mut brackets = self.brackets.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let waited = self.device.wait();
+        // SAFETY: the queue's work was waited for (a lost device has none), with the brackets held.
+        unsafe { brackets.free(&self.raw, |lent| lent.iter().any(|(i, _)| i.image == image)) };
+        waited
     }
 
     /// Makes the texture over an image whose description was checked.
@@ -264,7 +268,7 @@ impl VulkanHost {
         }
         self.check_format(name, image, format, role)?;
         let needed = if role == ImageRole::Colour {
-            vk::ImageUsageFlags::COLOR_ATTACHMENT
+            vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC
         } else {
             vk::ImageUsageFlags::SAMPLED
         };

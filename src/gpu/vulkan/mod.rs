@@ -19,6 +19,7 @@
 //! not: wgpu is shown only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
 //! `VK_KHR_storage_buffer_storage_class`.
 
+mod bracket;
 mod checks;
 mod dispatch;
 mod facts;
@@ -27,7 +28,7 @@ mod image;
 
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::vk;
 use wgpu::hal::vulkan::Api as Vulkan;
@@ -83,8 +84,9 @@ pub struct VulkanHost {
     raw: ash::Device,
     released: Arc<AtomicBool>,
     images: Mutex<image::Imports>,
-    /// Semaphores belong to the next submission, so staging them and submitting is one step.
-    submission: Mutex<()>,
+    /// Held through a submission: semaphores and barriers belong to the next one, so staging them and submitting
+    /// is one step.
+    brackets: Mutex<bracket::Brackets>,
 }
 
 impl std::fmt::Debug for VulkanHost {
@@ -99,7 +101,7 @@ impl VulkanHost {
         &self.record.enabled
     }
 
-    /// Waits for the GPU, gives everything back and says whether the host may now destroy its device.
+    /// Waits for the GPU (and so for every semaphore that was to be waited for), gives everything back and says whether the host may now destroy its device.
     ///
     /// # Errors
     /// [`Status::InUse`] if contexts, views or textures made from this device are still alive: they keep it open,
@@ -113,6 +115,16 @@ impl VulkanHost {
             return Err(Error::new(Status::InUse, message));
         }
         waited
+    }
+}
+
+impl Drop for VulkanHost {
+    fn drop(&mut self) {
+        // A device that is lost has nothing pending either.
+        let _ = self.device.wait();
+        let brackets = self.brackets.get_mut().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the queue's work was waited for, and the host's device lives longer than this.
+        unsafe { brackets.destroy(&self.raw) };
     }
 }
 
@@ -245,8 +257,8 @@ fn open(
         (instance, adapter, device, queue)
     };
     let device = Device::adopt(instance, adapter, device, queue, false, None)?;
-    let (images, submission) = (Mutex::default(), Mutex::new(()));
-    Ok(VulkanHost { device, record: Arc::clone(record), raw, released, images, submission })
+    let record = Arc::clone(record);
+    Ok(VulkanHost { device, record, raw, released, images: Mutex::default(), brackets: Mutex::default() })
 }
 
 fn device_error(e: wgpu::hal::DeviceError) -> Error {
