@@ -28,6 +28,7 @@
 pub mod laws;
 pub mod light;
 pub mod phase;
+mod probe;
 pub mod queries;
 pub mod reference;
 mod uniforms;
@@ -37,6 +38,7 @@ use glam::DVec3;
 use crate::error::{Error, Result, check_range};
 
 pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
+pub use probe::{probe, probe_csv};
 pub use queries::{
     extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between, vertical_visibility_m,
     visibility_between_m,

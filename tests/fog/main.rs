@@ -6,4 +6,5 @@ mod drawn;
 mod gpu;
 mod light;
 mod path;
+mod probe;
 mod slab;

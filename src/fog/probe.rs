@@ -1,0 +1,193 @@
+//! Asks the drawn fog from outside: `probe fog --visibility V`. The GPU path is that of the composition (a depth buffer,
+//! `view_range`, `fog_along`, `fog_apply`), only the scene is made up.
+
+use glam::{DVec2, DVec3};
+
+use super::{FogLayer, FogLight, FogModel, FogUniform, Law, Profile, Viewpoint, koschmieder_extinction_per_m};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+        readback,
+    },
+    scene::{Camera, DepthMapping, DepthUniform, ViewRays},
+};
+
+/// Pixels a row of the synthetic picture.
+const WIDTH: u32 = 256;
+/// So near that a distance of 0 errs by nothing that shows.
+const NEAR_M: f64 = 1e-6;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ProbeUniform {
+    depth: DepthUniform,
+    fog: FogUniform,
+}
+
+/// What is left of contrast, and the transmittance at 550 nm, over each of `distances_m` (\[0, 1e9\] m) in a flat
+/// homogeneous layer of visibility `visibility_m` (\[1, 1e6\] m), as the GPU draws it.
+///
+/// The contrast is measured in the drawn picture: the difference between a white and a black target behind the fog.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<Vec<[f64; 2]>> {
+    check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
+    for d in distances_m {
+        check_range("distance_m", *d, 0.0, 1e9, "m")?;
+    }
+    let Some(height) = std::num::NonZeroU32::new((distances_m.len() as u32).div_ceil(WIDTH)) else {
+        return Ok(Vec::new());
+    };
+    let height = height.get();
+    // So flat a picture that no ray leaves the layer before nothing is left of it.
+    let mut camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.02, 60.0, NEAR_M);
+    // The numbers a host would pass are f32.
+    camera.projection = camera.projection.as_mat4().as_dmat4();
+    let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..Default::default() })?;
+    let uniform = ProbeUniform { depth: rays.uniform(), fog: model(visibility_m)?.uniform() };
+    let depths: Vec<f32> = (0..WIDTH * height)
+        .map(|i| {
+            let pixel = DVec2::new(f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5);
+            let uv = pixel / DVec2::new(f64::from(WIDTH), f64::from(height));
+            let distance = distances_m.get(i as usize).copied().unwrap_or(1.0).max(2.0 * NEAR_M);
+            rays.depth_at(distance, DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)) as f32
+        })
+        .collect();
+    let texels = draw(device, &uniform, &depths, height)?;
+    Ok(texels.iter().take(distances_m.len()).map(|t| [f64::from(t[0] - t[1]), f64::from(t[2])]).collect())
+}
+
+/// A layer that fills all the air, under a grey sky.
+fn model(visibility_m: f64) -> Result<FogModel> {
+    let layer = FogLayer {
+        profile: Profile::Slab { base_m: -1e5, top_m: 1e6, base_softness_m: 0.0, top_softness_m: 0.0 },
+        ..FogLayer::ground_fog(koschmieder_extinction_per_m(visibility_m), 1.0, 0.0)
+    };
+    let light =
+        FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [1.0; 3], ground_albedo: [0.2; 3] };
+    FogModel::new(&Law::Layer(layer), &light, &Viewpoint::flat(2.0))
+}
+
+fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) -> Result<Vec<[f32; 4]>> {
+    let gpu = &device.device;
+    let size = wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 };
+    let texture = |format, usage| {
+        gpu.create_texture(&wgpu::TextureDescriptor {
+            label: Some("fog probe"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    };
+    // Software OpenGL renders no 32-bit floats.
+    let wide = device.adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float).allowed_usages;
+    let format = if wide.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+        wgpu::TextureFormat::Rgba32Float
+    } else {
+        wgpu::TextureFormat::Rgba16Float
+    };
+    let target = texture(format, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
+    let source =
+        texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST);
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH * 4), rows_per_image: None };
+    device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(depths), rows, size);
+    let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("fog probe"),
+        size: size_of::<ProbeUniform>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    device.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(uniform));
+    let layout = layout(gpu);
+    let pipeline = pass::fullscreen(
+        device,
+        &FullscreenDesc {
+            shader: "fog/probe.wgsl",
+            entry: "fog_probe",
+            layouts: &[&layout],
+            targets: &[format.into()],
+            constants: &[],
+            samples: 1,
+        },
+    )?;
+    let group = gpu.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("fog probe"),
+        layout: &layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&source.create_view(&Default::default())),
+            },
+        ],
+    });
+    let mut encoder = gpu.create_command_encoder(&Default::default());
+    pass::draw(&mut encoder, "fog probe", &pipeline, &[&group], &target.create_view(&Default::default()));
+    device.submit_and_wait(encoder)?;
+    readback::rgba(device, &target)
+}
+
+fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: wgpu::BufferSize::new(size_of::<ProbeUniform>() as u64),
+    };
+    let depth = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    gpu.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("fog probe"),
+        entries: &[entry(0, uniform), entry(1, depth)],
+    })
+}
+
+/// [`probe`] over CSV text: the header must have a column `distance_m`; every line comes back with `contrast` and
+/// `transmittance` appended. Blank lines are left out.
+///
+/// # Errors
+/// [`Status::Parse`] with line and column (both from 1, the column in characters); nothing is drawn then.
+pub fn probe_csv(device: &Device, visibility_m: f64, text: &str) -> Result<String> {
+    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty());
+    let fault = |line: usize, column: usize, what: String| {
+        Error::new(Status::Parse, format!("line {}, column {column}: {what}", line + 1))
+    };
+    let (first, header) = lines.next().ok_or_else(|| fault(0, 1, "a header with distance_m is missing".into()))?;
+    let names: Vec<&str> = header.split(',').map(str::trim).collect();
+    let index = names
+        .iter()
+        .position(|n| *n == "distance_m")
+        .ok_or_else(|| fault(first, 1, format!("no column distance_m among {names:?}")))?;
+    let mut kept = Vec::new();
+    let mut distances = Vec::new();
+    for (number, line) in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        if fields.len() != names.len() {
+            let what = format!("{} fields, the header has {}", fields.len(), names.len());
+            return Err(fault(number, line.chars().count() + 1, what));
+        }
+        let column = 1 + fields[..index].iter().map(|f| f.chars().count() + 1).sum::<usize>();
+        let value = fields[index].trim();
+        let distance =
+            value.parse::<f64>().map_err(|_| fault(number, column, format!("distance_m is no number: {value:?}")))?;
+        check_range("distance_m", distance, 0.0, 1e9, "m").map_err(|e| fault(number, column, e.message))?;
+        kept.push(line);
+        distances.push(distance);
+    }
+    let mut out = format!("{header},contrast,transmittance\n");
+    for (line, [contrast, transmittance]) in kept.iter().zip(probe(device, visibility_m, &distances)?) {
+        out.push_str(&format!("{line},{contrast:.7},{transmittance:.7}\n"));
+    }
+    Ok(out)
+}
