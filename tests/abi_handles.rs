@@ -66,6 +66,31 @@ fn a_panic_inside_poisons_the_device_and_nothing_else() {
     }
 }
 
+unsafe extern "C" fn meddle(user: *mut c_void, _: wk_log_level, _: *const std::ffi::c_char) {
+    let answer = unsafe { wk_version(null_mut(), null_mut(), null_mut()) };
+    unsafe { user.cast::<wk_status>().write(answer) };
+}
+
+#[test]
+fn a_callback_that_calls_welkin_is_refused_and_does_no_harm() {
+    let mut answer: wk_status = 7;
+    unsafe {
+        let user = (&raw mut answer).cast();
+        assert_eq!(wk_set_log_callback(Some(meddle), user, WK_LOG_LEVEL_DEBUG), WK_OK);
+        assert_eq!(wk_set_log_callback(Some(meddle), user, 9), WK_ERROR_INVALID_ARGUMENT);
+        let device = noop_device();
+        abi::log_in_next_call();
+        assert_eq!(wk_device_get_status(device), WK_OK);
+        assert_eq!(answer, WK_ERROR_WRONG_ORDER);
+        answer = 7;
+        assert_eq!(wk_set_log_callback(None, null_mut(), WK_LOG_LEVEL_ERROR), WK_OK);
+        abi::log_in_next_call();
+        assert_eq!(wk_device_get_status(device), WK_OK);
+        assert_eq!(answer, 7, "a removed callback is not called");
+        assert_eq!(wk_device_destroy(device), WK_OK);
+    }
+}
+
 #[test]
 fn messages_belong_to_their_thread() {
     assert_eq!(message(), "");

@@ -1,6 +1,9 @@
 //! What the tests of the binary interface compare with C's view and with the committed lists. Not part of the API.
 
-use super::layout::{FUNCTIONS, Kind, STRUCTS};
+use super::{
+    boundary,
+    layout::{FUNCTIONS, Kind, STRUCTS},
+};
 
 /// The header as it should be committed.
 pub const HEADER: &str = include_str!(concat!(env!("OUT_DIR"), "/welkin.h"));
@@ -43,7 +46,12 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
 
 /// The next call of this thread that reaches a device panics there.
 pub fn panic_in_next_call() {
-    super::boundary::panic_in_next_call();
+    boundary::inject(boundary::Injected::Panic);
+}
+
+/// The next call of this thread that reaches a device logs a message there.
+pub fn log_in_next_call() {
+    boundary::inject(boundary::Injected::Message);
 }
 
 /// Every enumeration and every reserved field of every struct: struct, field, offset, whether it is 8 bytes wide.

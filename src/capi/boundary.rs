@@ -16,8 +16,8 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
     /// How many boundary calls this thread is in; a panic there is ours to report, not the standard hook's to print.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
-    /// See [`panic_in_next_call`].
-    static PANIC_NEXT: Cell<bool> = const { Cell::new(false) };
+    /// See [`inject`].
+    static INJECTED: Cell<Injected> = const { Cell::new(Injected::Nothing) };
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
@@ -43,13 +43,21 @@ impl Call {
     /// Names the device that a panic in this call makes unusable.
     pub(super) fn blame(&mut self, device: &Arc<DeviceCell>) {
         self.device = Some(device.clone());
-        assert!(!PANIC_NEXT.replace(false), "injected");
+        match INJECTED.replace(Injected::Nothing) {
+            Injected::Nothing => {}
+            Injected::Panic => panic!("injected"),
+            Injected::Message => log::info!(target: "welkin", "injected"),
+        }
     }
 }
 
 /// Runs the body of a C function: its error or panic becomes a status and the thread's message.
 pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
     hush_panics();
+    if DEPTH.get() > 0 {
+        remember(function, "called inside a callback of Welkin's: no Welkin function may be");
+        return Status::WrongOrder as wk_status;
+    }
     let mut call = Call { device: None };
     DEPTH.set(DEPTH.get() + 1);
     // Whatever a panic leaves half-done belongs to the device, and that is poisoned below.
@@ -74,9 +82,17 @@ pub(super) fn last_error() -> *const c_char {
     LAST_ERROR.with_borrow(|m| m.as_ptr())
 }
 
-/// The next call of this thread that reaches a device panics there: how the tests see what a fault inside does.
-pub(super) fn panic_in_next_call() {
-    PANIC_NEXT.set(true);
+/// What the tests let happen inside a call.
+#[derive(Clone, Copy)]
+pub(super) enum Injected {
+    Nothing,
+    Panic,
+    Message,
+}
+
+/// It happens in the next call of this thread that reaches a device.
+pub(super) fn inject(what: Injected) {
+    INJECTED.set(what);
 }
 
 fn remember(function: &str, message: &str) {
