@@ -4,6 +4,9 @@
 //! adopted from an OpenGL or Vulkan host, or handed over by a Rust host. The rooms of the effects see only
 //! `wgpu` objects and never ask whose they are.
 
+// wgpu builds its OpenGL backend for Apple hosts only round another library; there the backend is Metal.
+#[cfg(not(any(target_os = "macos", target_os = "ios")))]
+pub mod gl;
 pub mod pass;
 pub mod readback;
 pub mod shader;

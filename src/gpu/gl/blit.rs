@@ -1,0 +1,88 @@
+//! Copies between framebuffers: how images that wgpu cannot touch (the window's framebuffer, depth in renderbuffers)
+//! come in and go out.
+
+use super::{api::Api, names::*};
+use crate::error::{Error, Result, Status};
+
+/// A framebuffer at one end of a copy.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    pub(super) framebuffer: u32,
+    /// The host's own, whose choice of buffers is put back after the copy.
+    pub(super) hosts: bool,
+}
+
+/// Copies `mask` of the whole image from `from` to `to`, texel by texel; resolves or replicates samples where the two
+/// differ. Encodings are carried over as they are.
+///
+/// # Errors
+/// What OpenGL refuses, named.
+pub(super) fn copy(api: &Api, from: End, to: End, mask: u32, (width, height): (u32, u32)) -> Result<()> {
+    api.BindFramebuffer(READ_FRAMEBUFFER, from.framebuffer);
+    api.BindFramebuffer(DRAW_FRAMEBUFFER, to.framebuffer);
+    // Both ends have one encoding; desktop OpenGL decodes and encodes only where this is on.
+    let encoding = api.IsEnabled(FRAMEBUFFER_SRGB) != 0;
+    api.Disable(FRAMEBUFFER_SRGB);
+    api.Disable(SCISSOR_TEST);
+    api.take_error();
+    let reading = (from.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| read_what_is_drawn(api, from));
+    let drawing = (to.hosts && mask & COLOR_BUFFER_BIT != 0).then(|| draw_to_one(api)).flatten();
+    let (w, h) = (width as i32, height as i32);
+    api.BlitFramebuffer(0, 0, w, h, 0, 0, w, h, mask, NEAREST);
+    let error = api.take_error();
+    if let Some(was) = reading {
+        api.BindFramebuffer(READ_FRAMEBUFFER, from.framebuffer);
+        api.ReadBuffer(was);
+    }
+    if let Some(was) = drawing {
+        // SAFETY: the list has as many values as passed.
+        unsafe { api.DrawBuffers(was.len() as i32, was.as_ptr()) };
+    }
+    if encoding {
+        api.Enable(FRAMEBUFFER_SRGB);
+    }
+    api.BindFramebuffer(FRAMEBUFFER, 0);
+    api.take_error();
+    if error == NO_ERROR {
+        return Ok(());
+    }
+    let what = if mask & COLOR_BUFFER_BIT != 0 { "colour" } else { "depth" };
+    Err(Error::new(
+        Status::Unsupported,
+        format!(
+            "copying {what} from framebuffer {} to {} is refused by this context with {}",
+            from.framebuffer,
+            to.framebuffer,
+            spell(error)
+        ),
+    ))
+}
+
+/// Makes the bound read framebuffer read what it draws to; answers what it read before.
+fn read_what_is_drawn(api: &Api, from: End) -> u32 {
+    let was = api.uint(READ_BUFFER);
+    let drawn_before = api.uint(DRAW_FRAMEBUFFER_BINDING);
+    api.BindFramebuffer(DRAW_FRAMEBUFFER, from.framebuffer);
+    let drawn = api.uint(DRAW_BUFFER0);
+    api.BindFramebuffer(DRAW_FRAMEBUFFER, drawn_before);
+    let drawn = if drawn == FRONT_AND_BACK { BACK } else { drawn };
+    if drawn != was {
+        api.ReadBuffer(drawn);
+    }
+    was
+}
+
+/// Makes the bound draw framebuffer draw to its first buffer only; answers the list to put back, if it changed.
+fn draw_to_one(api: &Api) -> Option<[u32; 8]> {
+    let count = api.uint(MAX_DRAW_BUFFERS).min(8) as usize;
+    let mut was = [NONE; 8];
+    for (i, buffer) in was.iter_mut().enumerate().take(count) {
+        *buffer = api.uint(DRAW_BUFFER0 + i as u32);
+    }
+    if was[1..].iter().all(|b| *b == NONE) {
+        return None;
+    }
+    // SAFETY: one value is passed.
+    unsafe { api.DrawBuffers(1, was.as_ptr()) };
+    Some(was)
+}

@@ -1,0 +1,374 @@
+//! Building a target: the framebuffers and copies it needs, and the wgpu textures that stand for the host's images.
+
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
+use wgpu::hal::{MemoryFlags, api::Gles, gles};
+
+use super::{
+    api::Api,
+    blit::{self, End},
+    formats,
+    image::{self, Ask, Facts, GlImage, Parameters, Side, target_of},
+    names::*,
+    target::{Copied, Entry, GlTarget, GlTargetDesc, Made, Multisample, Part, mask},
+};
+use crate::error::{Error, Result, Status};
+
+/// What building needs.
+pub(super) struct Workshop<'a> {
+    pub(super) ask: Ask<'a>,
+    pub(super) device: &'a wgpu::Device,
+    /// Whether the device draws as OpenGL 3.3 or OpenGL ES 3.0 would.
+    pub(super) tier0: bool,
+}
+
+/// An OpenGL object that a wgpu texture stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Object {
+    /// Name and target.
+    Texture(u32, u32),
+    Renderbuffer(u32),
+    /// A framebuffer of ours; how wgpu draws to what it cannot attach itself.
+    Framebuffer(u32),
+}
+
+impl Object {
+    fn name(self) -> u32 {
+        let (Self::Texture(name, _) | Self::Renderbuffer(name) | Self::Framebuffer(name)) = self;
+        name
+    }
+
+    fn is_multisampled_texture(self) -> bool {
+        matches!(self, Self::Texture(_, TEXTURE_2D_MULTISAMPLE))
+    }
+}
+
+const ATTACH: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT;
+const READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
+const COPIES: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC.union(wgpu::TextureUsages::COPY_DST);
+
+impl Part {
+    /// What is drawn to.
+    fn attached(&self, samples: u32) -> Object {
+        match (self.image, &self.copy) {
+            (_, Some(copy)) if copy.drawn_to => Object::Texture(copy.texture, target_of(samples)),
+            (GlImage::Texture { name, target }, _) => Object::Texture(name, target),
+            (GlImage::Renderbuffer { name }, _) => Object::Renderbuffer(name),
+            (GlImage::Framebuffer { name }, _) => Object::Framebuffer(name),
+        }
+    }
+
+    /// What is read, if anything can be.
+    fn readable(&self, samples: u32) -> Option<Object> {
+        match (self.image, &self.copy) {
+            (_, Some(copy)) => Some(Object::Texture(copy.texture, target_of(samples))),
+            (GlImage::Texture { name, target }, None) => Some(Object::Texture(name, target)),
+            _ => None,
+        }
+    }
+}
+
+impl Workshop<'_> {
+    /// Builds a target for `desc`.
+    ///
+    /// # Errors
+    /// Whatever of the host's images cannot be served, named with the parameter.
+    pub(super) fn build(&self, desc: GlTargetDesc, id: u64) -> Result<Entry> {
+        let mut made = Made::default();
+        match self.assemble(desc, id, &mut made) {
+            Ok((target, parts)) => Ok(Entry { desc, target: Arc::new(target), used: id, parts, made }),
+            Err(e) => {
+                made.delete(self.ask.api);
+                Err(e)
+            }
+        }
+    }
+
+    fn assemble(&self, desc: GlTargetDesc, id: u64, made: &mut Made) -> Result<(GlTarget, Vec<Part>)> {
+        let mut parts = vec![self.part(desc, desc.color, Side::Color)?];
+        if let Some(image) = desc.depth {
+            parts.push(self.part(desc, image, Side::Depth)?);
+        }
+        let samples = parts[0].facts.samples;
+        if let Some(other) = parts.iter().find(|p| p.facts.samples != samples) {
+            let accepted = format!("an image with as many samples as target.color, {samples}");
+            return Err(Error::range("target.depth", &accepted, other.facts.samples));
+        }
+        let resolve = self.resolves(desc.multisample, samples)?;
+        let samples = if resolve { 1 } else { samples };
+        for part in &mut parts {
+            self.provide_copy(part, resolve, samples, made)?;
+        }
+        // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
+        let attached = || parts.iter().map(|p| (p.side, p.attached(samples), p.facts.internal));
+        let through = if attached().any(|(_, object, _)| object.is_multisampled_texture()) {
+            Some(Object::Framebuffer(self.framebuffer(&attached().collect::<Vec<_>>(), made)?))
+        } else {
+            None
+        };
+        let (color, color_read) = self.textures(&parts[0], samples, through)?;
+        let (depth, depth_read) = match parts.get(1) {
+            Some(part) => {
+                let (depth, read) = self.textures(part, samples, through)?;
+                (Some(depth), read)
+            }
+            None => (None, None),
+        };
+        Ok((GlTarget { id, color, color_read, depth, depth_read, samples }, parts))
+    }
+
+    /// Whether multisampled images are copied to images of one sample.
+    ///
+    /// # Errors
+    /// The context can do neither that nor what was asked.
+    fn resolves(&self, multisample: Multisample, samples: u32) -> Result<bool> {
+        let es = self.ask.info.is_es();
+        match multisample {
+            _ if samples == 1 => Ok(false),
+            // wgpu's shaders do not compile there: its translator takes gl_SampleID for unsigned, which only GLSL 4.00
+            // converts; and OpenGL ES cannot copy to multisampled images either.
+            _ if es => Err(Error::unsupported(format!(
+                "target.color must have 1 sample on OpenGL ES, got {samples}: resolve it before this call"
+            ))),
+            Multisample::Each if self.tier0 || !self.ask.info.at_least((4, 0), (99, 0)) => {
+                Err(Error::unsupported(format!(
+                    "target.multisample must be resolve before OpenGL 4.0 and on tier 0, whose shaders cannot run per \
+                     sample, for an image with {samples} samples"
+                )))
+            }
+            Multisample::Each => Ok(false),
+            Multisample::Resolve => Ok(true),
+        }
+    }
+
+    /// Asks about one image and checks its size and format.
+    fn part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
+        let size = (desc.width, desc.height);
+        if let (Side::Depth, GlImage::Framebuffer { .. }) = (side, image)
+            && image != desc.color
+        {
+            return Err(Error::new(
+                Status::InvalidArgument,
+                "target.depth must be the same framebuffer as target.color where it is one",
+            ));
+        }
+        let facts = image::facts(self.ask, image, side, size)?;
+        if (facts.width, facts.height) != size || size.0 == 0 || size.1 == 0 {
+            let (parameter, w, h) = (side.parameter(), facts.width, facts.height);
+            return Err(Error::range(
+                "target.width and target.height",
+                &format!("the size of {parameter}, {w} x {h}"),
+                format!("{} x {}", size.0, size.1),
+            ));
+        }
+        let most = self.device.limits().max_texture_dimension_2d;
+        if size.0.max(size.1) > most {
+            return Err(Error::range("target.width and target.height", &format!("at most {most}"), size.0.max(size.1)));
+        }
+        if !matches!(facts.samples, 1 | 2 | 4 | 8 | 16) {
+            return Err(Error::range(side.parameter(), "an image with 1, 2, 4, 8 or 16 samples", facts.samples));
+        }
+        match side {
+            Side::Color => formats::color(facts.internal, side.parameter())?,
+            Side::Depth => formats::depth(facts.internal, side.parameter())?,
+        };
+        let parameters = match image {
+            GlImage::Texture { name, target } => Some(Parameters::new(self.ask.info, name, target, side)),
+            _ => None,
+        };
+        Ok(Part { side, image, facts, parameters, copy: None })
+    }
+
+    /// Makes the copy that an image needs, and the framebuffers at its two ends.
+    fn provide_copy(&self, part: &mut Part, resolve: bool, samples: u32, made: &mut Made) -> Result<()> {
+        let drawn_to = resolve || matches!(part.image, GlImage::Framebuffer { .. });
+        // wgpu reads only textures, and depth is always read.
+        let read = part.side == Side::Depth && matches!(part.image, GlImage::Renderbuffer { .. });
+        if !drawn_to && !read {
+            return Ok(());
+        }
+        let from = match part.image {
+            GlImage::Framebuffer { name } => End { framebuffer: name, hosts: true },
+            GlImage::Texture { name, target } => {
+                self.end(&[(part.side, Object::Texture(name, target), part.facts.internal)], made)?
+            }
+            GlImage::Renderbuffer { name } => {
+                self.end(&[(part.side, Object::Renderbuffer(name), part.facts.internal)], made)?
+            }
+        };
+        // A window's depth is known only by its bits, and drivers differ in what they copy it to; colours convert.
+        let others: &[u32] = match (part.image, part.side) {
+            (GlImage::Framebuffer { .. }, Side::Depth) => {
+                &[DEPTH24_STENCIL8, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH32F_STENCIL8, DEPTH_COMPONENT16]
+            }
+            _ => &[],
+        };
+        let size = (part.facts.width, part.facts.height);
+        let mut outcome = Ok(());
+        for internal in std::iter::once(part.facts.internal).chain(others.iter().copied()) {
+            let texture = image::make_texture(self.ask.api, internal, size, samples);
+            made.textures.push(texture);
+            let to = self.end(&[(part.side, Object::Texture(texture, target_of(samples)), internal)], made)?;
+            outcome = blit::copy(self.ask.api, from, to, mask(part.side, internal), size);
+            if outcome.is_ok() {
+                part.copy = Some(Copied { from, to, texture, drawn_to });
+                break;
+            }
+        }
+        outcome
+    }
+
+    fn end(&self, images: &[(Side, Object, u32)], made: &mut Made) -> Result<End> {
+        Ok(End { framebuffer: self.framebuffer(images, made)?, hosts: false })
+    }
+
+    /// A framebuffer of ours with the given images and their internal formats.
+    fn framebuffer(&self, images: &[(Side, Object, u32)], made: &mut Made) -> Result<u32> {
+        let api = self.ask.api;
+        let framebuffer = api.one(Api::GenFramebuffers);
+        made.framebuffers.push(framebuffer);
+        api.BindFramebuffer(FRAMEBUFFER, framebuffer);
+        for (side, image, internal) in images {
+            let attachment = match side {
+                Side::Color => COLOR_ATTACHMENT0,
+                Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
+                Side::Depth => DEPTH_ATTACHMENT,
+            };
+            match *image {
+                Object::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
+                Object::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
+                Object::Framebuffer(_) => {}
+            }
+        }
+        if images.iter().all(|(side, ..)| *side == Side::Depth) {
+            let none = NONE;
+            // SAFETY: one value is passed.
+            unsafe { api.DrawBuffers(1, &none) };
+            api.ReadBuffer(NONE);
+        }
+        let status = api.CheckFramebufferStatus(FRAMEBUFFER);
+        api.BindFramebuffer(FRAMEBUFFER, 0);
+        let error = api.take_error();
+        if status == FRAMEBUFFER_COMPLETE && error == NO_ERROR {
+            return Ok(framebuffer);
+        }
+        let (side, _, internal) = images[0];
+        Err(Error::unsupported(format!(
+            "{} must be an image that this context can draw to, {} gives {}",
+            side.parameter(),
+            spell(internal),
+            if error == NO_ERROR { spell(status) } else { spell(error) }
+        )))
+    }
+
+    /// One side as wgpu textures: to draw to, and to read.
+    fn textures(
+        &self,
+        part: &Part,
+        samples: u32,
+        through: Option<Object>,
+    ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
+        let format = match part.side {
+            Side::Color => formats::color(part.facts.internal, part.side.parameter())?,
+            Side::Depth => formats::depth(part.facts.internal, part.side.parameter())?,
+        };
+        let wrap = |object, usage| self.wrap(object, format, part.facts, samples, usage);
+        let attached = through.unwrap_or_else(|| part.attached(samples));
+        let readable = part.readable(samples);
+        if through.is_none() {
+            self.check_attachable(part, attached)?;
+        }
+        if part.side == Side::Color && readable == Some(attached) && samples == 1 {
+            let texture = wrap(attached, ATTACH | READ | COPIES)?;
+            return Ok((texture.clone(), Some(texture)));
+        }
+        // Depth gets two textures of one object even so: wgpu would refuse to read what it has attached.
+        let read = readable.map(|object| wrap(object, READ)).transpose()?;
+        Ok((wrap(attached, ATTACH)?, read))
+    }
+
+    /// Makes sure that the driver can draw to what wgpu is going to attach.
+    fn check_attachable(&self, part: &Part, object: Object) -> Result<()> {
+        let mut probe = Made::default();
+        let outcome = self.framebuffer(&[(part.side, object, part.facts.internal)], &mut probe);
+        probe.delete(self.ask.api);
+        outcome.map(|_| ())
+    }
+
+    /// Makes a wgpu texture of an OpenGL object without owning it.
+    fn wrap(
+        &self,
+        object: Object,
+        format: wgpu::TextureFormat,
+        facts: Facts,
+        samples: u32,
+        usage: wgpu::TextureUsages,
+    ) -> Result<wgpu::Texture> {
+        let size = wgpu::Extent3d { width: facts.width, height: facts.height, depth_or_array_layers: 1 };
+        let uses = first_use(format, usage);
+        let desc = wgpu::hal::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: uses,
+            memory_flags: MemoryFlags::empty(),
+            view_formats: Vec::new(),
+        };
+        let name = NonZeroU32::new(object.name());
+        // SAFETY: only the backend's own functions are called on the guard.
+        let hal_device = unsafe { self.device.as_hal::<Gles>() };
+        let (Some(name), Some(hal_device)) = (name, hal_device) else {
+            return Err(Error::new(Status::Internal, "an OpenGL image without name or device"));
+        };
+        // Present, so that wgpu takes the object for somebody else's and never deletes it.
+        let keep: Option<wgpu::hal::DropCallback> = Some(Box::new(|| {}));
+        // SAFETY: the name is alive and has this format and size, as OpenGL itself just said; the target is corrected
+        // for multisampled textures, which the backend does not know.
+        let texture = unsafe {
+            match object {
+                Object::Renderbuffer(_) => hal_device.texture_from_raw_renderbuffer(name, &desc, keep),
+                Object::Texture(_, target) => {
+                    let mut texture = hal_device.texture_from_raw(name, &desc, keep);
+                    if let gles::TextureInner::Texture { target: t, .. } = &mut texture.inner {
+                        *t = target;
+                    }
+                    texture
+                }
+                Object::Framebuffer(_) => {
+                    let mut texture = hal_device.texture_from_raw(name, &desc, keep);
+                    let inner = glow::NativeFramebuffer(name);
+                    texture.inner = gles::TextureInner::ExternalNativeFramebuffer { inner };
+                    texture
+                }
+            }
+        };
+        drop(hal_device);
+        let desc = wgpu::TextureDescriptor {
+            label: Some("host image"),
+            size,
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        };
+        // SAFETY: the texture was made by this device, respects the description and holds the host's pixels.
+        Ok(unsafe { self.device.create_texture_from_hal::<Gles>(texture, &desc, uses) })
+    }
+}
+
+/// The state wgpu finds a texture in: it must be one that the usage allows.
+fn first_use(format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::TextureUses {
+    if !usage.contains(ATTACH) {
+        wgpu::TextureUses::RESOURCE
+    } else if format.is_depth_stencil_format() {
+        wgpu::TextureUses::DEPTH_STENCIL_WRITE
+    } else {
+        wgpu::TextureUses::COLOR_TARGET
+    }
+}

@@ -1,0 +1,150 @@
+//! Which internal formats of OpenGL a host's picture and depth may have, and what they are called by wgpu.
+
+use wgpu::TextureFormat as Format;
+
+use super::names::*;
+use crate::error::{Error, Result};
+
+/// The colour formats a host may hand over.
+const COLOR: &[(u32, &str, Format)] = &[
+    (RGBA8, "GL_RGBA8", Format::Rgba8Unorm),
+    // No alpha to write and one to read: wgpu need not know, OpenGL fills it in.
+    (RGB8, "GL_RGB8", Format::Rgba8Unorm),
+    (SRGB8_ALPHA8, "GL_SRGB8_ALPHA8", Format::Rgba8UnormSrgb),
+    (SRGB8, "GL_SRGB8", Format::Rgba8UnormSrgb),
+    (RGB10_A2, "GL_RGB10_A2", Format::Rgb10a2Unorm),
+    (RGBA16F, "GL_RGBA16F", Format::Rgba16Float),
+    (RGB16F, "GL_RGB16F", Format::Rgba16Float),
+    (R11F_G11F_B10F, "GL_R11F_G11F_B10F", Format::Rg11b10Ufloat),
+    (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
+];
+
+/// The depth formats a host may hand over.
+const DEPTH: &[(u32, &str, Format)] = &[
+    (DEPTH_COMPONENT16, "GL_DEPTH_COMPONENT16", Format::Depth16Unorm),
+    (DEPTH_COMPONENT24, "GL_DEPTH_COMPONENT24", Format::Depth24Plus),
+    // wgpu has no name for it; it is read as a float either way.
+    (DEPTH_COMPONENT32, "GL_DEPTH_COMPONENT32", Format::Depth32Float),
+    (DEPTH_COMPONENT32F, "GL_DEPTH_COMPONENT32F", Format::Depth32Float),
+    (DEPTH24_STENCIL8, "GL_DEPTH24_STENCIL8", Format::Depth24PlusStencil8),
+    (DEPTH32F_STENCIL8, "GL_DEPTH32F_STENCIL8", Format::Depth32FloatStencil8),
+];
+
+/// What an attachment is asked for when its internal format is not known by a sized name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Bits {
+    pub(super) red: i32,
+    pub(super) green: i32,
+    pub(super) alpha: i32,
+    pub(super) depth: i32,
+    pub(super) stencil: i32,
+    /// `GL_FLOAT`, `GL_UNSIGNED_NORMALIZED` and others.
+    pub(super) component: u32,
+    pub(super) srgb: bool,
+}
+
+impl Bits {
+    /// The sized colour format with these bits.
+    pub(super) fn color(self) -> Option<u32> {
+        let float = self.component == FLOAT;
+        Some(match (self.red, self.green, self.alpha, float) {
+            (8, 8, _, false) if self.srgb => SRGB8_ALPHA8,
+            // A window of 5 or 6 bits is served through 8: the copy out rounds.
+            (1..=8, 1..=8, _, false) => RGBA8,
+            (10, 10, _, false) => RGB10_A2,
+            (16, 16, _, true) => RGBA16F,
+            (11, 11, _, true) => R11F_G11F_B10F,
+            (32, 32, _, true) => RGBA32F,
+            _ => return None,
+        })
+    }
+
+    /// The sized depth format with these bits.
+    pub(super) fn depth(self) -> Option<u32> {
+        Some(match (self.depth, self.stencil > 0) {
+            (16, _) => DEPTH_COMPONENT16,
+            (24, false) => DEPTH_COMPONENT24,
+            (24, true) => DEPTH24_STENCIL8,
+            (32, false) if self.component == FLOAT => DEPTH_COMPONENT32F,
+            (32, false) => DEPTH_COMPONENT32,
+            (32, true) => DEPTH32F_STENCIL8,
+            _ => return None,
+        })
+    }
+}
+
+fn lookup(table: &[(u32, &str, Format)], internal: u32, parameter: &str) -> Result<Format> {
+    if let Some((_, _, format)) = table.iter().find(|(name, ..)| *name == internal) {
+        return Ok(*format);
+    }
+    let names: Vec<_> = table.iter().map(|(_, name, _)| *name).collect();
+    Err(Error::unsupported(format!(
+        "{parameter} must have one of the internal formats {}, got {}",
+        names.join(", "),
+        spell(internal)
+    )))
+}
+
+/// wgpu's name of colour format `internal`.
+///
+/// # Errors
+/// [`crate::Status::Unsupported`] naming `parameter`, the format and the accepted ones.
+pub(super) fn color(internal: u32, parameter: &str) -> Result<Format> {
+    lookup(COLOR, internal, parameter)
+}
+
+/// wgpu's name of depth format `internal`.
+///
+/// # Errors
+/// As [`color`].
+pub(super) fn depth(internal: u32, parameter: &str) -> Result<Format> {
+    lookup(DEPTH, internal, parameter)
+}
+
+/// The client format and type with which `internal` can be allocated without data.
+pub(super) fn allocation(internal: u32) -> (u32, u32) {
+    match internal {
+        RGB10_A2 => (RGBA, UNSIGNED_INT_2_10_10_10_REV),
+        RGBA16F => (RGBA, HALF_FLOAT),
+        RGBA32F => (RGBA, FLOAT),
+        R11F_G11F_B10F => (RGB, UNSIGNED_INT_10F_11F_11F_REV),
+        DEPTH_COMPONENT16 => (DEPTH_COMPONENT, UNSIGNED_SHORT),
+        DEPTH_COMPONENT24 | DEPTH_COMPONENT32 => (DEPTH_COMPONENT, UNSIGNED_INT),
+        DEPTH_COMPONENT32F => (DEPTH_COMPONENT, FLOAT),
+        DEPTH24_STENCIL8 => (DEPTH_STENCIL, UNSIGNED_INT_24_8),
+        DEPTH32F_STENCIL8 => (DEPTH_STENCIL, FLOAT_32_UNSIGNED_INT_24_8_REV),
+        _ => (RGBA, UNSIGNED_BYTE),
+    }
+}
+
+/// Whether a depth format carries stencil as well.
+pub(super) fn has_stencil(internal: u32) -> bool {
+    matches!(internal, DEPTH24_STENCIL8 | DEPTH32F_STENCIL8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_format_is_named_with_the_accepted_ones() {
+        let error = color(0x8057, "target.color").unwrap_err();
+        assert_eq!(error.status, crate::Status::Unsupported);
+        for part in ["target.color", "GL_RGB5_A1 (0x8057)", "GL_RGBA8", "GL_RGBA16F"] {
+            assert!(error.message.contains(part), "{}", error.message);
+        }
+        assert!(depth(RGBA8, "target.depth").is_err());
+    }
+
+    #[test]
+    fn bits_find_their_format() {
+        let window = Bits { red: 8, green: 8, alpha: 0, depth: 24, stencil: 8, component: 0x8C17, srgb: false };
+        assert_eq!((window.color(), window.depth()), (Some(RGBA8), Some(DEPTH24_STENCIL8)));
+        let srgb = Bits { srgb: true, stencil: 0, ..window };
+        assert_eq!((srgb.color(), srgb.depth()), (Some(SRGB8_ALPHA8), Some(DEPTH_COMPONENT24)));
+        let half = Bits { red: 16, green: 16, alpha: 16, component: FLOAT, ..window };
+        assert_eq!(half.color(), Some(RGBA16F));
+        assert_eq!(Bits::default().color(), None);
+        assert_eq!(Bits::default().depth(), None);
+    }
+}

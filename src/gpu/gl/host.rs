@@ -1,0 +1,441 @@
+//! Entering and leaving a host's OpenGL: whose context is current, who waits for whom, and what is put back.
+
+use std::{
+    ffi::c_void,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use super::{
+    Handover, MakeCurrent, WhichContext,
+    api::{Api, Sync as Fence},
+    build::Workshop,
+    check::{self, GlInfo},
+    gate::Gate,
+    image::{Ask, GlImage},
+    mark::Mark,
+    names::*,
+    state::HostState,
+    target::{Entry, GlTarget, GlTargetDesc},
+};
+use crate::error::{Error, Result, Status};
+
+/// Targets kept before the longest unused one goes.
+const CACHED_TARGETS: usize = 32;
+
+/// The host's callback with its argument.
+#[derive(Clone, Copy)]
+pub(super) struct Switch {
+    pub(super) call: MakeCurrent,
+    pub(super) user: *mut c_void,
+}
+
+// SAFETY: the contract of `GlHostDesc` says that the callback may be called on any thread that calls Welkin.
+unsafe impl Send for Switch {}
+// SAFETY: as above; calls never overlap, the gate sees to it.
+unsafe impl Sync for Switch {}
+
+impl Switch {
+    /// Asks the host to make a context current.
+    pub(super) fn to(self, which: WhichContext) -> Result<()> {
+        // SAFETY: the host vouches for its callback and argument when it makes the device.
+        let answer = unsafe { (self.call)(self.user, which as u32) };
+        if answer == 0 {
+            return Ok(());
+        }
+        Err(Error::new(
+            Status::WrongOrder,
+            format!("make_current must make the {} context current and return 0, got {answer}", which.name()),
+        ))
+    }
+}
+
+/// wgpu's own objects in the context, by the names OpenGL gave them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Backend {
+    pub(super) vertex_array: u32,
+    pub(super) draw_framebuffer: u32,
+    pub(super) copy_framebuffer: u32,
+}
+
+/// How this device shares OpenGL with its host.
+pub(super) enum Sharing {
+    /// A second context, with the functions of the host's own.
+    Shared { switch: Switch, host: Box<Api>, handover: Handover },
+    /// The host's context, with what must be put back.
+    HostContext { state: Box<HostState>, switch: Option<Switch> },
+}
+
+/// What changes while drawing.
+pub(super) struct Inner {
+    pub(super) api: Api,
+    pub(super) sharing: Sharing,
+    pub(super) mark: Mark,
+    pub(super) backend: Backend,
+    /// Framebuffer and two textures of ours, for asking and probing.
+    pub(super) probe: (u32, [u32; 2]),
+    pub(super) scratch: u32,
+    pub(super) tier0: bool,
+    pub(super) targets: Vec<Entry>,
+    /// Targets in use since the last enter, by id.
+    pub(super) active: Vec<u64>,
+    pub(super) next_id: u64,
+    /// What went wrong where nothing could be answered.
+    pub(super) fault: Option<Error>,
+    pub(super) closed: bool,
+}
+
+/// An OpenGL host: the way into its context and its images as wgpu textures.
+///
+/// Every call of wgpu on the device that came with it, the dropping of its objects included, must happen between
+/// [`GlHost::enter`] and the drop of its answer. Any thread may enter; others wait.
+pub struct GlHost {
+    info: GlInfo,
+    gate: Gate,
+    inner: Mutex<Inner>,
+}
+
+/// The host is entered: Welkin's state is current. Dropping it leaves.
+#[must_use = "the host is left when this is dropped"]
+pub struct Current<'a>(&'a GlHost);
+
+impl Drop for Current<'_> {
+    fn drop(&mut self) {
+        self.0.leave();
+    }
+}
+
+impl GlHost {
+    pub(super) fn new(info: GlInfo, inner: Inner) -> Arc<Self> {
+        Arc::new(Self { info, gate: Gate::default(), inner: Mutex::new(inner) })
+    }
+
+    /// What the context in which Welkin draws said about itself.
+    pub fn info(&self) -> &GlInfo {
+        &self.info
+    }
+
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Enters the host: in shared mode the host's context must be current on this thread (or none), and Welkin's is when
+    /// this returns; in the host's own context that one must be current, and its state is saved. Entering again on the
+    /// same thread costs nothing.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now, and what went wrong
+    /// when the host was last left.
+    pub fn enter(&self) -> Result<Current<'_>> {
+        self.begin()?;
+        Ok(Current(self))
+    }
+
+    /// [`GlHost::enter`] without a guard; each success needs one [`GlHost::leave`] on the same thread.
+    ///
+    /// # Errors
+    /// As [`GlHost::enter`].
+    pub fn begin(&self) -> Result<()> {
+        if self.gate.enter() > 1 {
+            return Ok(());
+        }
+        let outcome = self.inner().begin(&self.info);
+        if outcome.is_err() {
+            self.gate.leave();
+        }
+        outcome
+    }
+
+    /// Undoes one [`GlHost::begin`]; the last one copies pictures back, puts the host's state back, and makes the host's
+    /// context wait for Welkin's.
+    pub fn leave(&self) {
+        match self.gate.depth() {
+            0 => return,
+            1 => self.inner().end(&self.info),
+            _ => {}
+        }
+        self.gate.leave();
+    }
+
+    /// The host's colour and depth as wgpu textures, valid until the host is left. The same answer comes back as long as
+    /// the host's objects stay what they are; nothing is allocated then.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] outside of enter and leave; whatever of the host's images cannot be served, named.
+    pub fn target(&self, device: &wgpu::Device, desc: &GlTargetDesc) -> Result<Arc<GlTarget>> {
+        if self.gate.depth() == 0 {
+            return Err(Error::new(Status::WrongOrder, "the OpenGL host must be entered before its target is used"));
+        }
+        self.inner().target(&self.info, device, desc)
+    }
+
+    /// Drops wgpu's objects and deletes Welkin's own in the right context. `drop_objects` drops everything that came from
+    /// the device, the device and queue included. Where the context is gone already, the objects went with it, and
+    /// `forget_objects` must forget them without a call to OpenGL (`std::mem::forget`).
+    pub fn close<T>(&self, objects: T, drop_objects: impl FnOnce(T), forget_objects: impl FnOnce(T)) {
+        let entered = self.enter();
+        let mut inner = self.inner();
+        if entered.is_err() || inner.closed {
+            let targets: Vec<_> = std::mem::take(&mut inner.targets);
+            std::mem::forget(targets);
+            inner.mark.forget();
+            drop(inner);
+            forget_objects(objects);
+            return;
+        }
+        let mut targets = std::mem::take(&mut inner.targets);
+        inner.active.clear();
+        inner.rest(&self.info);
+        for entry in &mut targets {
+            entry.made.delete(&inner.api);
+        }
+        inner.closed = true;
+        inner.backend = Backend::default(); // its names are free from here on
+        drop(inner); // dropping wgpu's objects calls OpenGL, but never us
+        drop(targets);
+        drop_objects(objects);
+        let inner = self.inner();
+        inner.api.delete(Api::DeleteFramebuffers, inner.scratch);
+        inner.api.delete(Api::DeleteFramebuffers, inner.probe.0);
+        inner.probe.1.iter().for_each(|t| inner.api.delete(Api::DeleteTextures, *t));
+        inner.mark.remove(&inner.api);
+        drop(inner);
+        drop(entered);
+    }
+}
+
+impl Inner {
+    /// Makes Welkin's state current.
+    fn begin(&mut self, info: &GlInfo) -> Result<()> {
+        if self.closed {
+            return Err(Error::new(Status::WrongOrder, "the OpenGL host is closed"));
+        }
+        if let Some(fault) = self.fault.take() {
+            return Err(fault);
+        }
+        match &mut self.sharing {
+            Sharing::Shared { switch, host, handover } => {
+                let fence = match handover {
+                    Handover::Fence => host.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0),
+                    Handover::Flush => std::ptr::null(),
+                };
+                host.Flush();
+                let arrived = switch.to(WhichContext::Welkin).and_then(|()| here(&self.mark, &self.api, true));
+                if let Err(e) = arrived {
+                    // The host's context comes back; what it has to say is less than what failed.
+                    let _ = switch.to(WhichContext::Host);
+                    host.DeleteSync(fence);
+                    return Err(e);
+                }
+                wait(&self.api, fence);
+            }
+            Sharing::HostContext { state, switch } => {
+                if let Some(switch) = switch {
+                    switch.to(WhichContext::Host)?;
+                }
+                here(&self.mark, &self.api, false)?;
+                check::can_draw_now(&self.api, info)?;
+                state.save(&self.api, self.probe.0);
+                state.normalise(&self.api, self.backend.vertex_array);
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives everything back to the host.
+    fn end(&mut self, info: &GlInfo) {
+        let mut fault = self.finish_targets().err();
+        self.rest(info);
+        match &mut self.sharing {
+            Sharing::Shared { switch, host, handover } => {
+                let raised = self.api.take_error();
+                let fence = match handover {
+                    Handover::Fence => self.api.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0),
+                    Handover::Flush => std::ptr::null(),
+                };
+                self.api.Flush();
+                match switch.to(WhichContext::Host) {
+                    Ok(()) => {
+                        wait(host, fence);
+                        let active = &self.active;
+                        for entry in self.targets.iter().filter(|e| active.contains(&e.target.id)) {
+                            entry.images().for_each(|image| bind_again(host, image));
+                        }
+                    }
+                    Err(e) => fault = fault.or(Some(e)),
+                }
+                fault = fault.or_else(|| raised_in_welkin(raised));
+            }
+            Sharing::HostContext { state, .. } => {
+                let raised = state.restore(&self.api);
+                fault = fault.or_else(|| raised_in_welkin(raised));
+            }
+        }
+        self.active.clear();
+        self.fault = fault;
+    }
+
+    /// Ends every target in use; the first error.
+    fn finish_targets(&mut self) -> Result<()> {
+        let mut outcome = Ok(());
+        for entry in self.targets.iter().filter(|e| self.active.contains(&e.target.id)) {
+            outcome = outcome.and(entry.end(&self.api));
+        }
+        outcome
+    }
+
+    /// Lets go of the host's images: what stays attached or bound here would live on when the host deletes it.
+    fn rest(&self, info: &GlInfo) {
+        let api = &self.api;
+        let colors = api.uint(MAX_COLOR_ATTACHMENTS).min(8);
+        for framebuffer in [self.backend.draw_framebuffer, self.backend.copy_framebuffer] {
+            if framebuffer == 0 {
+                continue;
+            }
+            api.BindFramebuffer(FRAMEBUFFER, framebuffer);
+            for i in 0..colors {
+                api.FramebufferTexture2D(FRAMEBUFFER, COLOR_ATTACHMENT0 + i, TEXTURE_2D, 0, 0);
+            }
+            api.FramebufferTexture2D(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, TEXTURE_2D, 0, 0);
+        }
+        api.BindFramebuffer(FRAMEBUFFER, 0);
+        api.UseProgram(0); // a program lives as long as it is current, even when wgpu has deleted it
+        if matches!(self.sharing, Sharing::Shared { .. }) {
+            for unit in 0..16 {
+                api.ActiveTexture(TEXTURE0 + unit);
+                api.BindTexture(TEXTURE_2D, 0);
+                if info.at_least((3, 2), (3, 1)) {
+                    api.BindTexture(TEXTURE_2D_MULTISAMPLE, 0);
+                }
+            }
+            api.ActiveTexture(TEXTURE0);
+            api.BindRenderbuffer(RENDERBUFFER, 0);
+        }
+    }
+
+    /// Finds or builds a target and begins it.
+    fn target(&mut self, info: &GlInfo, device: &wgpu::Device, desc: &GlTargetDesc) -> Result<Arc<GlTarget>> {
+        self.refuse_foreign_framebuffers(desc)?;
+        if let Some(i) = self.targets.iter().position(|e| same_objects(&e.desc, desc)) {
+            let entry = &self.targets[i];
+            let begun = self.active.contains(&entry.target.id);
+            if begun && entry.desc == *desc {
+                return Ok(entry.target.clone());
+            }
+            let fresh = entry.desc == *desc && entry.is_current(self.ask(info))?;
+            if fresh {
+                self.next_id += 1;
+                self.targets[i].used = self.next_id;
+                return self.begin_target(i);
+            }
+            self.drop_target(i);
+        }
+        if self.targets.len() >= CACHED_TARGETS {
+            let active = &self.active;
+            let oldest = (0..self.targets.len())
+                .filter(|i| !active.contains(&self.targets[*i].target.id))
+                .min_by_key(|i| self.targets[*i].used);
+            if let Some(i) = oldest {
+                self.drop_target(i);
+            }
+        }
+        self.next_id += 1;
+        let entry = Workshop { ask: self.ask(info), device, tier0: self.tier0 }.build(*desc, self.next_id)?;
+        self.targets.push(entry);
+        self.begin_target(self.targets.len() - 1)
+    }
+
+    fn ask<'a>(&'a self, info: &'a GlInfo) -> Ask<'a> {
+        let encodes = match &self.sharing {
+            Sharing::HostContext { state, .. } => info.is_es() || state.was_on(FRAMEBUFFER_SRGB),
+            Sharing::Shared { .. } => true,
+        };
+        Ask { api: &self.api, info, scratch: self.scratch, encodes }
+    }
+
+    fn begin_target(&mut self, i: usize) -> Result<Arc<GlTarget>> {
+        let entry = &mut self.targets[i];
+        if let Err(e) = entry.begin(&self.api) {
+            self.drop_target(i);
+            return Err(e);
+        }
+        self.active.push(entry.target.id);
+        Ok(entry.target.clone())
+    }
+
+    fn drop_target(&mut self, i: usize) {
+        let mut entry = self.targets.swap_remove(i);
+        if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
+            self.active.swap_remove(at);
+            if let Err(e) = entry.end(&self.api) {
+                self.fault.get_or_insert(e);
+            }
+        }
+        entry.made.delete(&self.api);
+    }
+
+    /// Framebuffers belong to one context: in a shared one their names mean nothing.
+    fn refuse_foreign_framebuffers(&self, desc: &GlTargetDesc) -> Result<()> {
+        let foreign = matches!(self.sharing, Sharing::Shared { .. })
+            && [Some(desc.color), desc.depth].into_iter().flatten().any(|i| matches!(i, GlImage::Framebuffer { .. }));
+        if foreign {
+            return Err(Error::unsupported(
+                "target.color must be a texture or renderbuffer in a shared context: framebuffers, the window's \
+                 included, are not shared; make the device in the host's own context for those",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether two descriptions name the same images, used in the same way.
+fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
+    (a.color, a.depth, a.multisample) == (b.color, b.depth, b.multisample)
+}
+
+/// Makes sure that the marked context is current.
+fn here(mark: &Mark, api: &Api, shared: bool) -> Result<()> {
+    if mark.is_here(api) {
+        return Ok(());
+    }
+    Err(Error::new(
+        Status::WrongOrder,
+        if shared {
+            "make_current(WELKIN) must make the context current that it made current when the device was created"
+        } else {
+            "the OpenGL context that the device was created with must be current on this thread"
+        },
+    ))
+}
+
+/// Makes the current context wait on the GPU for a fence of the other one.
+fn wait(api: &Api, fence: Fence) {
+    if !fence.is_null() {
+        api.WaitSync(fence, 0, TIMEOUT_IGNORED);
+        api.DeleteSync(fence);
+    }
+}
+
+/// Binds an image once and lets go again: OpenGL promises the other context's changes only after that
+/// (OpenGL 4.6 core specification, section 5.3.3, rule 4).
+fn bind_again(api: &Api, image: GlImage) {
+    match image {
+        GlImage::Texture { name, target } => {
+            let query = if target == TEXTURE_2D { TEXTURE_BINDING_2D } else { TEXTURE_BINDING_2D_MULTISAMPLE };
+            let was = api.uint(query);
+            api.BindTexture(target, name);
+            api.BindTexture(target, was);
+        }
+        GlImage::Renderbuffer { name } => {
+            let was = api.uint(RENDERBUFFER_BINDING);
+            api.BindRenderbuffer(RENDERBUFFER, name);
+            api.BindRenderbuffer(RENDERBUFFER, was);
+        }
+        GlImage::Framebuffer { .. } => {}
+    }
+}
+
+/// An error flag that Welkin's own calls left.
+fn raised_in_welkin(error: u32) -> Option<Error> {
+    let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
+    (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))
+}

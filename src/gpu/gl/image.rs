@@ -1,0 +1,362 @@
+//! The host's images: what OpenGL says about them, and what is set on them while wgpu reads them.
+
+use super::{
+    api::Api,
+    check::{GlInfo, GlProfile},
+    formats::{self, Bits},
+    names::*,
+};
+use crate::error::{Error, Result, Status};
+
+/// One image of the host, by its OpenGL name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GlImage {
+    /// A texture; level 0 is used.
+    Texture {
+        /// Name from `glGenTextures`.
+        name: u32,
+        /// `GL_TEXTURE_2D` or `GL_TEXTURE_2D_MULTISAMPLE`.
+        target: u32,
+    },
+    /// A renderbuffer.
+    Renderbuffer {
+        /// Name from `glGenRenderbuffers`.
+        name: u32,
+    },
+    /// What framebuffer `name` draws to; 0 is the window's. Framebuffers are not shared between contexts, so this one
+    /// works only in the host's own context; it is served by copies in and out.
+    Framebuffer {
+        /// Name from `glGenFramebuffers`, or 0.
+        name: u32,
+    },
+}
+
+/// Which side of a target an image serves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Color,
+    Depth,
+}
+
+impl Side {
+    /// The parameter's name in messages.
+    pub(super) fn parameter(self) -> &'static str {
+        match self {
+            Self::Color => "target.color",
+            Self::Depth => "target.depth",
+        }
+    }
+}
+
+/// The target of a texture of ours.
+pub(super) fn target_of(samples: u32) -> u32 {
+    if samples > 1 { TEXTURE_2D_MULTISAMPLE } else { TEXTURE_2D }
+}
+
+/// What OpenGL says about an image. Asked at every use: a host may allocate an object anew under its old name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Facts {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// Sized internal format.
+    pub(super) internal: u32,
+    /// 1 for images without multisampling.
+    pub(super) samples: u32,
+}
+
+/// What asking needs.
+#[derive(Clone, Copy)]
+pub(super) struct Ask<'a> {
+    pub(super) api: &'a Api,
+    pub(super) info: &'a GlInfo,
+    /// A framebuffer of our own; its attachments are changed.
+    pub(super) scratch: u32,
+    /// Whether the host draws linear colours to framebuffers that encode (`GL_FRAMEBUFFER_SRGB`).
+    pub(super) encodes: bool,
+}
+
+/// Asks about `image`. `size` answers where OpenGL cannot (a window's framebuffer, textures before OpenGL ES 3.1).
+///
+/// # Errors
+/// No such object, a target or format that cannot be served, named.
+pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: Side, size: (u32, u32)) -> Result<Facts> {
+    ask.api.take_error(); // only what the next calls raise counts
+    match image {
+        GlImage::Texture { name, target } => texture_facts(ask, name, target, side, size),
+        GlImage::Renderbuffer { name } => renderbuffer_facts(ask.api, name, side),
+        GlImage::Framebuffer { name } => framebuffer_facts(ask, name, side, size),
+    }
+}
+
+fn dead(side: Side, kind: &str, name: u32) -> Error {
+    let parameter = side.parameter();
+    Error::new(
+        Status::InvalidArgument,
+        format!("{parameter} must be the name of a {kind} of the host's context or its share group, got {name}"),
+    )
+}
+
+fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u32)) -> Result<Facts> {
+    let Ask { api, info, scratch, .. } = ask;
+    let multisample = target == TEXTURE_2D_MULTISAMPLE;
+    if target != TEXTURE_2D && !(multisample && info.at_least((3, 2), (3, 1))) {
+        return Err(Error::unsupported(format!(
+            "{}.target must be GL_TEXTURE_2D{}, got {}",
+            side.parameter(),
+            if info.at_least((3, 2), (3, 1)) { " or GL_TEXTURE_2D_MULTISAMPLE" } else { "" },
+            spell(target)
+        )));
+    }
+    if api.IsTexture(name) == 0 {
+        return Err(dead(side, "texture", name));
+    }
+    api.BindTexture(target, name);
+    if api.take_error() != NO_ERROR {
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("{}.target must be the target that texture {name} was made with", side.parameter()),
+        ));
+    }
+    let level = |pname| {
+        let mut value = 0;
+        // SAFETY: level parameters are one integer each.
+        unsafe { api.GetTexLevelParameteriv(target, 0, pname, &mut value) };
+        value as u32
+    };
+    let can_ask = info.at_least((1, 0), (3, 1));
+    let (width, height) = if can_ask { (level(TEXTURE_WIDTH), level(TEXTURE_HEIGHT)) } else { size };
+    let samples = if multisample { level(TEXTURE_SAMPLES).max(1) } else { 1 };
+    let named = if can_ask { level(TEXTURE_INTERNAL_FORMAT) } else { RGBA };
+    if can_ask && (width == 0 || height == 0) {
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("{} must be a texture with storage at level 0, texture {name} has none", side.parameter()),
+        ));
+    }
+    let internal = match named {
+        // Not a sized name: the driver chose, so the bits are counted.
+        1..=4 | RGB | RGBA | RED | DEPTH_COMPONENT | DEPTH_STENCIL | 0x8C40 | 0x8C42 => {
+            let bits = attached_bits(api, name, target, side, scratch);
+            sized(bits, side)?
+        }
+        sized => sized,
+    };
+    Ok(Facts { width, height, internal, samples })
+}
+
+/// Attaches the texture to `scratch` and counts its bits.
+fn attached_bits(api: &Api, name: u32, target: u32, side: Side, scratch: u32) -> Bits {
+    let attachment = if side == Side::Color { COLOR_ATTACHMENT0 } else { DEPTH_ATTACHMENT };
+    api.BindFramebuffer(READ_FRAMEBUFFER, scratch);
+    api.FramebufferTexture2D(READ_FRAMEBUFFER, attachment, target, name, 0);
+    let bits = count_bits(api, READ_FRAMEBUFFER, attachment, side);
+    api.FramebufferTexture2D(READ_FRAMEBUFFER, attachment, target, 0, 0);
+    api.BindFramebuffer(READ_FRAMEBUFFER, 0);
+    api.take_error();
+    bits
+}
+
+fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits {
+    let get = |pname| {
+        let mut value = 0;
+        // SAFETY: attachment parameters are one integer each.
+        unsafe { api.GetFramebufferAttachmentParameteriv(framebuffer, attachment, pname, &mut value) };
+        value
+    };
+    if get(FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == 0 {
+        return Bits::default();
+    }
+    let component = get(FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) as u32;
+    match side {
+        Side::Color => Bits {
+            red: get(FRAMEBUFFER_ATTACHMENT_RED_SIZE),
+            green: get(FRAMEBUFFER_ATTACHMENT_GREEN_SIZE),
+            alpha: get(FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE),
+            srgb: get(FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING) as u32 == SRGB,
+            component,
+            ..Bits::default()
+        },
+        Side::Depth => Bits {
+            depth: get(FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE),
+            stencil: stencil_bits(api, framebuffer, attachment),
+            component,
+            ..Bits::default()
+        },
+    }
+}
+
+/// Stencil bits of the attachment that goes with `depth_attachment`.
+fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
+    let attachment = if depth_attachment == DEPTH { 0x1802 } else { STENCIL_ATTACHMENT };
+    let mut found = [0; 2];
+    // SAFETY: attachment parameters are one integer each.
+    unsafe {
+        api.GetFramebufferAttachmentParameteriv(
+            framebuffer,
+            attachment,
+            FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
+            &mut found[0],
+        );
+        if found[0] != 0 {
+            let size = FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE;
+            api.GetFramebufferAttachmentParameteriv(framebuffer, attachment, size, &mut found[1]);
+        }
+    }
+    found[1]
+}
+
+fn sized(bits: Bits, side: Side) -> Result<u32> {
+    let found = if side == Side::Color { bits.color() } else { bits.depth() };
+    found.ok_or_else(|| {
+        Error::unsupported(format!(
+            "{} must have a format that can be drawn to and has a name, got {} red, {} alpha, {} depth and {} stencil bits",
+            side.parameter(),
+            bits.red,
+            bits.alpha,
+            bits.depth,
+            bits.stencil
+        ))
+    })
+}
+
+fn renderbuffer_facts(api: &Api, name: u32, side: Side) -> Result<Facts> {
+    if api.IsRenderbuffer(name) == 0 {
+        return Err(dead(side, "renderbuffer", name));
+    }
+    api.BindRenderbuffer(RENDERBUFFER, name);
+    let get = |pname| {
+        let mut value = 0;
+        // SAFETY: renderbuffer parameters are one integer each.
+        unsafe { api.GetRenderbufferParameteriv(RENDERBUFFER, pname, &mut value) };
+        value as u32
+    };
+    let facts = Facts {
+        width: get(RENDERBUFFER_WIDTH),
+        height: get(RENDERBUFFER_HEIGHT),
+        internal: match get(RENDERBUFFER_INTERNAL_FORMAT) {
+            RGBA => RGBA8,
+            RGB => RGB8,
+            other => other,
+        },
+        samples: get(RENDERBUFFER_SAMPLES).max(1),
+    };
+    api.BindRenderbuffer(RENDERBUFFER, 0);
+    Ok(facts)
+}
+
+fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> Result<Facts> {
+    let Ask { api, info, .. } = ask;
+    api.BindFramebuffer(FRAMEBUFFER, name);
+    if api.take_error() != NO_ERROR {
+        return Err(dead(side, "framebuffer", name));
+    }
+    let status = api.CheckFramebufferStatus(DRAW_FRAMEBUFFER);
+    if status != FRAMEBUFFER_COMPLETE {
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("{} must be a complete framebuffer, framebuffer {name} is {}", side.parameter(), spell(status)),
+        ));
+    }
+    let attachment = match (side, name) {
+        (Side::Color, _) => match api.uint(DRAW_BUFFER0) {
+            NONE => {
+                return Err(Error::new(
+                    Status::InvalidArgument,
+                    format!("{} must draw to a colour buffer, framebuffer {name} has GL_NONE", side.parameter()),
+                ));
+            }
+            // The window's buffers are asked for one by one on desktop OpenGL, as GL_BACK on OpenGL ES.
+            BACK if !info.is_es() => BACK_LEFT,
+            FRONT | 0x0406 if !info.is_es() => FRONT_LEFT,
+            other => other,
+        },
+        (Side::Depth, 0) => DEPTH,
+        (Side::Depth, _) => DEPTH_ATTACHMENT,
+    };
+    let mut bits = count_bits(api, DRAW_FRAMEBUFFER, attachment, side);
+    // A window may be able to encode and yet get what the host encoded itself.
+    bits.srgb &= ask.encodes;
+    let samples = api.uint(SAMPLES).max(1);
+    api.BindFramebuffer(FRAMEBUFFER, 0);
+    api.take_error();
+    if side == Side::Depth && bits.depth == 0 {
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("target.depth must name a framebuffer that has depth, framebuffer {name} has none"),
+        ));
+    }
+    Ok(Facts { width: size.0, height: size.1, internal: sized(bits, side)?, samples })
+}
+
+/// A texture's parameters that change what wgpu reads from it. wgpu's backend sets some of them and restores none; they
+/// belong to the object, so the host would see them even across contexts.
+#[derive(Clone, Debug)]
+pub(super) struct Parameters {
+    name: u32,
+    target: u32,
+    /// (parameter, what wgpu takes for granted, the host's)
+    list: Vec<(u32, i32, i32)>,
+}
+
+impl Parameters {
+    pub(super) fn new(info: &GlInfo, name: u32, target: u32, side: Side) -> Self {
+        let mut list = vec![(TEXTURE_BASE_LEVEL, 0), (TEXTURE_MAX_LEVEL, 0)];
+        let swizzles = [TEXTURE_SWIZZLE_R, TEXTURE_SWIZZLE_G, TEXTURE_SWIZZLE_B, TEXTURE_SWIZZLE_A];
+        list.extend(swizzles.into_iter().zip([RED, GREEN, BLUE, ALPHA].map(|v| v as i32)));
+        if target == TEXTURE_2D {
+            // Unfiltered, or a depth texture counts as incomplete on OpenGL ES and reads as 0.
+            list.extend([(TEXTURE_MIN_FILTER, NEAREST as i32), (TEXTURE_MAG_FILTER, NEAREST as i32)]);
+            list.push((TEXTURE_COMPARE_MODE, NONE as i32));
+            if info.has("GL_EXT_texture_sRGB_decode") {
+                list.push((TEXTURE_SRGB_DECODE_EXT, DECODE_EXT as i32));
+            }
+        }
+        if side == Side::Depth && info.at_least((4, 3), (3, 1)) {
+            list.push((DEPTH_STENCIL_TEXTURE_MODE, DEPTH_COMPONENT as i32));
+        }
+        if side == Side::Depth && info.profile == GlProfile::Compatibility {
+            list.push((DEPTH_TEXTURE_MODE, RED as i32));
+        }
+        Self { name, target, list: list.into_iter().map(|(p, fresh)| (p, fresh, fresh)).collect() }
+    }
+
+    /// Reads the host's values and sets what wgpu takes for granted.
+    pub(super) fn take(&mut self, api: &Api) {
+        api.BindTexture(self.target, self.name);
+        for (pname, fresh, was) in &mut self.list {
+            // SAFETY: each of these parameters is one integer.
+            unsafe { api.GetTexParameteriv(self.target, *pname, was) };
+            if was != fresh {
+                api.TexParameteri(self.target, *pname, *fresh);
+            }
+        }
+    }
+
+    /// Puts the host's values back.
+    pub(super) fn give_back(&self, api: &Api) {
+        api.BindTexture(self.target, self.name);
+        for (pname, _, was) in &self.list {
+            api.TexParameteri(self.target, *pname, *was);
+        }
+    }
+}
+
+/// Makes a texture of our own with storage for level 0; multisampled where `samples` is more than 1.
+pub(super) fn make_texture(api: &Api, internal: u32, (width, height): (u32, u32), samples: u32) -> u32 {
+    let name = api.one(Api::GenTextures);
+    let (w, h) = (width as i32, height as i32);
+    let target = target_of(samples);
+    api.BindTexture(target, name);
+    if samples > 1 {
+        api.TexImage2DMultisample(target, samples as i32, internal, w, h, 1);
+    } else {
+        let (format, ty) = formats::allocation(internal);
+        // SAFETY: NULL data allocates without reading.
+        unsafe { api.TexImage2D(target, 0, internal as i32, w, h, 0, format, ty, std::ptr::null()) };
+        api.TexParameteri(target, TEXTURE_MIN_FILTER, NEAREST as i32);
+        api.TexParameteri(target, TEXTURE_MAG_FILTER, NEAREST as i32);
+        api.TexParameteri(target, TEXTURE_MAX_LEVEL, 0);
+    }
+    api.BindTexture(target, 0);
+    name
+}

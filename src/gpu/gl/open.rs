@@ -1,0 +1,338 @@
+//! Making a wgpu device round a host's OpenGL context.
+
+use std::{
+    ffi::{CStr, CString, c_void},
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+};
+
+use wgpu::hal::{api::Gles, gles};
+
+use super::{
+    GlHostDesc, GlMode, WhichContext,
+    api::Api,
+    check::{self, GlInfo},
+    face::Shown,
+    host::{Backend, GlHost, Inner, Sharing, Switch},
+    image,
+    mark::Mark,
+    names::*,
+    state::HostState,
+};
+use crate::error::{Error, Result, Status};
+
+/// A host's OpenGL as wgpu objects. All calls on them belong between [`GlHost::enter`] and its end.
+pub struct Adopted {
+    /// An instance without backends of its own: it opens no display and touches no context.
+    pub instance: wgpu::Instance,
+    /// The host's driver.
+    pub adapter: wgpu::Adapter,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// The way in.
+    pub host: Arc<GlHost>,
+    /// 1 with compute shaders, 0 without.
+    pub tier: u32,
+}
+
+/// Features that Welkin uses where the driver has them.
+const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::RG11B10UFLOAT_RENDERABLE)
+    .union(wgpu::Features::DEPTH32FLOAT_STENCIL8)
+    .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
+    .union(wgpu::Features::DUAL_SOURCE_BLENDING);
+
+/// Makes a device of the OpenGL context that is current on this thread, or of one that shares its objects.
+///
+/// The host's context is current before and after. Its state is put back in either mode.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] for missing or NULL-answering callbacks; [`Status::WrongOrder`] if no context is current or
+/// the wrong one; [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0;
+/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it.
+///
+/// # Safety
+/// The callbacks are what they are declared to be, and stay so until the host is closed; the contexts outlive that, or are
+/// destroyed as a whole.
+pub unsafe fn adopt(desc: &GlHostDesc) -> Result<Adopted> {
+    let Some(get_proc) = desc.get_proc else {
+        return Err(Error::new(Status::InvalidArgument, "get_proc must not be NULL"));
+    };
+    let user = desc.user;
+    // SAFETY: the caller vouches for `get_proc` and `user`; the name is NUL-terminated.
+    let get = move |name: &CStr| unsafe { get_proc(user, name.as_ptr()) };
+    let switch = desc.make_current.map(|call| Switch { call, user });
+    check::loader_finds_all(&get)?;
+    let host = load(&get);
+    let host_info = GlInfo::query(&host)?;
+    check::can_draw_now(&host, &host_info)?;
+    match desc.mode {
+        GlMode::HostContext => {
+            if Mark::any_here(&host) {
+                return Err(already_wrapped());
+            }
+            // Two rounds: the probe that saving needs is made with nothing but bindings changed.
+            let mut state = HostState::new(&host, &host_info);
+            state.save(&host, 0);
+            let probe = make_probe(&host);
+            state.restore(&host);
+            state.save(&host, probe.0);
+            state.normalise(&host, 0);
+            let opened = open(&host, &host_info, &get, desc);
+            let opened = finish(opened, &host, probe, &host_info);
+            let raised = state.restore(&host);
+            let parts = opened?;
+            log::debug!("OpenGL errors while opening: {raised:#x}");
+            Ok(parts.into_adopted(host, host_info, Sharing::HostContext { state: Box::new(state), switch }, desc))
+        }
+        GlMode::Shared => {
+            let Some(switch) = switch else {
+                return Err(Error::new(Status::InvalidArgument, "make_current must not be NULL in shared mode"));
+            };
+            let proof = Proof::leave(&host);
+            host.Flush();
+            let outcome = switch.to(WhichContext::Welkin).and_then(|()| {
+                let api = load(&get);
+                let info = GlInfo::query(&api)?;
+                proof.check(&api)?;
+                if Mark::any_here(&api) {
+                    return Err(already_wrapped());
+                }
+                let probe = make_probe(&api);
+                let mut state = HostState::new(&api, &info);
+                state.save(&api, probe.0);
+                state.normalise(&api, 0);
+                let parts = finish(open(&api, &info, &get, desc), &api, probe, &info)?;
+                api.Flush();
+                Ok((parts, api, info))
+            });
+            let back = switch.to(WhichContext::Host);
+            proof.remove(&host);
+            let (parts, api, info) = outcome?;
+            back?;
+            let sharing = Sharing::Shared { switch, host: Box::new(host), handover: desc.handover };
+            Ok(parts.into_adopted(api, info, sharing, desc))
+        }
+    }
+}
+
+fn already_wrapped() -> Error {
+    Error::new(Status::AlreadyWrapped, "this OpenGL context belongs to another device already: destroy that one first")
+}
+
+fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Api {
+    // SAFETY: the caller of `adopt` vouches that `get` answers NULL or the named OpenGL function.
+    unsafe {
+        let mut api = Api::load(get);
+        api.load_suffixed(get);
+        api
+    }
+}
+
+/// A framebuffer of ours that has everything, for asking about state; with its two textures.
+fn make_probe(api: &Api) -> (u32, [u32; 2]) {
+    let color = image::make_texture(api, RGBA8, (1, 1), 1);
+    let depth = image::make_texture(api, DEPTH24_STENCIL8, (1, 1), 1);
+    let framebuffer = api.one(Api::GenFramebuffers);
+    api.BindFramebuffer(FRAMEBUFFER, framebuffer);
+    api.FramebufferTexture2D(FRAMEBUFFER, COLOR_ATTACHMENT0, TEXTURE_2D, color, 0);
+    api.FramebufferTexture2D(FRAMEBUFFER, DEPTH_STENCIL_ATTACHMENT, TEXTURE_2D, depth, 0);
+    api.BindFramebuffer(FRAMEBUFFER, 0);
+    (framebuffer, [color, depth])
+}
+
+/// Shows that the context Welkin got is another one than the host's, and shares its objects.
+struct Proof {
+    texture: u32,
+    color_was: [f32; 4],
+}
+
+/// A blend colour that nobody has by chance.
+const STRANGE: [f32; 4] = [0.123, 0.457, 0.789, 0.031_25];
+
+impl Proof {
+    /// Leaves a texture (which is shared) and a blend colour (which is not) in the host's context.
+    fn leave(host: &Api) -> Self {
+        let color_was = host.floats(BLEND_COLOR);
+        let bound = host.uint(TEXTURE_BINDING_2D);
+        let texture = host.one(Api::GenTextures);
+        host.BindTexture(TEXTURE_2D, texture);
+        host.BindTexture(TEXTURE_2D, bound);
+        let [r, g, b, a] = STRANGE;
+        host.BlendColor(r, g, b, a);
+        Self { texture, color_was }
+    }
+
+    fn check(&self, welkin: &Api) -> Result<()> {
+        if welkin.floats::<4>(BLEND_COLOR) == STRANGE {
+            return Err(Error::new(
+                Status::WrongOrder,
+                "make_current(WELKIN) must make another context current than the host's: it left the host's current",
+            ));
+        }
+        if welkin.IsTexture(self.texture) == 0 {
+            return Err(Error::new(
+                Status::WrongOrder,
+                "make_current(WELKIN) must make a context current that shares objects with the host's: it does not",
+            ));
+        }
+        Ok(())
+    }
+
+    fn remove(self, host: &Api) {
+        let [r, g, b, a] = self.color_was;
+        host.BlendColor(r, g, b, a);
+        host.delete(Api::DeleteTextures, self.texture);
+    }
+}
+
+struct Opened {
+    instance: wgpu::Instance,
+    adapter: wgpu::Adapter,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+}
+
+/// wgpu's objects, and the names of its own in the context.
+struct Parts {
+    opened: Opened,
+    backend: Backend,
+    mark: Mark,
+    probe: (u32, [u32; 2]),
+    scratch: u32,
+    tier: u32,
+}
+
+/// Opens wgpu on the current context, whose state is a fresh one's.
+fn open(api: &Api, info: &GlInfo, get: &dyn Fn(&CStr) -> *const c_void, desc: &GlHostDesc) -> Result<Opened> {
+    let refused = |text: String| Error::new(Status::NoAdapter, text);
+    let shown = Shown::show(api, info, desc.force_tier0);
+    let loader = |name: &str| match CString::new(name) {
+        Ok(name) => Shown::resolve(&name, get(&name)),
+        Err(_) => std::ptr::null(),
+    };
+    let options = wgpu::GlBackendOptions {
+        // A host that listens to debug messages should not hear Welkin's labels.
+        debug_fns: wgpu::GlDebugFns::Disabled,
+        ..Default::default()
+    };
+    // wgpu's loader panics where a driver answers something it does not expect; the checks before leave little of that.
+    let exposed = catch_unwind(AssertUnwindSafe(|| {
+        // SAFETY: the context is current, and stays so until the caller has what it wants.
+        unsafe { gles::Adapter::new_external(loader, options) }
+    }))
+    .map_err(|_| refused(format!("wgpu cannot read the OpenGL context {:?}", info.version_text)))?
+    .ok_or_else(|| refused(format!("wgpu cannot use the OpenGL context {:?}", info.version_text)))?;
+    drop(shown);
+    let mut instance = wgpu::InstanceDescriptor::new_without_display_handle();
+    // No backend: opening EGL here would make another context current behind the host's back.
+    instance.backends = wgpu::Backends::empty();
+    // Without VALIDATION_INDIRECT_CALL above all, which compiles compute shaders that contexts of OpenGL 3.3 have not.
+    instance.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(instance);
+    // SAFETY: the adapter is external and needs nothing of the instance.
+    let adapter = unsafe { instance.create_adapter_from_hal::<Gles>(exposed) };
+    let request = wgpu::DeviceDescriptor {
+        label: Some("welkin"),
+        required_features: adapter.features() & WANTED,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    };
+    let (device, queue) = catch_unwind(AssertUnwindSafe(|| pollster::block_on(adapter.request_device(&request))))
+        .map_err(|_| refused("wgpu cannot open a device on the OpenGL context".into()))?
+        .map_err(|e| refused(format!("wgpu cannot open a device on the OpenGL context: {e}")))?;
+    device.on_uncaptured_error(Arc::new(|e| log::error!("GPU fault: {e}")));
+    Ok(Opened { instance, adapter, device, queue })
+}
+
+/// Learns the names of wgpu's own objects, and that a picture comes out as drawn. Leaves nothing behind on failure.
+fn finish(opened: Result<Opened>, api: &Api, probe: (u32, [u32; 2]), info: &GlInfo) -> Result<Parts> {
+    let outcome = opened.and_then(|opened| Ok((first_picture(&opened, api)?, opened)));
+    match outcome {
+        Ok((backend, opened)) => {
+            let compute = wgpu::DownlevelFlags::COMPUTE_SHADERS;
+            let tier = u32::from(opened.adapter.get_downlevel_capabilities().flags.contains(compute));
+            let scratch = api.one(Api::GenFramebuffers);
+            Ok(Parts { opened, backend, mark: Mark::set(api), probe, scratch, tier })
+        }
+        Err(e) => {
+            log::error!("{} {}: {e}", info.renderer, info.version_text);
+            api.delete(Api::DeleteFramebuffers, probe.0);
+            probe.1.iter().for_each(|t| api.delete(Api::DeleteTextures, *t));
+            Err(e)
+        }
+    }
+}
+
+/// Clears one texel, copies it, and reads it; wgpu's framebuffers are still bound afterwards.
+fn first_picture(opened: &Opened, api: &Api) -> Result<Backend> {
+    let vertex_array = api.uint(VERTEX_ARRAY_BINDING);
+    let texture = |usage| {
+        opened.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage,
+            view_formats: &[],
+        })
+    };
+    let drawn = texture(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
+    let copied = texture(wgpu::TextureUsages::COPY_DST);
+    let mut encoder = opened.device.create_command_encoder(&Default::default());
+    let color = wgpu::Color { r: 1.0, g: 0.0, b: 1.0, a: 1.0 };
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &drawn.create_view(&Default::default()),
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    }));
+    opened.queue.submit([encoder.finish()]);
+    let draw_framebuffer = api.uint(DRAW_FRAMEBUFFER_BINDING);
+    let mut encoder = opened.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_texture(drawn.as_image_copy(), copied.as_image_copy(), drawn.size());
+    opened.queue.submit([encoder.finish()]);
+    let copy_framebuffer = api.uint(READ_FRAMEBUFFER_BINDING);
+    let mut texel = [0u8; 4];
+    // SAFETY: one texel of four bytes is read into four bytes; the copy's source is attached for reading.
+    unsafe { api.ReadPixels(0, 0, 1, 1, RGBA, UNSIGNED_BYTE, texel.as_mut_ptr().cast()) };
+    drop((drawn, copied));
+    let _ = opened.device.poll(wgpu::PollType::wait_indefinitely());
+    if texel != [255, 0, 255, 255] {
+        return Err(Error::new(
+            Status::NoAdapter,
+            format!("the OpenGL context does not draw what it is told: a texel should be magenta and is {texel:?}"),
+        ));
+    }
+    Ok(Backend { vertex_array, draw_framebuffer, copy_framebuffer })
+}
+
+impl Parts {
+    fn into_adopted(self, api: Api, info: GlInfo, sharing: Sharing, desc: &GlHostDesc) -> Adopted {
+        let Opened { instance, adapter, device, queue } = self.opened;
+        let inner = Inner {
+            api,
+            sharing,
+            mark: self.mark,
+            backend: self.backend,
+            probe: self.probe,
+            tier0: desc.force_tier0,
+            scratch: self.scratch,
+            targets: Vec::new(),
+            active: Vec::new(),
+            next_id: 0,
+            fault: None,
+            closed: false,
+        };
+        let tier = if desc.force_tier0 { 0 } else { self.tier };
+        Adopted { instance, adapter, device, queue, host: GlHost::new(info, inner), tier }
+    }
+}

@@ -1,0 +1,187 @@
+//! A host's colour and depth as wgpu textures.
+//!
+//! | host's image                       | colour                                   | depth                             |
+//! |------------------------------------|------------------------------------------|-----------------------------------|
+//! | texture                            | drawn to and read directly               | read and attached directly        |
+//! | multisampled texture               | drawn to through a framebuffer of ours, read directly | the same             |
+//! | renderbuffer, multisampled or not  | drawn to directly, not readable          | attached directly, read from a copy |
+//! | framebuffer (the window's, or any) | copied in, drawn to, copied back         | copied in (and back, if asked)    |
+//!
+//! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not own
+//! the object.
+
+use std::sync::Arc;
+
+use super::{
+    api::Api,
+    blit::{self, End},
+    formats,
+    image::{self, Ask, Facts, GlImage, Parameters, Side},
+    names::*,
+};
+use crate::error::Result;
+
+/// What is done about multisampled images.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Multisample {
+    /// The wgpu textures have the host's samples: Welkin draws and reads depth per sample. From OpenGL 4.0 on; not on
+    /// OpenGL ES nor on a forced tier 0.
+    #[default]
+    Each,
+    /// The wgpu textures have one sample: colour comes in averaged and goes back to every sample alike, depth is that of
+    /// one sample. Not on OpenGL ES.
+    Resolve,
+}
+
+/// What a host asks Welkin to draw into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct GlTargetDesc {
+    /// The picture.
+    pub color: GlImage,
+    /// Its depth, if it has one.
+    pub depth: Option<GlImage>,
+    /// Width in pixels; must be the images' own.
+    pub width: u32,
+    /// Height in pixels; must be the images' own.
+    pub height: u32,
+    /// A number the host raises when it makes an object anew under an old name.
+    pub generation: u64,
+    /// What is done about multisampled images.
+    pub multisample: Multisample,
+    /// Whether depth that was copied in is copied back.
+    pub write_depth: bool,
+}
+
+/// A target as wgpu textures, valid while the host is entered.
+///
+/// Row 0 is the host's bottom row, as everywhere in OpenGL, and wgpu counts it as the top: see the room's page on what is
+/// upside down.
+#[derive(Debug)]
+pub struct GlTarget {
+    /// Changes whenever the textures do; for caches of views and bind groups.
+    pub id: u64,
+    /// What to draw to.
+    pub color: wgpu::Texture,
+    /// The same picture for reading (`TEXTURE_BINDING`), where OpenGL can read it in place.
+    pub color_read: Option<wgpu::Texture>,
+    /// Depth to attach.
+    pub depth: Option<wgpu::Texture>,
+    /// Depth to read, as an unfilterable float texture by `textureLoad`.
+    pub depth_read: Option<wgpu::Texture>,
+    /// Samples of all of them.
+    pub samples: u32,
+}
+
+/// One side of a target, with what it takes to use it.
+pub(super) struct Part {
+    pub(super) side: Side,
+    pub(super) image: GlImage,
+    pub(super) facts: Facts,
+    pub(super) parameters: Option<Parameters>,
+    pub(super) copy: Option<Copied>,
+}
+
+/// Our copy of an image that wgpu cannot use in place.
+pub(super) struct Copied {
+    /// Framebuffer with the host's image: the host's own for [`GlImage::Framebuffer`].
+    pub(super) from: End,
+    /// Framebuffer with our texture.
+    pub(super) to: End,
+    /// Our texture.
+    pub(super) texture: u32,
+    /// Whether our texture is drawn to, and not the host's image: then it goes back.
+    pub(super) drawn_to: bool,
+}
+
+/// A target in the cache, with the objects of ours that serve it.
+pub(super) struct Entry {
+    pub(super) desc: GlTargetDesc,
+    pub(super) target: Arc<GlTarget>,
+    pub(super) used: u64,
+    pub(super) parts: Vec<Part>,
+    pub(super) made: Made,
+}
+
+/// Objects of ours that serve a target.
+#[derive(Default)]
+pub(super) struct Made {
+    pub(super) framebuffers: Vec<u32>,
+    pub(super) textures: Vec<u32>,
+}
+
+impl Made {
+    /// Deletes them.
+    pub(super) fn delete(&mut self, api: &Api) {
+        self.framebuffers.drain(..).for_each(|name| api.delete(Api::DeleteFramebuffers, name));
+        self.textures.drain(..).for_each(|name| api.delete(Api::DeleteTextures, name));
+    }
+}
+
+impl Entry {
+    /// Whether the host's objects are still what they were when this was built.
+    ///
+    /// # Errors
+    /// As [`image::facts`].
+    pub(super) fn is_current(&self, ask: Ask<'_>) -> Result<bool> {
+        let size = (self.desc.width, self.desc.height);
+        for part in &self.parts {
+            if image::facts(ask, part.image, part.side, size)? != part.facts {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Prepares the host's objects for wgpu and copies in what cannot be used in place.
+    ///
+    /// # Errors
+    /// A refused copy.
+    pub(super) fn begin(&mut self, api: &Api) -> Result<()> {
+        let size = (self.desc.width, self.desc.height);
+        for part in &mut self.parts {
+            if let Some(parameters) = &mut part.parameters {
+                parameters.take(api);
+            }
+            if let Some(copy) = &part.copy {
+                blit::copy(api, copy.from, copy.to, mask(part.side, part.facts.internal), size)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Copies back what was drawn into copies and gives the host's objects back as they were.
+    ///
+    /// # Errors
+    /// A refused copy; everything is given back all the same.
+    pub(super) fn end(&self, api: &Api) -> Result<()> {
+        let size = (self.desc.width, self.desc.height);
+        let mut outcome = Ok(());
+        for part in &self.parts {
+            if let Some(copy) = &part.copy
+                && copy.drawn_to
+                && (part.side == Side::Color || self.desc.write_depth)
+            {
+                let back = blit::copy(api, copy.to, copy.from, mask(part.side, part.facts.internal), size);
+                outcome = outcome.and(back);
+            }
+            if let Some(parameters) = &part.parameters {
+                parameters.give_back(api);
+            }
+        }
+        outcome
+    }
+
+    /// The host's images in this target.
+    pub(super) fn images(&self) -> impl Iterator<Item = GlImage> {
+        self.parts.iter().map(|part| part.image)
+    }
+}
+
+/// What a copy of an image carries.
+pub(super) fn mask(side: Side, internal: u32) -> u32 {
+    match side {
+        Side::Color => COLOR_BUFFER_BIT,
+        Side::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
+        Side::Depth => DEPTH_BUFFER_BIT,
+    }
+}

@@ -1,0 +1,14 @@
+//! Hosts that draw with OpenGL: real contexts without a window, in which a small picture is drawn through wgpu and
+//! looked at with the host's own OpenGL.
+#![cfg(target_os = "linux")]
+
+mod egl;
+mod exercise;
+mod host;
+mod images;
+mod kinds;
+mod life;
+mod pictures;
+mod snapshot;
+mod state;
+mod unusual;
