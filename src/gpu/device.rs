@@ -51,6 +51,48 @@ pub trait HostBinding: Send + Sync {
     fn enter(&self) -> Result<()>;
     /// Called after the last one; must not fail.
     fn leave(&self);
+    /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
+    fn closing(&self);
+    /// Called once, still entered, when the device's own objects are gone.
+    fn closed(&self);
+    /// Called instead of both where the host's context is gone, and its objects with it.
+    fn forsaken(&self);
+}
+
+/// The first thing to go with a device: enters the host's context for what goes after it. Without a context that
+/// cannot be, and then nothing may be released: a driver need not survive a call without a context.
+struct Entrance {
+    binding: Arc<dyn HostBinding>,
+    entered: Arc<AtomicBool>,
+    kept: Option<(wgpu::Instance, wgpu::Adapter, wgpu::Device, wgpu::Queue)>,
+}
+
+impl Drop for Entrance {
+    fn drop(&mut self) {
+        let kept = self.kept.take();
+        if self.binding.enter().is_ok() {
+            self.entered.store(true, Ordering::Release);
+            self.binding.closing();
+        } else {
+            self.binding.forsaken();
+            std::mem::forget(kept); // a count that never falls to 0
+        }
+    }
+}
+
+/// The last thing to go with a device.
+struct Exit {
+    binding: Arc<dyn HostBinding>,
+    entered: Arc<AtomicBool>,
+}
+
+impl Drop for Exit {
+    fn drop(&mut self) {
+        if self.entered.load(Ordering::Acquire) {
+            self.binding.closed();
+            self.binding.leave();
+        }
+    }
 }
 
 /// Proof that the host's context is current; leaves it when dropped.
@@ -73,6 +115,8 @@ struct Faults {
 
 /// One native queue or GL context with what was found out about it. Shared by contexts and views.
 pub struct Device {
+    // Fields go in this order: see `Entrance`.
+    _entrance: Option<Entrance>,
     /// Kept alive for surfaces and for the order of destruction.
     pub instance: wgpu::Instance,
     /// The physical device.
@@ -83,7 +127,8 @@ pub struct Device {
     pub queue: wgpu::Queue,
     caps: Caps,
     faults: Arc<Faults>,
-    binding: Option<Box<dyn HostBinding>>,
+    binding: Option<Arc<dyn HostBinding>>,
+    _exit: Option<Exit>,
 }
 
 impl Device {
@@ -137,7 +182,7 @@ impl Device {
         device: wgpu::Device,
         queue: wgpu::Queue,
         force_tier0: bool,
-        binding: Option<Box<dyn HostBinding>>,
+        binding: Option<Arc<dyn HostBinding>>,
     ) -> Result<Arc<Self>> {
         let info = adapter.get_info();
         let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
@@ -152,7 +197,13 @@ impl Device {
         };
         let faults = Arc::new(Faults::default());
         watch(&device, &faults);
-        Ok(Arc::new(Self { instance, adapter, device, queue, caps, faults, binding }))
+        let entered = Arc::new(AtomicBool::new(false));
+        let kept = || (instance.clone(), adapter.clone(), device.clone(), queue.clone());
+        let entrance =
+            binding.clone().map(|binding| Entrance { binding, entered: entered.clone(), kept: Some(kept()) });
+        let exit = binding.clone().map(|binding| Exit { binding, entered });
+        let own = Self { _entrance: entrance, instance, adapter, device, queue, caps, faults, binding, _exit: exit };
+        Ok(Arc::new(own))
     }
 
     /// What this device can do.

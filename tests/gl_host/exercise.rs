@@ -1,6 +1,6 @@
 //! Work that makes wgpu's backend touch as much of OpenGL's state as Welkin ever will.
 
-use welkin::gpu::gl::{Adopted, GlTarget};
+use welkin::gpu::gl::{GlDevice, GlTarget};
 
 const SHADER: &str = r"
 struct Out { @builtin(position) at: vec4f, @location(0) @interpolate(flat) number: u32 }
@@ -52,15 +52,15 @@ fn texture(device: &wgpu::Device, format: wgpu::TextureFormat, layers: u32, volu
 }
 
 /// Draws, uploads, copies, computes and reads back; checks the numbers that come back.
-pub fn run(adopted: &Adopted, target: &GlTarget) {
+pub fn run(adopted: &GlDevice, target: &GlTarget) {
     draw(adopted);
-    if adopted.tier > 0 {
+    if adopted.device.caps().tier > 0 {
         compute(adopted);
     }
     // What was imported can be copied like any other texture.
-    let Some(source) = &target.color_read else { return };
+    let source = &target.color;
     if source.usage().contains(wgpu::TextureUsages::COPY_SRC) {
-        let copy = adopted.device.create_texture(&wgpu::TextureDescriptor {
+        let copy = adopted.device.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: source.size(),
             mip_level_count: 1,
@@ -70,14 +70,14 @@ pub fn run(adopted: &Adopted, target: &GlTarget) {
             usage: wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        let mut encoder = adopted.device.create_command_encoder(&Default::default());
+        let mut encoder = adopted.device.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_texture(source.as_image_copy(), copy.as_image_copy(), source.size());
-        adopted.queue.submit([encoder.finish()]);
+        adopted.device.queue.submit([encoder.finish()]);
     }
 }
 
-fn draw(adopted: &Adopted) {
-    let Adopted { device, queue, .. } = adopted;
+fn draw(adopted: &GlDevice) {
+    let (device, queue) = (&adopted.device.device, &adopted.device.queue);
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("exercise"),
         source: wgpu::ShaderSource::Wgsl(SHADER.into()),
@@ -223,14 +223,14 @@ fn draw(adopted: &Adopted) {
 }
 
 /// The bytes of a 16 x 16 texture with 4 bytes a texel.
-fn read_back(adopted: &Adopted, texture: &wgpu::Texture) -> Vec<u8> {
-    let buffer = adopted.device.create_buffer(&wgpu::BufferDescriptor {
+fn read_back(adopted: &GlDevice, texture: &wgpu::Texture) -> Vec<u8> {
+    let buffer = adopted.device.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 256 * 16,
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = adopted.device.create_command_encoder(&Default::default());
+    let mut encoder = adopted.device.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
@@ -239,20 +239,20 @@ fn read_back(adopted: &Adopted, texture: &wgpu::Texture) -> Vec<u8> {
         },
         texture.size(),
     );
-    adopted.queue.submit([encoder.finish()]);
+    adopted.device.queue.submit([encoder.finish()]);
     mapped(adopted, &buffer)
 }
 
-fn mapped(adopted: &Adopted, buffer: &wgpu::Buffer) -> Vec<u8> {
+fn mapped(adopted: &GlDevice, buffer: &wgpu::Buffer) -> Vec<u8> {
     buffer.map_async(wgpu::MapMode::Read, .., |r| r.unwrap());
-    adopted.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    adopted.device.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let bytes = buffer.get_mapped_range(..).unwrap().to_vec();
     buffer.unmap();
     bytes
 }
 
-fn compute(adopted: &Adopted) {
-    let device = &adopted.device;
+fn compute(adopted: &GlDevice) {
+    let device = &adopted.device.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(COMPUTE.into()),
@@ -298,7 +298,7 @@ fn compute(adopted: &Adopted) {
     pass.dispatch_workgroups(2, 2, 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&list, 0, &back, 0, 1024);
-    adopted.queue.submit([encoder.finish()]);
+    adopted.device.queue.submit([encoder.finish()]);
     let bytes = mapped(adopted, &back);
     assert_eq!(bytes[4 * (3 * 16 + 2)..][..4], 203u32.to_le_bytes(), "computed numbers");
 }

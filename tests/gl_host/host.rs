@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use welkin::gpu::gl::{Adopted, GlHostDesc, GlMode, GlTarget, Handover, adopt};
+use welkin::gpu::gl::{GlDevice, GlHostDesc, GlMode, GlTarget, Handover, adopt};
 
 use crate::egl::{self, Api, Context, Window};
 
@@ -61,34 +61,46 @@ impl Host {
         }
     }
 
-    pub fn adopt(&self) -> Adopted {
+    pub fn adopt(&self) -> GlDevice {
         self.adopt_with(|_| {})
     }
 
-    pub fn adopt_with(&self, change: impl FnOnce(&mut GlHostDesc)) -> Adopted {
+    pub fn adopt_with(&self, change: impl FnOnce(&mut GlHostDesc)) -> GlDevice {
         let mut desc = self.desc();
         change(&mut desc);
         // SAFETY: the callbacks are those of this file, the contexts live as long as the host.
         let adopted = unsafe { adopt(&desc) }.unwrap_or_else(|e| panic!("{e}"));
-        adopted.device.on_uncaptured_error(std::sync::Arc::new(|e| panic!("{e}")));
+        adopted.device.device.on_uncaptured_error(std::sync::Arc::new(|e| panic!("{e}")));
         assert!(self.contexts.host.is_current(), "the host's context is current again");
         adopted
     }
 }
 
-/// Drops everything in the right context.
-pub fn close(adopted: Adopted) {
-    let Adopted { instance, adapter, device, queue, host, .. } = adopted;
-    host.close((queue, device, adapter, instance), drop, std::mem::forget);
+/// The device goes, and enters the host's context for that by itself.
+pub fn close(adopted: GlDevice) {
+    assert_eq!(std::sync::Arc::strong_count(&adopted.device), 1);
+    drop(adopted);
 }
 
-/// How the small picture reads depth.
+/// What the small picture reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     None,
     One,
     /// Per sample, at sample rate.
     Many,
+    /// No depth but the red of the picture as it was.
+    OldColor,
+    /// The same per sample.
+    OldColors,
+    /// No depth but the mask.
+    Mask,
+}
+
+impl Depth {
+    fn per_sample(self) -> bool {
+        matches!(self, Self::Many | Self::OldColors)
+    }
 }
 
 /// A full-screen picture: red rises to the right, green upwards as the host sees it, blue is the depth read, or
@@ -96,6 +108,7 @@ pub enum Depth {
 pub struct Picture {
     pipeline: wgpu::RenderPipeline,
     layout: Option<wgpu::BindGroupLayout>,
+    reads: Depth,
 }
 
 const SHADER: &str = r"
@@ -126,8 +139,8 @@ impl Picture {
     pub fn new(device: &wgpu::Device, target: &GlTarget, depth: Depth) -> Self {
         let (text, entry) = match depth {
             Depth::None => (SHADER.to_owned(), "plain"),
-            Depth::One => (format!("{SHADER}{ONE}"), "one"),
-            Depth::Many => (format!("{SHADER}{MANY}"), "many"),
+            depth if depth.per_sample() => (format!("{SHADER}{MANY}"), "many"),
+            _ => (format!("{SHADER}{ONE}"), "one"),
         };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
@@ -142,7 +155,7 @@ impl Picture {
                     ty: wgpu::BindingType::Texture {
                         sample_type: wgpu::TextureSampleType::Float { filterable: false },
                         view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: depth == Depth::Many,
+                        multisampled: depth.per_sample(),
                     },
                     count: None,
                 }],
@@ -181,23 +194,25 @@ impl Picture {
             multiview_mask: None,
             cache: None,
         });
-        Self { pipeline, layout }
+        Self { pipeline, layout, reads: depth }
     }
 
-    pub fn draw(&self, adopted: &Adopted, target: &GlTarget) {
+    pub fn draw(&self, adopted: &GlDevice, target: &GlTarget) {
         let group = self.layout.as_ref().map(|layout| {
-            let depth = target.depth_read.as_ref().expect("a depth to read");
-            let view = depth.create_view(&wgpu::TextureViewDescriptor {
-                aspect: wgpu::TextureAspect::DepthOnly,
-                ..Default::default()
-            });
-            adopted.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            let (texture, aspect) = match self.reads {
+                Depth::OldColor | Depth::OldColors => (&target.color_read, wgpu::TextureAspect::All),
+                Depth::Mask => (&target.mask, wgpu::TextureAspect::All),
+                _ => (&target.depth_read, wgpu::TextureAspect::DepthOnly),
+            };
+            let view = texture.as_ref().expect("something to read");
+            let view = view.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
+            adopted.device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: None,
                 layout,
                 entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
             })
         });
-        let mut encoder = adopted.device.create_command_encoder(&Default::default());
+        let mut encoder = adopted.device.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &target.color.create_view(&Default::default()),
@@ -213,6 +228,6 @@ impl Picture {
         }
         pass.draw(0..3, 0..1);
         drop(pass);
-        adopted.queue.submit([encoder.finish()]);
+        adopted.device.queue.submit([encoder.finish()]);
     }
 }

@@ -86,6 +86,7 @@ pub fn desc(color: GlImage, depth: Option<GlImage>) -> GlTargetDesc {
     GlTargetDesc {
         color,
         depth,
+        mask: None,
         width: WIDTH,
         height: HEIGHT,
         generation: 0,
@@ -192,6 +193,10 @@ pub enum Blue {
     Plain,
     /// The depth that [`clear`] left.
     Depth,
+    /// The red that [`clear`] left.
+    Old,
+    /// A mask of 1.
+    One,
 }
 
 /// The picture of `host::Picture` the right way up, to within `steps` of 255.
@@ -202,6 +207,8 @@ pub fn assert_picture(texels: &[[u8; 4]], blue: Blue, steps: i32) {
             let part = |i: u32, n: u32| ((f64::from(i) + 0.5) / f64::from(n) * 255.0).round() as i32;
             let blue = match blue {
                 Blue::Depth if y >= HEIGHT / 2 => 191,
+                Blue::Old => 51,
+                Blue::One => 255,
                 _ => 64,
             };
             let expected = [part(x, WIDTH), part(y, HEIGHT), blue, 255];

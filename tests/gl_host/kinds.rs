@@ -30,8 +30,9 @@ fn color_formats() {
         let color = image_of(texture(gl, internal));
         {
             let _current = adopted.host.enter().unwrap();
-            let target = adopted.host.target(&adopted.device, &desc(color, None)).unwrap_or_else(|e| panic!("{e}"));
-            Picture::new(&adopted.device, &target, Depth::None).draw(&adopted, &target);
+            let target =
+                adopted.host.target(&adopted.device.device, &desc(color, None)).unwrap_or_else(|e| panic!("{e}"));
+            Picture::new(&adopted.device.device, &target, Depth::None).draw(&adopted, &target);
         }
         let fbo = framebuffer(gl, color, None);
         // SAFETY: the host's context is current.
@@ -86,9 +87,9 @@ fn depth_formats() {
                 clear(gl);
                 {
                     let _current = adopted.host.enter().unwrap();
-                    let target = adopted.host.target(&adopted.device, &desc(color, Some(depth)));
+                    let target = adopted.host.target(&adopted.device.device, &desc(color, Some(depth)));
                     let target = target.unwrap_or_else(|e| panic!("{internal:#x}: {e}"));
-                    Picture::new(&adopted.device, &target, Depth::One).draw(&adopted, &target);
+                    Picture::new(&adopted.device.device, &target, Depth::One).draw(&adopted, &target);
                 }
                 assert_picture(&read(gl), Blue::Depth, 1);
             }
@@ -139,6 +140,49 @@ fn multisampled_images_per_sample() {
             assert_picture(&resolved(gl, fbo), Blue::Depth, 1);
         }
     }
+}
+
+#[test]
+fn what_wgpu_cannot_copy_is_there_to_read() {
+    for mode in [GlMode::Shared, GlMode::HostContext] {
+        let host = Host::new(Api::Core(4, 5), Window::None, mode);
+        let gl = &host.gl;
+        for (color, reads) in [
+            (image_of_buffer(renderbuffer(gl, glow::RGBA8, 1)), Depth::OldColor),
+            (image_of_buffer(renderbuffer(gl, glow::RGBA8, 4)), Depth::OldColors),
+            (image_of_samples(multisampled_texture(gl, glow::RGBA8, 4)), Depth::OldColors),
+        ] {
+            let fbo = framebuffer(gl, color, None);
+            // SAFETY: the host's context is current.
+            unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, Some(fbo)) };
+            clear(gl);
+            draw(&host, &desc(color, None), reads);
+            assert_picture(&resolved(gl, fbo), Blue::Old, 1);
+        }
+    }
+}
+
+#[test]
+fn a_mask() {
+    let host = Host::new(Api::Core(3, 3), Window::None, GlMode::Shared);
+    let gl = &host.gl;
+    for internal in [glow::R8, glow::RGBA8] {
+        let (color, mask) = (image_of(texture(gl, glow::RGBA8)), image_of(texture(gl, internal)));
+        let [fbo, mask_fbo] = [color, mask].map(|image| framebuffer(gl, image, None));
+        // SAFETY: the host's context is current.
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(mask_fbo));
+            gl.clear_color(1.0, 1.0, 1.0, 1.0);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+        }
+        draw(&host, &GlTargetDesc { mask: Some(mask), ..desc(color, None) }, Depth::Mask);
+        // SAFETY: as above.
+        unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, Some(fbo)) };
+        assert_picture(&read(gl), Blue::One, 1);
+    }
+    let (color, mask) = (image_of(texture(gl, glow::RGBA8)), image_of_buffer(renderbuffer(gl, glow::R8, 1)));
+    let desc = GlTargetDesc { mask: Some(mask), ..desc(color, None) };
+    assert_refused(&host, &desc, Status::Unsupported, &["target.mask", "GL_TEXTURE_2D"]);
 }
 
 #[test]
@@ -223,8 +267,8 @@ fn depth_goes_back_to_the_window_when_asked() {
         let adopted = host.adopt();
         {
             let _current = adopted.host.enter().unwrap();
-            let target = adopted.host.target(&adopted.device, &desc).unwrap();
-            let mut encoder = adopted.device.create_command_encoder(&Default::default());
+            let target = adopted.host.target(&adopted.device.device, &desc).unwrap();
+            let mut encoder = adopted.device.device.create_command_encoder(&Default::default());
             drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: &target.depth.as_ref().unwrap().create_view(&Default::default()),
@@ -233,7 +277,7 @@ fn depth_goes_back_to_the_window_when_asked() {
                 }),
                 ..Default::default()
             }));
-            adopted.queue.submit([encoder.finish()]);
+            adopted.device.queue.submit([encoder.finish()]);
         }
         close(adopted);
         let mut depth = [0u8; 4];
@@ -253,7 +297,7 @@ fn refusal(host: &Host, desc: &GlTargetDesc) -> welkin::Error {
     let adopted = host.adopt();
     let error = {
         let _current = adopted.host.enter().unwrap();
-        adopted.host.target(&adopted.device, desc).unwrap_err()
+        adopted.host.target(&adopted.device.device, desc).unwrap_err()
     };
     assert!(adopted.host.enter().is_ok(), "a refused target is no fault of the device");
     close(adopted);
@@ -337,7 +381,7 @@ fn samples_are_refused_where_shaders_cannot_read_them() {
     let adopted = host.adopt_with(|d| d.force_tier0 = true);
     {
         let _current = adopted.host.enter().unwrap();
-        let error = adopted.host.target(&adopted.device, &desc(color, None)).unwrap_err();
+        let error = adopted.host.target(&adopted.device.device, &desc(color, None)).unwrap_err();
         assert!(error.message.contains("target.multisample") && error.message.contains("tier 0"), "{error}");
     }
     close(adopted);

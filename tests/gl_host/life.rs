@@ -9,7 +9,7 @@ use std::{
 use glow::HasContext;
 use welkin::{
     Status,
-    gpu::gl::{Adopted, GlHostDesc, GlImage, GlMode, GlTargetDesc, Handover, adopt},
+    gpu::gl::{GlDevice, GlHostDesc, GlImage, GlMode, GlTargetDesc, Handover, adopt},
 };
 
 use crate::{
@@ -151,14 +151,14 @@ fn modes_in_which_nothing_is_drawn_are_refused() {
     }
 }
 
-fn draws(host: &Host, adopted: &Adopted) {
+fn draws(host: &Host, adopted: &GlDevice) {
     let gl = &host.gl;
     let color = image_of(texture(gl, glow::RGBA8));
     let fbo = framebuffer(gl, color, None);
     {
         let _current = adopted.host.enter().unwrap_or_else(|e| panic!("{e}"));
-        let target = adopted.host.target(&adopted.device, &desc(color, None)).unwrap();
-        Picture::new(&adopted.device, &target, Depth::None).draw(adopted, &target);
+        let target = adopted.host.target(&adopted.device.device, &desc(color, None)).unwrap();
+        Picture::new(&adopted.device.device, &target, Depth::None).draw(adopted, &target);
     }
     // SAFETY: the host's context is current.
     unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, Some(fbo)) };
@@ -222,8 +222,8 @@ fn any_thread_may_draw_if_the_context_is_current_there() {
             assert!(contexts.host.make_current());
             {
                 let _current = adopted.host.enter().unwrap();
-                let target = adopted.host.target(&adopted.device, &desc(color, None)).unwrap();
-                Picture::new(&adopted.device, &target, Depth::None).draw(&adopted, &target);
+                let target = adopted.host.target(&adopted.device.device, &desc(color, None)).unwrap();
+                Picture::new(&adopted.device.device, &target, Depth::None).draw(&adopted, &target);
             }
             egl::make_none_current();
             adopted
@@ -268,8 +268,8 @@ fn nothing_is_left_behind_and_nothing_of_the_host_goes() {
         }
         for desc in &descs {
             let _current = adopted.host.enter().unwrap();
-            let target = adopted.host.target(&adopted.device, desc).unwrap();
-            Picture::new(&adopted.device, &target, Depth::One).draw(&adopted, &target);
+            let target = adopted.host.target(&adopted.device.device, desc).unwrap();
+            Picture::new(&adopted.device.device, &target, Depth::One).draw(&adopted, &target);
         }
         assert_ne!(before, census(gl), "the census sees Welkin's objects");
         close(adopted);
@@ -292,7 +292,7 @@ fn a_target_is_made_once_and_again_when_the_host_makes_it_anew() {
     let adopted = host.adopt();
     let id = |desc: &GlTargetDesc| {
         let _current = adopted.host.enter().unwrap();
-        adopted.host.target(&adopted.device, desc).unwrap().id
+        adopted.host.target(&adopted.device.device, desc).unwrap().id
     };
     let first = desc(image_of(name), None);
     let once = id(&first);
@@ -310,9 +310,9 @@ fn a_target_is_made_once_and_again_when_the_host_makes_it_anew() {
     assert_ne!(again, id(&resized), "another size");
     {
         let _current = adopted.host.enter().unwrap();
-        let target = adopted.host.target(&adopted.device, &resized).unwrap();
+        let target = adopted.host.target(&adopted.device.device, &resized).unwrap();
         assert_eq!(target.color.format(), wgpu::TextureFormat::Rgba16Float);
-        let error = adopted.host.target(&adopted.device, &later).unwrap_err();
+        let error = adopted.host.target(&adopted.device.device, &later).unwrap_err();
         assert!(error.message.contains("32 x 16"), "{error}");
     }
     // Many targets: the cache does not grow without end, and the first comes back.
@@ -331,7 +331,7 @@ fn outside_there_are_no_targets() {
     let host = Host::new(Api::Core(3, 3), Window::None, GlMode::Shared);
     let adopted = host.adopt();
     let color = image_of(texture(&host.gl, glow::RGBA8));
-    let error = adopted.host.target(&adopted.device, &desc(color, None)).unwrap_err();
+    let error = adopted.host.target(&adopted.device.device, &desc(color, None)).unwrap_err();
     assert_eq!(error.status, Status::WrongOrder, "{error}");
     let switches = host.contexts.switches.load(Ordering::Relaxed);
     {

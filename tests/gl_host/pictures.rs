@@ -16,8 +16,8 @@ pub fn draw(host: &Host, desc: &GlTargetDesc, depth: Depth) {
     let adopted = host.adopt();
     {
         let _current = adopted.host.enter().unwrap();
-        let target = adopted.host.target(&adopted.device, desc).unwrap_or_else(|e| panic!("{e}"));
-        Picture::new(&adopted.device, &target, depth).draw(&adopted, &target);
+        let target = adopted.host.target(&adopted.device.device, desc).unwrap_or_else(|e| panic!("{e}"));
+        Picture::new(&adopted.device.device, &target, depth).draw(&adopted, &target);
     }
     close(adopted);
 }

@@ -43,10 +43,12 @@ fn nothing_leaks(api: Api, mode: GlMode, force_tier0: bool, least_values: usize)
     for round in 0..2 {
         {
             let _current = adopted.host.enter().unwrap_or_else(|e| panic!("{e}"));
-            let target =
-                adopted.host.target(&adopted.device, &desc(color, Some(depth))).unwrap_or_else(|e| panic!("{e}"));
+            let target = adopted
+                .host
+                .target(&adopted.device.device, &desc(color, Some(depth)))
+                .unwrap_or_else(|e| panic!("{e}"));
             exercise::run(&adopted, &target);
-            Picture::new(&adopted.device, &target, Depth::One).draw(&adopted, &target);
+            Picture::new(&adopted.device.device, &target, Depth::One).draw(&adopted, &target);
         }
         assert_same(&before, &Snapshot::take(gl, &objects), &format!("record {round}"));
     }

@@ -49,6 +49,11 @@ const READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING;
 const COPIES: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC.union(wgpu::TextureUsages::COPY_DST);
 
 impl Part {
+    /// wgpu's name of the format.
+    fn format(&self) -> Result<wgpu::TextureFormat> {
+        formats::format(self.facts.internal, self.side)
+    }
+
     /// What is drawn to.
     fn attached(&self, samples: u32) -> Object {
         match (self.image, &self.copy) {
@@ -107,15 +112,29 @@ impl Workshop<'_> {
         } else {
             None
         };
-        let (color, color_read) = self.textures(&parts[0], samples, through)?;
+        let (color, color_read) = self.color(&mut parts[0], samples, through, made)?;
         let (depth, depth_read) = match parts.get(1) {
-            Some(part) => {
-                let (depth, read) = self.textures(part, samples, through)?;
-                (Some(depth), read)
-            }
+            Some(part) => self.depth(part, samples, through)?,
             None => (None, None),
         };
-        Ok((GlTarget { id, color, color_read, depth, depth_read, samples }, parts))
+        let mask = match desc.mask {
+            Some(image) => {
+                let part = self.mask_part(desc, image)?;
+                let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
+                parts.push(part);
+                Some(texture)
+            }
+            None => None,
+        };
+        Ok((GlTarget { id, color, color_read, depth, depth_read, mask, samples }, parts))
+    }
+
+    /// Asks about the mask.
+    fn mask_part(&self, desc: GlTargetDesc, image: GlImage) -> Result<Part> {
+        if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
+            return Err(Error::unsupported("target.mask must be a texture of target GL_TEXTURE_2D"));
+        }
+        self.part(desc, image, Side::Mask)
     }
 
     /// Whether multisampled images are copied to images of one sample.
@@ -169,15 +188,12 @@ impl Workshop<'_> {
         if !matches!(facts.samples, 1 | 2 | 4 | 8 | 16) {
             return Err(Error::range(side.parameter(), "an image with 1, 2, 4, 8 or 16 samples", facts.samples));
         }
-        match side {
-            Side::Color => formats::color(facts.internal, side.parameter())?,
-            Side::Depth => formats::depth(facts.internal, side.parameter())?,
-        };
+        formats::format(facts.internal, side)?;
         let parameters = match image {
             GlImage::Texture { name, target } => Some(Parameters::new(self.ask.info, name, target, side)),
             _ => None,
         };
-        Ok(Part { side, image, facts, parameters, copy: None })
+        Ok(Part { side, image, facts, parameters, copy: None, reading: None })
     }
 
     /// Makes the copy that an image needs, and the framebuffers at its two ends.
@@ -231,7 +247,7 @@ impl Workshop<'_> {
         api.BindFramebuffer(FRAMEBUFFER, framebuffer);
         for (side, image, internal) in images {
             let attachment = match side {
-                Side::Color => COLOR_ATTACHMENT0,
+                Side::Color | Side::Mask => COLOR_ATTACHMENT0,
                 Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
                 Side::Depth => DEPTH_ATTACHMENT,
             };
@@ -262,30 +278,49 @@ impl Workshop<'_> {
         )))
     }
 
-    /// One side as wgpu textures: to draw to, and to read.
-    fn textures(
+    /// The picture as wgpu textures: to draw to, and to read where wgpu cannot copy that.
+    fn color(
+        &self,
+        part: &mut Part,
+        samples: u32,
+        through: Option<Object>,
+        made: &mut Made,
+    ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
+        let format = part.format()?;
+        let object = part.attached(samples);
+        if through.is_none() {
+            self.check_attachable(part, object)?;
+        }
+        if let (Object::Texture(..), None) = (object, through) {
+            return Ok((self.wrap(object, format, part.facts, samples, ATTACH | READ | COPIES)?, None));
+        }
+        let internal = part.facts.internal;
+        let from = self.end(&[(Side::Color, object, internal)], made)?;
+        let texture = image::make_texture(self.ask.api, internal, (part.facts.width, part.facts.height), samples);
+        made.textures.push(texture);
+        let ours = Object::Texture(texture, target_of(samples));
+        let to = self.end(&[(Side::Color, ours, internal)], made)?;
+        part.reading = Some(Copied { from, to, texture, drawn_to: false });
+        let read = self.wrap(ours, format, part.facts, samples, READ)?;
+        let color = self.wrap(through.unwrap_or(object), format, part.facts, samples, ATTACH)?;
+        Ok((color, Some(read)))
+    }
+
+    /// Depth as wgpu textures: to attach, and to read. Two of one object: wgpu would refuse to read what it has attached.
+    fn depth(
         &self,
         part: &Part,
         samples: u32,
         through: Option<Object>,
-    ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
-        let format = match part.side {
-            Side::Color => formats::color(part.facts.internal, part.side.parameter())?,
-            Side::Depth => formats::depth(part.facts.internal, part.side.parameter())?,
-        };
-        let wrap = |object, usage| self.wrap(object, format, part.facts, samples, usage);
-        let attached = through.unwrap_or_else(|| part.attached(samples));
-        let readable = part.readable(samples);
+    ) -> Result<(Option<wgpu::Texture>, Option<wgpu::Texture>)> {
+        let format = part.format()?;
+        let object = part.attached(samples);
         if through.is_none() {
-            self.check_attachable(part, attached)?;
+            self.check_attachable(part, object)?;
         }
-        if part.side == Side::Color && readable == Some(attached) && samples == 1 {
-            let texture = wrap(attached, ATTACH | READ | COPIES)?;
-            return Ok((texture.clone(), Some(texture)));
-        }
-        // Depth gets two textures of one object even so: wgpu would refuse to read what it has attached.
-        let read = readable.map(|object| wrap(object, READ)).transpose()?;
-        Ok((wrap(attached, ATTACH)?, read))
+        let read = part.readable(samples).map(|o| self.wrap(o, format, part.facts, samples, READ)).transpose()?;
+        let depth = self.wrap(through.unwrap_or(object), format, part.facts, samples, ATTACH)?;
+        Ok((Some(depth), read))
     }
 
     /// Makes sure that the driver can draw to what wgpu is going to attach.

@@ -2,7 +2,7 @@
 
 use wgpu::TextureFormat as Format;
 
-use super::names::*;
+use super::{image::Side, names::*};
 use crate::error::{Error, Result};
 
 /// The colour formats a host may hand over.
@@ -29,6 +29,10 @@ const DEPTH: &[(u32, &str, Format)] = &[
     (DEPTH24_STENCIL8, "GL_DEPTH24_STENCIL8", Format::Depth24PlusStencil8),
     (DEPTH32F_STENCIL8, "GL_DEPTH32F_STENCIL8", Format::Depth32FloatStencil8),
 ];
+
+/// The formats of a mask, of which red is read.
+const MASK: &[(u32, &str, Format)] =
+    &[(R8, "GL_R8", Format::R8Unorm), (RGBA8, "GL_RGBA8", Format::Rgba8Unorm), (RGB8, "GL_RGB8", Format::Rgba8Unorm)];
 
 /// What an attachment is asked for when its internal format is not known by a sized name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,32 +77,26 @@ impl Bits {
     }
 }
 
-fn lookup(table: &[(u32, &str, Format)], internal: u32, parameter: &str) -> Result<Format> {
+/// wgpu's name of format `internal` on one side of a target.
+///
+/// # Errors
+/// [`crate::Status::Unsupported`] naming the parameter, the format and the accepted ones.
+pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
+    let table = match side {
+        Side::Color => COLOR,
+        Side::Depth => DEPTH,
+        Side::Mask => MASK,
+    };
     if let Some((_, _, format)) = table.iter().find(|(name, ..)| *name == internal) {
         return Ok(*format);
     }
     let names: Vec<_> = table.iter().map(|(_, name, _)| *name).collect();
     Err(Error::unsupported(format!(
-        "{parameter} must have one of the internal formats {}, got {}",
+        "{} must have one of the internal formats {}, got {}",
+        side.parameter(),
         names.join(", "),
         spell(internal)
     )))
-}
-
-/// wgpu's name of colour format `internal`.
-///
-/// # Errors
-/// [`crate::Status::Unsupported`] naming `parameter`, the format and the accepted ones.
-pub(super) fn color(internal: u32, parameter: &str) -> Result<Format> {
-    lookup(COLOR, internal, parameter)
-}
-
-/// wgpu's name of depth format `internal`.
-///
-/// # Errors
-/// As [`color`].
-pub(super) fn depth(internal: u32, parameter: &str) -> Result<Format> {
-    lookup(DEPTH, internal, parameter)
 }
 
 /// The client format and type with which `internal` can be allocated without data.
@@ -128,12 +126,12 @@ mod tests {
 
     #[test]
     fn a_refused_format_is_named_with_the_accepted_ones() {
-        let error = color(0x8057, "target.color").unwrap_err();
+        let error = format(0x8057, Side::Color).unwrap_err();
         assert_eq!(error.status, crate::Status::Unsupported);
         for part in ["target.color", "GL_RGB5_A1 (0x8057)", "GL_RGBA8", "GL_RGBA16F"] {
             assert!(error.message.contains(part), "{}", error.message);
         }
-        assert!(depth(RGBA8, "target.depth").is_err());
+        assert!(format(RGBA8, Side::Depth).is_err() && format(DEPTH_COMPONENT16, Side::Mask).is_err());
     }
 
     #[test]

@@ -17,7 +17,10 @@ use super::{
     state::HostState,
     target::{Entry, GlTarget, GlTargetDesc},
 };
-use crate::error::{Error, Result, Status};
+use crate::{
+    error::{Error, Result, Status},
+    gpu::HostBinding,
+};
 
 /// Targets kept before the longest unused one goes.
 const CACHED_TARGETS: usize = 32;
@@ -86,8 +89,9 @@ pub(super) struct Inner {
 
 /// An OpenGL host: the way into its context and its images as wgpu textures.
 ///
-/// Every call of wgpu on the device that came with it, the dropping of its objects included, must happen between
-/// [`GlHost::enter`] and the drop of its answer. Any thread may enter; others wait.
+/// Every call of wgpu on the device that came with it must happen between [`GlHost::enter`] (or
+/// [`Device::enter`](crate::gpu::Device::enter), which is the same) and the drop of its answer, and so must the dropping
+/// of its objects; the device itself enters when it goes. Any thread may enter; others wait.
 pub struct GlHost {
     info: GlInfo,
     gate: Gate,
@@ -167,39 +171,43 @@ impl GlHost {
         }
         self.inner().target(&self.info, device, desc)
     }
+}
 
-    /// Drops wgpu's objects and deletes Welkin's own in the right context. `drop_objects` drops everything that came from
-    /// the device, the device and queue included. Where the context is gone already, the objects went with it, and
-    /// `forget_objects` must forget them without a call to OpenGL (`std::mem::forget`).
-    pub fn close<T>(&self, objects: T, drop_objects: impl FnOnce(T), forget_objects: impl FnOnce(T)) {
-        let entered = self.enter();
+impl HostBinding for GlHost {
+    fn enter(&self) -> Result<()> {
+        self.begin()
+    }
+
+    fn leave(&self) {
+        Self::leave(self);
+    }
+
+    fn closing(&self) {
         let mut inner = self.inner();
-        if entered.is_err() || inner.closed {
-            let targets: Vec<_> = std::mem::take(&mut inner.targets);
-            std::mem::forget(targets);
-            inner.mark.forget();
-            drop(inner);
-            forget_objects(objects);
-            return;
-        }
-        let mut targets = std::mem::take(&mut inner.targets);
-        inner.active.clear();
-        inner.rest(&self.info);
-        for entry in &mut targets {
+        let targets = std::mem::take(&mut inner.targets);
+        for mut entry in targets {
+            inner.end_of(&entry);
             entry.made.delete(&inner.api);
         }
-        inner.closed = true;
+        inner.active.clear();
+        inner.rest(&self.info);
         inner.backend = Backend::default(); // its names are free from here on
-        drop(inner); // dropping wgpu's objects calls OpenGL, but never us
-        drop(targets);
-        drop_objects(objects);
-        let inner = self.inner();
+    }
+
+    fn closed(&self) {
+        let mut inner = self.inner();
+        inner.closed = true;
         inner.api.delete(Api::DeleteFramebuffers, inner.scratch);
         inner.api.delete(Api::DeleteFramebuffers, inner.probe.0);
         inner.probe.1.iter().for_each(|t| inner.api.delete(Api::DeleteTextures, *t));
         inner.mark.remove(&inner.api);
-        drop(inner);
-        drop(entered);
+    }
+
+    fn forsaken(&self) {
+        let mut inner = self.inner();
+        inner.closed = true;
+        std::mem::forget(std::mem::take(&mut inner.targets));
+        inner.mark.forget();
     }
 }
 
@@ -319,6 +327,7 @@ impl Inner {
             let entry = &self.targets[i];
             let begun = self.active.contains(&entry.target.id);
             if begun && entry.desc == *desc {
+                entry.refresh(&self.api)?;
                 return Ok(entry.target.clone());
             }
             let fresh = entry.desc == *desc && entry.is_current(self.ask(info))?;
@@ -352,6 +361,16 @@ impl Inner {
         Ask { api: &self.api, info, scratch: self.scratch, encodes }
     }
 
+    /// Ends `entry` if it is in use.
+    fn end_of(&mut self, entry: &Entry) {
+        if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
+            self.active.swap_remove(at);
+            if let Err(e) = entry.end(&self.api) {
+                self.fault.get_or_insert(e);
+            }
+        }
+    }
+
     fn begin_target(&mut self, i: usize) -> Result<Arc<GlTarget>> {
         let entry = &mut self.targets[i];
         if let Err(e) = entry.begin(&self.api) {
@@ -364,12 +383,7 @@ impl Inner {
 
     fn drop_target(&mut self, i: usize) {
         let mut entry = self.targets.swap_remove(i);
-        if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
-            self.active.swap_remove(at);
-            if let Err(e) = entry.end(&self.api) {
-                self.fault.get_or_insert(e);
-            }
-        }
+        self.end_of(&entry);
         entry.made.delete(&self.api);
     }
 
@@ -389,7 +403,7 @@ impl Inner {
 
 /// Whether two descriptions name the same images, used in the same way.
 fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
-    (a.color, a.depth, a.multisample) == (b.color, b.depth, b.multisample)
+    (a.color, a.depth, a.mask, a.multisample) == (b.color, b.depth, b.mask, b.multisample)
 }
 
 /// Makes sure that the marked context is current.

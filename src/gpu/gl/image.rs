@@ -36,6 +36,7 @@ pub enum GlImage {
 pub(super) enum Side {
     Color,
     Depth,
+    Mask,
 }
 
 impl Side {
@@ -44,6 +45,7 @@ impl Side {
         match self {
             Self::Color => "target.color",
             Self::Depth => "target.depth",
+            Self::Mask => "target.mask",
         }
     }
 }
@@ -146,7 +148,7 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u
 
 /// Attaches the texture to `scratch` and counts its bits.
 fn attached_bits(api: &Api, name: u32, target: u32, side: Side, scratch: u32) -> Bits {
-    let attachment = if side == Side::Color { COLOR_ATTACHMENT0 } else { DEPTH_ATTACHMENT };
+    let attachment = if side == Side::Depth { DEPTH_ATTACHMENT } else { COLOR_ATTACHMENT0 };
     api.BindFramebuffer(READ_FRAMEBUFFER, scratch);
     api.FramebufferTexture2D(READ_FRAMEBUFFER, attachment, target, name, 0);
     let bits = count_bits(api, READ_FRAMEBUFFER, attachment, side);
@@ -168,7 +170,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits 
     }
     let component = get(FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) as u32;
     match side {
-        Side::Color => Bits {
+        Side::Color | Side::Mask => Bits {
             red: get(FRAMEBUFFER_ATTACHMENT_RED_SIZE),
             green: get(FRAMEBUFFER_ATTACHMENT_GREEN_SIZE),
             alpha: get(FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE),
@@ -206,7 +208,7 @@ fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
 }
 
 fn sized(bits: Bits, side: Side) -> Result<u32> {
-    let found = if side == Side::Color { bits.color() } else { bits.depth() };
+    let found = if side == Side::Depth { bits.depth() } else { bits.color() };
     found.ok_or_else(|| {
         Error::unsupported(format!(
             "{} must have a format that can be drawn to and has a name, got {} red, {} alpha, {} depth and {} stencil bits",
@@ -258,7 +260,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
         ));
     }
     let attachment = match (side, name) {
-        (Side::Color, _) => match api.uint(DRAW_BUFFER0) {
+        (Side::Color | Side::Mask, _) => match api.uint(DRAW_BUFFER0) {
             NONE => {
                 return Err(Error::new(
                     Status::InvalidArgument,

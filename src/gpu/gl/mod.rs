@@ -46,7 +46,7 @@ use std::ffi::{c_char, c_void};
 pub use check::{GlInfo, GlProfile};
 pub use host::{Current, GlHost};
 pub use image::GlImage;
-pub use open::{Adopted, adopt};
+pub use open::{GlDevice, adopt};
 pub use target::{GlTarget, GlTargetDesc, Multisample};
 
 /// Answers the address of OpenGL function `name` (NUL-terminated), or NULL: `eglGetProcAddress`, `glXGetProcAddress`,

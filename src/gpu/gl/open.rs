@@ -19,22 +19,17 @@ use super::{
     names::*,
     state::HostState,
 };
-use crate::error::{Error, Result, Status};
+use crate::{
+    error::{Error, Result, Status},
+    gpu::Device,
+};
 
-/// A host's OpenGL as wgpu objects. All calls on them belong between [`GlHost::enter`] and its end.
-pub struct Adopted {
-    /// An instance without backends of its own: it opens no display and touches no context.
-    pub instance: wgpu::Instance,
-    /// The host's driver.
-    pub adapter: wgpu::Adapter,
-    /// The device.
-    pub device: wgpu::Device,
-    /// Its queue.
-    pub queue: wgpu::Queue,
+/// A device round a host's OpenGL, and the way to the host's images.
+pub struct GlDevice {
+    /// The device; it enters the host's context by itself when it goes.
+    pub device: Arc<Device>,
     /// The way in.
     pub host: Arc<GlHost>,
-    /// 1 with compute shaders, 0 without.
-    pub tier: u32,
 }
 
 /// Features that Welkin uses where the driver has them.
@@ -55,9 +50,9 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it.
 ///
 /// # Safety
-/// The callbacks are what they are declared to be, and stay so until the host is closed; the contexts outlive that, or are
+/// The callbacks are what they are declared to be, and stay so until the device is gone; the contexts outlive that, or are
 /// destroyed as a whole.
-pub unsafe fn adopt(desc: &GlHostDesc) -> Result<Adopted> {
+pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     let Some(get_proc) = desc.get_proc else {
         return Err(Error::new(Status::InvalidArgument, "get_proc must not be NULL"));
     };
@@ -86,7 +81,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<Adopted> {
             let raised = state.restore(&host);
             let parts = opened?;
             log::debug!("OpenGL errors while opening: {raised:#x}");
-            Ok(parts.into_adopted(host, host_info, Sharing::HostContext { state: Box::new(state), switch }, desc))
+            parts.into_device(host, host_info, Sharing::HostContext { state: Box::new(state), switch }, desc)
         }
         GlMode::Shared => {
             let Some(switch) = switch else {
@@ -114,7 +109,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<Adopted> {
             let (parts, api, info) = outcome?;
             back?;
             let sharing = Sharing::Shared { switch, host: Box::new(host), handover: desc.handover };
-            Ok(parts.into_adopted(api, info, sharing, desc))
+            parts.into_device(api, info, sharing, desc)
         }
     }
 }
@@ -203,7 +198,6 @@ struct Parts {
     mark: Mark,
     probe: (u32, [u32; 2]),
     scratch: u32,
-    tier: u32,
 }
 
 /// Opens wgpu on the current context, whose state is a fresh one's.
@@ -244,7 +238,7 @@ fn open(api: &Api, info: &GlInfo, get: &dyn Fn(&CStr) -> *const c_void, desc: &G
     let (device, queue) = catch_unwind(AssertUnwindSafe(|| pollster::block_on(adapter.request_device(&request))))
         .map_err(|_| refused("wgpu cannot open a device on the OpenGL context".into()))?
         .map_err(|e| refused(format!("wgpu cannot open a device on the OpenGL context: {e}")))?;
-    device.on_uncaptured_error(Arc::new(|e| log::error!("GPU fault: {e}")));
+    device.on_uncaptured_error(Arc::new(|e| log::error!("GPU fault: {e}"))); // until `Device` listens
     Ok(Opened { instance, adapter, device, queue })
 }
 
@@ -253,10 +247,8 @@ fn finish(opened: Result<Opened>, api: &Api, probe: (u32, [u32; 2]), info: &GlIn
     let outcome = opened.and_then(|opened| Ok((first_picture(&opened, api)?, opened)));
     match outcome {
         Ok((backend, opened)) => {
-            let compute = wgpu::DownlevelFlags::COMPUTE_SHADERS;
-            let tier = u32::from(opened.adapter.get_downlevel_capabilities().flags.contains(compute));
             let scratch = api.one(Api::GenFramebuffers);
-            Ok(Parts { opened, backend, mark: Mark::set(api), probe, scratch, tier })
+            Ok(Parts { opened, backend, mark: Mark::set(api), probe, scratch })
         }
         Err(e) => {
             log::error!("{} {}: {e}", info.renderer, info.version_text);
@@ -316,7 +308,7 @@ fn first_picture(opened: &Opened, api: &Api) -> Result<Backend> {
 }
 
 impl Parts {
-    fn into_adopted(self, api: Api, info: GlInfo, sharing: Sharing, desc: &GlHostDesc) -> Adopted {
+    fn into_device(self, api: Api, info: GlInfo, sharing: Sharing, desc: &GlHostDesc) -> Result<GlDevice> {
         let Opened { instance, adapter, device, queue } = self.opened;
         let inner = Inner {
             api,
@@ -332,7 +324,8 @@ impl Parts {
             fault: None,
             closed: false,
         };
-        let tier = if desc.force_tier0 { 0 } else { self.tier };
-        Adopted { instance, adapter, device, queue, host: GlHost::new(info, inner), tier }
+        let host = GlHost::new(info, inner);
+        let device = Device::adopt(instance, adapter, device, queue, desc.force_tier0, Some(host.clone()))?;
+        Ok(GlDevice { device, host })
     }
 }

@@ -1,11 +1,14 @@
 //! A host's colour and depth as wgpu textures.
 //!
-//! | host's image                       | colour                                   | depth                             |
-//! |------------------------------------|------------------------------------------|-----------------------------------|
-//! | texture                            | drawn to and read directly               | read and attached directly        |
-//! | multisampled texture               | drawn to through a framebuffer of ours, read directly | the same             |
-//! | renderbuffer, multisampled or not  | drawn to directly, not readable          | attached directly, read from a copy |
-//! | framebuffer (the window's, or any) | copied in, drawn to, copied back         | copied in (and back, if asked)    |
+//! | host's image                      | colour                                          | depth                       |
+//! |-----------------------------------|-------------------------------------------------|-----------------------------|
+//! | texture                           | drawn to and copied directly                    | read and attached directly  |
+//! | multisampled texture              | drawn to through a framebuffer of ours          | read directly, attached so  |
+//! | renderbuffer                      | drawn to directly                               | attached directly           |
+//! | framebuffer (the window's or any) | copied in, drawn to, copied back                | copied in (back, if asked)  |
+//!
+//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy, each time the target is
+//! asked for, so that colour and depth can be read as they are at that moment.
 //!
 //! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not own
 //! the object.
@@ -40,6 +43,8 @@ pub struct GlTargetDesc {
     pub color: GlImage,
     /// Its depth, if it has one.
     pub depth: Option<GlImage>,
+    /// Where red is 1 the host's pixel stays: a texture of one sample, if there is one.
+    pub mask: Option<GlImage>,
     /// Width in pixels; must be the images' own.
     pub width: u32,
     /// Height in pixels; must be the images' own.
@@ -60,15 +65,17 @@ pub struct GlTargetDesc {
 pub struct GlTarget {
     /// Changes whenever the textures do; for caches of views and bind groups.
     pub id: u64,
-    /// What to draw to.
+    /// What to draw to (`RENDER_ATTACHMENT`; `COPY_SRC` and `TEXTURE_BINDING` as well where `color_read` is `None`).
     pub color: wgpu::Texture,
-    /// The same picture for reading (`TEXTURE_BINDING`), where OpenGL can read it in place.
+    /// The picture as it was when the target was asked for (`TEXTURE_BINDING`), where wgpu cannot copy `color` itself.
     pub color_read: Option<wgpu::Texture>,
     /// Depth to attach.
     pub depth: Option<wgpu::Texture>,
     /// Depth to read, as an unfilterable float texture by `textureLoad`.
     pub depth_read: Option<wgpu::Texture>,
-    /// Samples of all of them.
+    /// The mask, to read.
+    pub mask: Option<wgpu::Texture>,
+    /// Samples of colour and depth.
     pub samples: u32,
 }
 
@@ -78,12 +85,15 @@ pub(super) struct Part {
     pub(super) image: GlImage,
     pub(super) facts: Facts,
     pub(super) parameters: Option<Parameters>,
+    /// What wgpu uses instead of the host's image.
     pub(super) copy: Option<Copied>,
+    /// What wgpu reads while it draws to colour that it cannot copy.
+    pub(super) reading: Option<Copied>,
 }
 
-/// Our copy of an image that wgpu cannot use in place.
+/// Our copy of an image.
 pub(super) struct Copied {
-    /// Framebuffer with the host's image: the host's own for [`GlImage::Framebuffer`].
+    /// Framebuffer with the image: the host's own for [`GlImage::Framebuffer`].
     pub(super) from: End,
     /// Framebuffer with our texture.
     pub(super) to: End,
@@ -145,6 +155,24 @@ impl Entry {
             if let Some(copy) = &part.copy {
                 blit::copy(api, copy.from, copy.to, mask(part.side, part.facts.internal), size)?;
             }
+            if let Some(copy) = &part.reading {
+                blit::copy(api, copy.from, copy.to, COLOR_BUFFER_BIT, size)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Copies anew what is only read, after something was drawn since [`Entry::begin`].
+    ///
+    /// # Errors
+    /// A refused copy.
+    pub(super) fn refresh(&self, api: &Api) -> Result<()> {
+        let size = (self.desc.width, self.desc.height);
+        for part in &self.parts {
+            let only_read = part.copy.as_ref().filter(|copy| !copy.drawn_to);
+            for copy in only_read.into_iter().chain(&part.reading) {
+                blit::copy(api, copy.from, copy.to, mask(part.side, part.facts.internal), size)?;
+            }
         }
         Ok(())
     }
@@ -180,7 +208,7 @@ impl Entry {
 /// What a copy of an image carries.
 pub(super) fn mask(side: Side, internal: u32) -> u32 {
     match side {
-        Side::Color => COLOR_BUFFER_BIT,
+        Side::Color | Side::Mask => COLOR_BUFFER_BIT,
         Side::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
         Side::Depth => DEPTH_BUFFER_BIT,
     }
