@@ -11,7 +11,7 @@ fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     match format {
         F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb | F::R32Float | F::Rg16Float => Ok(4),
         F::Rgba16Float => Ok(8),
-        F::Rgba32Float => Ok(16),
+        F::Rgba32Float | F::Rgba32Uint => Ok(16),
         other => Err(Error::unsupported(format!("reading back a texture of format {other:?}"))),
     }
 }

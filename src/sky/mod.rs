@@ -1,9 +1,46 @@
-//! The sky from below the ground's level to space.
+//! The sky from below the ground's level to space: clear air with haze and ozone, lit by sun and moon.
+//!
+//! # What is drawn
+//! [`SkyTables`] hold what depends on the planet alone: light scattered more than once, by altitude, sun angle and
+//! direction, and the light on level ground. They are built by fragment passes into fp16 textures (every tier), at once or
+//! by parts. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky by direction,
+//! and the air in front of things. Turning the camera touches neither. Shaders look both up through
+//! `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`, `sky_transmittance`, `ground_radiance`, ..) and
+//! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
+//!
+//! ```text
+//! tables.update(&mut encoder, &planet, 1.0 / 16.0)?;          // follows a changing air by parts
+//! volume.prepare(&mut encoder, &tables, &observer)?;          // draws only if altitude, sun or air changed
+//! // pipelines: layouts [own, volume.layout()], constants tables.pipeline_constants()
+//! pass.set_bind_group(1, volume.bind_group(), &[]);
+//! ```
+//!
+//! # Units
+//! Tables are per unit irradiance of a lamp; look-ups multiply by [`Lamp::irradiance`]. The observer's frame is level: z
+//! up, x and y any two level axes, the same for directions and lamps.
+//!
+//! # Models
+//! [`SkyModel`] names them with their errors. Transmittance is a closed form (`columns_along` in `shaders/sky/ray.wgsl`),
+//! not a table.
 
+pub mod light;
 pub mod moon;
+pub mod observer;
+mod passes;
 pub mod planet;
 mod planet_file;
+pub mod probe;
+mod recipe;
+pub mod settings;
 pub mod spectral;
 pub mod sun;
+pub mod tables;
+mod uniforms;
+pub mod volume;
 
+pub use light::{LightTable, Sh9};
+pub use observer::{Disc, Lamp, Observer};
 pub use planet::Planet;
+pub use settings::{SkyModel, SkySettings};
+pub use tables::{SkyTables, TablesProgress};
+pub use volume::SkyVolume;

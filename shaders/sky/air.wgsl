@@ -1,0 +1,83 @@
+// The air of a planet and what it does to light at one altitude. Twin: src/sky/reference/medium.rs.
+
+alias Length = f32;
+alias PerLength = vec3f;
+alias Cosine = f32;
+alias Radiance = vec3f;
+
+const SKY_PI: f32 = 3.14159265;
+
+struct SkyAir {
+    // Altitude 0 and thickness of the air, m.
+    bottom_m: f32,
+    thickness_m: f32,
+    // Half the angle of the sun's disc, rad.
+    sun_angular_radius: f32,
+    asymmetry_g: f32,
+    rayleigh_scattering: PerLength,
+    rayleigh_scale_height_m: f32,
+    mie_scattering: PerLength,
+    mie_scale_height_m: f32,
+    mie_extinction: PerLength,
+    ozone_center_m: f32,
+    ozone_extinction: PerLength,
+    ozone_half_width_m: f32,
+    ground_albedo: vec3f,
+    // Edge of the planet's disc seen from the top of the air: the cosine of its zenith angle, negated.
+    top_dip: f32,
+}
+
+// Densities of gas, haze (1 at and below altitude 0) and ozone (1 at the centre of its tent); 0 above the top.
+fn air_density(air: SkyAir, altitude: Length) -> vec3f {
+    let h = max(altitude, 0.0);
+    let gas = exp(-h / air.rayleigh_scale_height_m);
+    let haze = exp(-h / air.mie_scale_height_m);
+    let ozone = max(0.0, 1.0 - abs(altitude - air.ozone_center_m) / air.ozone_half_width_m);
+    return vec3f(gas, haze, ozone);
+}
+
+// Optical depth per wavelength of columns given in metres at density 1.
+fn air_optical_depth(air: SkyAir, columns: vec3f) -> vec3f {
+    return air.rayleigh_scattering * columns.x + air.mie_extinction * columns.y + air.ozone_extinction * columns.z;
+}
+
+// (1 - e^-x)/x for x >= 0, the share of a layer's light that leaves it.
+fn air_escape(x: vec3f) -> vec3f {
+    let series = 1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667));
+    return select((1.0 - exp(-x)) / max(x, vec3f(1e-6)), series, x < vec3f(0.05));
+}
+
+// 1 - e^-x for x >= 0 without cancellation.
+fn air_opacity(x: vec3f) -> vec3f {
+    return x * air_escape(x);
+}
+
+// 3/(16 pi) (1 + nu^2), 1/sr (Rayleigh). nu: cosine between the directions to the light and of the view.
+fn rayleigh_phase(nu: Cosine) -> f32 {
+    return 0.05968310 * (1.0 + nu * nu);
+}
+
+// 3/(8 pi) (1 - g^2)/(2 + g^2) (1 + nu^2)/(1 + g^2 - 2 g nu)^(3/2), 1/sr (Cornette and Shanks 1992, eq. 8), with the
+// denominator as (1 - |g|)^2 + 2 |g| (1 -+ nu), which does not cancel at the peak.
+fn mie_phase(nu: Cosine, g: f32) -> f32 {
+    let a = abs(g);
+    let b = (1.0 - a) * (1.0 - a);
+    let d = b + 2.0 * a * max(1.0 - select(nu, -nu, g < 0.0), 0.0);
+    return 0.11936621 * (1.0 - a) * (1.0 + a) / (2.0 + a * a) * (1.0 + nu * nu) / (d * sqrt(d));
+}
+
+// sqrt and back: how radiances are kept in fp16, so that twilight (1e-8 of the sun) survives.
+fn sky_encode(x: vec3f) -> vec4f {
+    return vec4f(min(sqrt(max(x, vec3f(0.0))), vec3f(65504.0)), 1.0);
+}
+
+fn sky_decode(x: vec4f) -> vec3f {
+    return x.rgb * x.rgb;
+}
+
+// arccos within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), without the branches of the exact one.
+fn sky_acos(x: f32) -> f32 {
+    let a = min(abs(x), 1.0);
+    let p = sqrt(1.0 - a) * (1.5707288 + a * (-0.2121144 + a * (0.0742610 - a * 0.0187293)));
+    return select(p, SKY_PI - p, x < 0.0);
+}

@@ -1,0 +1,256 @@
+//!include "common/fullscreen.wgsl"
+//!include "sky/march.wgsl"
+// Tables over the planet, order of scattering by order (the scheme of Bruneton and Neyret 2008, cut for fp16 render
+// targets): `gather` marches the radiance of one order along the directions of a quadrature at every sun angle and
+// altitude, `scatter` turns it into the next order's source with the phase functions, `light` into irradiance and
+// moments. Twin: src/sky/reference/source.rs.
+//
+// A table is an atlas of (sun angle, altitude) tiles, one tile a direction.
+
+struct SkyJob {
+    // The order that is gathered: 1 is light scattered once, and the sun on the ground.
+    order: u32,
+    // 1 on the last order: the orders after it are added as a geometric series.
+    last: u32,
+    unused_a: u32,
+    unused_b: u32,
+}
+
+@group(0) @binding(0) var<uniform> air: SkyAir;
+@group(0) @binding(1) var<uniform> dims: SkyDims;
+// x: node on (0, 1), y: weight (Gauss and Legendre).
+@group(0) @binding(2) var<uniform> rule: array<vec4f, 16>;
+@group(0) @binding(3) var sky_sampler: sampler;
+@group(0) @binding(4) var<uniform> job: SkyJob;
+// The order's own source, radiance along the quadrature and light; sums of the orders before it.
+@group(1) @binding(0) var sky_sources: texture_2d<f32>;
+@group(1) @binding(1) var radiances: texture_2d<f32>;
+@group(1) @binding(2) var lights: texture_2d<f32>;
+@group(1) @binding(3) var sources_sum: texture_2d<f32>;
+@group(1) @binding(4) var lights_sum: texture_2d<f32>;
+@group(1) @binding(5) var norms: texture_2d<f32>;
+
+struct Place {
+    altitude: Length,
+    mu_s: Cosine,
+    // Texel in the tile, and the tile.
+    at: vec2u,
+    tile: vec2u,
+}
+
+fn place_of(position: vec4f) -> Place {
+    let px = vec2u(position.xy);
+    let size = vec2u(dims.suns, dims.altitudes);
+    let tile = px / size;
+    let at = px - tile * size;
+    let x = vec2f(at) / vec2f(size - 1u);
+    return Place(altitude_from_coordinate(air, x.y), sun_from_coordinate(air, x.x), at, tile);
+}
+
+// Direction of the quadrature: mu, its weight, azimuth.
+fn rule_at(altitude: Length, m: u32, p: u32) -> vec3f {
+    let half_size = dims.rule_zeniths;
+    let node = rule[select(m - half_size, m, m < half_size)].xy;
+    let mu = rule_direction(air, altitude, m, half_size, node);
+    return vec3f(mu, (f32(p) + 0.5) * SKY_PI / f32(dims.rule_azimuths));
+}
+
+fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
+    return clamp(mu_a * mu_b + sqrt(max((1.0 - mu_a * mu_a) * (1.0 - mu_b * mu_b), 0.0)) * cos_azimuth, -1.0, 1.0);
+}
+
+// Sum of the haze's phase function over the quadrature about the sun: 1 for an endless rule. The gather divides by
+// it, so that a peak between two directions neither wins nor loses light.
+@fragment
+fn norm(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let here = place_of(position);
+    var sum = 0.0;
+    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        for (var p = 0u; p < dims.rule_azimuths; p++) {
+            let d = rule_at(here.altitude, m, p);
+            sum += d.y * mie_phase(cosine_between(d.x, here.mu_s, cos(d.z)), air.asymmetry_g);
+        }
+    }
+    return vec4f(sum * 2.0 * SKY_PI / f32(dims.rule_azimuths), 0.0, 0.0, 1.0);
+}
+
+// Light that the ground sends up, per unit irradiance: albedo/pi (sun + sky). The sky of order n is the light of order
+// n - 1 as `lights` holds it; the sun's comes with order 1.
+fn ground_light(mu_s: Cosine) -> Radiance {
+    if (job.order == 1u) {
+        return air.ground_albedo / SKY_PI * max(mu_s, 0.0) * sun_transmittance(air, 0.0, mu_s);
+    }
+    let at = planet_texel(air, dims, 0.0, mu_s) / vec2f(textureDimensions(lights));
+    return air.ground_albedo / SKY_PI * textureSampleLevel(lights, sky_sampler, at, 0.0).rgb / LIGHT_SCALE;
+}
+
+// Irradiances and moments may be negative, so they are kept as they are, times this.
+const LIGHT_SCALE: f32 = 4096.0;
+
+@fragment
+fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let here = place_of(position);
+    let d = rule_at(here.altitude, here.tile.y, here.tile.x);
+    let nu = cosine_between(d.x, here.mu_s, cos(d.z));
+    let below = here.tile.y < dims.rule_zeniths;
+    let ray = sky_ray(air, here.altitude, d.x, below);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_cells, here.mu_s, nu);
+    var radiance = light.more;
+    if (job.order == 1u) {
+        let peak = max(textureLoad(norms, here.at, 0).r, 1e-6);
+        radiance = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, air.asymmetry_g) / peak;
+    }
+    if (below) {
+        let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
+        radiance += exp(-light.depth) * ground_light(mu_s_ground);
+    }
+    return sky_encode(radiance);
+}
+
+fn gathered(here: Place, m: u32, p: u32) -> vec3f {
+    let texel = vec2u(p, m) * vec2u(dims.suns, dims.altitudes) + here.at;
+    return sky_decode(textureLoad(radiances, texel, 0));
+}
+
+struct Sums {
+    @location(0) order: vec4f,
+    @location(1) sum: vec4f,
+}
+
+// What a geometric series adds to its last term.
+fn tail(before: vec3f, term: vec3f) -> vec3f {
+    let ratio = clamp(term / max(before, vec3f(1e-12)), vec3f(0.0), vec3f(0.98));
+    return term * ratio / (1.0 - ratio);
+}
+
+@fragment
+fn scatter(@builtin(position) position: vec4f) -> Sums {
+    let here = place_of(position);
+    let steps = vec2f(f32(dims.azimuths - 1u), f32(dims.zeniths - 1u));
+    let angle = vec2f(here.tile) / steps * SKY_PI;
+    let mu = cos(angle.y);
+    var gas = vec3f(0.0);
+    var haze = vec3f(0.0);
+    var peak = 0.0;
+    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        for (var p = 0u; p < dims.rule_azimuths; p++) {
+            let d = rule_at(here.altitude, m, p);
+            let light = d.y * gathered(here, m, p);
+            // The direction and its mirror image.
+            let nu_a = cosine_between(mu, d.x, cos(angle.x - d.z));
+            let nu_b = cosine_between(mu, d.x, cos(angle.x + d.z));
+            let phase = mie_phase(nu_a, air.asymmetry_g) + mie_phase(nu_b, air.asymmetry_g);
+            gas += light * (rayleigh_phase(nu_a) + rayleigh_phase(nu_b));
+            haze += light * phase;
+            peak += d.y * phase;
+        }
+    }
+    let share = SKY_PI / f32(dims.rule_azimuths);
+    let density = air_density(air, here.altitude);
+    let a = air.rayleigh_scattering * density.x;
+    let b = air.mie_scattering * density.y;
+    let mean = (a * gas * share + b * haze / max(peak, 1e-6)) / max(a + b, vec3f(1e-30));
+    let source = select(vec3f(0.0), mean, a + b > vec3f(0.0)) * f32(here.at.x > 0u);
+    let texel = vec2u(position.xy);
+    var sum = source;
+    if (job.order > 1u) {
+        sum += sky_decode(textureLoad(sources_sum, texel, 0));
+    }
+    if (job.last == 1u) {
+        sum += tail(sky_decode(textureLoad(sky_sources, texel, 0)), source);
+    }
+    return Sums(sky_encode(source), sky_encode(sum));
+}
+
+// Tile 0: irradiance of the sky on a level surface. Tiles 1 to 6: integrals of the sky's radiance, the ground's own
+// light with it, times the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left,
+// up); the others vanish by symmetry.
+@fragment
+fn light(@builtin(position) position: vec4f) -> Sums {
+    let here = place_of(position);
+    var order = vec3f(0.0);
+    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        for (var p = 0u; p < dims.rule_azimuths; p++) {
+            let d = rule_at(here.altitude, m, p);
+            let x = sqrt(max(1.0 - d.x * d.x, 0.0)) * cos(d.z);
+            let yy = max(1.0 - d.x * d.x - x * x, 0.0);
+            var f = max(d.x, 0.0);
+            switch here.tile.x {
+                case 1u: { f = 0.28209479; }
+                case 2u: { f = 0.48860251 * d.x; }
+                case 3u: { f = 0.48860251 * x; }
+                case 4u: { f = 0.31539157 * (3.0 * d.x * d.x - 1.0); }
+                case 5u: { f = 1.09254843 * x * d.x; }
+                case 6u: { f = 0.54627422 * (x * x - yy); }
+                default: {}
+            }
+            order += f * d.y * gathered(here, m, p);
+        }
+    }
+    order *= 2.0 * SKY_PI / f32(dims.rule_azimuths) * LIGHT_SCALE;
+    let texel = vec2u(position.xy);
+    var sum = order;
+    if (job.order > 1u) {
+        sum += textureLoad(lights_sum, texel, 0).rgb;
+    }
+    if (job.last == 1u) {
+        let before = textureLoad(lights, texel, 0).rgb;
+        let sign_kept = before * order > vec3f(0.0);
+        sum += select(vec3f(0.0), sign(order) * tail(abs(before), abs(order)), sign_kept);
+    }
+    return Sums(vec4f(order, 1.0), vec4f(sum, 1.0));
+}
+
+// Hillaire 2020: light scattered twice, and what comes back of a field of light, both taken as alike in all directions.
+@fragment
+fn isotropic_gather(@builtin(position) position: vec4f) -> Sums {
+    let here = place_of(position);
+    let d = rule_at(here.altitude, here.tile.y, here.tile.x);
+    let nu = cosine_between(d.x, here.mu_s, cos(d.z));
+    let below = here.tile.y < dims.rule_zeniths;
+    let ray = sky_ray(air, here.altitude, d.x, below);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_cells, here.mu_s, nu);
+    var radiance = (light.gas + light.haze) / (4.0 * SKY_PI);
+    if (below) {
+        let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
+        radiance += exp(-light.depth) * ground_light(mu_s_ground);
+    }
+    return Sums(sky_encode(radiance), sky_encode(light.transfer));
+}
+
+@fragment
+fn isotropic_scatter(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let here = place_of(position);
+    var twice = vec3f(0.0);
+    var back = vec3f(0.0);
+    for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        for (var p = 0u; p < dims.rule_azimuths; p++) {
+            let weight = rule_at(here.altitude, m, p).y;
+            let texel = vec2u(p, m) * vec2u(dims.suns, dims.altitudes) + here.at;
+            twice += weight * gathered(here, m, p);
+            back += weight * sky_decode(textureLoad(sky_sources, texel, 0));
+        }
+    }
+    // 2 pi/n over azimuths, over 4 pi.
+    let share = 0.5 / f32(dims.rule_azimuths);
+    let all = twice * share / (1.0 - min(back * share, vec3f(0.98)));
+    return sky_encode(all * f32(here.at.x > 0u));
+}
+
+struct Once {
+    @location(0) gas: vec4f,
+    @location(1) haze: vec4f,
+}
+
+// Light scattered once over (altitude, view angle, sun angle) without the phase functions, in the sun's azimuth (Elek
+// 2008, 3.4).
+@fragment
+fn once(@builtin(position) position: vec4f) -> Once {
+    let here = place_of(position);
+    let row = here.tile.y * 8u + here.tile.x;
+    let mu = once_mu(air, here.altitude, row);
+    let nu = cosine_between(mu, here.mu_s, 1.0);
+    let ray = sky_ray(air, here.altitude, mu, row >= ONCE_ROWS);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_cells, here.mu_s, nu);
+    return Once(sky_encode(light.gas), sky_encode(light.haze));
+}

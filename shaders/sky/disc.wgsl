@@ -1,0 +1,49 @@
+//!include "sky/lookup.wgsl"
+// The discs of sun and moon. The light in the air uses the geometric place of a lamp; the disc is seen where refraction
+// puts it, lifted and flattened at the horizon.
+
+// Degrees by which standard air lifts what is seen at an apparent elevation in degrees (Bennett 1982, arc minutes).
+fn refraction_deg(apparent_deg: f32) -> f32 {
+    let a = clamp(apparent_deg, -2.0, 89.9);
+    let x = (a + 7.31 / (a + 4.4)) * (SKY_PI / 180.0);
+    return max(cos(x) / max(sin(x), 1e-3), 0.0) / 60.0;
+}
+
+// The geometric direction of what is seen in `dir`. Fades with the air's density over the observer.
+fn unrefracted(dir: vec3f) -> vec3f {
+    let density = exp(-max(sky_view.altitude, 0.0) / sky_view.air.rayleigh_scale_height_m);
+    let elevation = SKY_PI * 0.5 - sky_acos(dir.z);
+    let lift = sky_view.refraction * density * refraction_deg(elevation * (180.0 / SKY_PI)) * (SKY_PI / 180.0);
+    let level = max(length(dir.xy), 1e-6);
+    let z = dir.z * cos(lift) - level * sin(lift);
+    return vec3f(dir.xy * (sqrt(max(1.0 - z * z, 0.0)) / level), z);
+}
+
+// Share of a disc's radius at which its middle is, and how much of the pixel it covers.
+fn disc_place(lamp: SkyLamp, dir: vec3f, pixel_angle: f32) -> vec2f {
+    let apart = 2.0 * asin(clamp(0.5 * length(dir - lamp.toward), 0.0, 1.0));
+    let cover = clamp((lamp.angular_radius - apart) / max(pixel_angle, 1e-6) + 0.5, 0.0, 1.0);
+    return vec2f(min(apart / max(lamp.angular_radius, 1e-6), 1.0), cover);
+}
+
+// Radiance of the lamps' discs in a direction, reddened by the air; `pixel_angle` is the angle of a pixel, rad, over
+// which the edge is smoothed. 0 below the horizon.
+fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
+    let real = unrefracted(dir);
+    var out = vec3f(0.0);
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        let lamp = sky_view.lamps[i];
+        let place = disc_place(lamp, real, pixel_angle);
+        let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
+        var law = pow(vec3f(mu), lamp.limb);
+        if (lamp.kind == 1u) {
+            // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
+            let offset = (real - lamp.toward * dot(real, lamp.toward)) / max(lamp.angular_radius, 1e-6);
+            let normal = offset - lamp.toward * mu;
+            let mu0 = max(dot(normal, lamp.lit_from), 0.0);
+            law = vec3f(mu0 / max(mu0 + mu, 1e-4));
+        }
+        out += lamp.irradiance * law * (place.y * lamp.disc_scale);
+    }
+    return out * sky_transmittance(dir);
+}

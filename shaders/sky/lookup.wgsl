@@ -1,0 +1,202 @@
+//!include "sky/view.wgsl"
+//!include "sky/march.wgsl"
+// What other shaders ask of the sky. Bind group 1 is `SkyVolume::bind_group()`.
+//
+// `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, the same in which the
+// host gave the lamps' directions (`Lamp::toward`). Radiances are per the lamps' irradiance as given: W m^-2 sr^-1 nm^-1
+// with `Planet::solar_irradiance`. Distances are metres from the observer.
+
+struct SkyLamp {
+    // Unit, towards the lamp, geometric (not refracted).
+    toward: vec3f,
+    angular_radius: f32,
+    irradiance: vec3f,
+    // 0: a sun; 1: a moon, lit from `lit_from`.
+    kind: u32,
+    // Exponents of limb darkening (Hestroffer and Magnan 1998: I = mu^a), per wavelength; or the factor of a moon's law.
+    limb: vec3f,
+    // Radiance of the disc's middle per unit irradiance (sun), or the scale of the moon's law, 1/sr.
+    disc_scale: f32,
+    lit_from: vec3f,
+    unused: f32,
+    // Unit level direction under the lamp.
+    level: vec2f,
+    // Where the tables of this lamp lie: first layer.
+    layer: u32,
+    unused_b: u32,
+}
+
+struct SkyView {
+    air: SkyAir,
+    dims: SkyDims,
+    edges: SkyEdges,
+    altitude: Length,
+    lamp_count: u32,
+    // 0: no refraction; 1: the Earth's standard air.
+    refraction: f32,
+    // 0: tables; else the cells of a march per pixel.
+    march_cells: u32,
+    lamps: array<SkyLamp, 2>,
+}
+
+@group(1) @binding(0) var<uniform> sky_view: SkyView;
+@group(1) @binding(1) var sky_table: texture_2d_array<f32>;
+@group(1) @binding(2) var sky_volume: texture_2d_array<f32>;
+@group(1) @binding(3) var sky_lights: texture_2d<f32>;
+@group(1) @binding(4) var sky_sources: texture_2d<f32>;
+@group(1) @binding(5) var sky_sampler: sampler;
+
+// Set by `SkyTables::pipeline_constants` where the model marches every pixel.
+override SKY_MARCH: bool = false;
+
+struct Aerial {
+    // Radiance scattered into the ray between observer and distance.
+    radiance: Radiance,
+    // Share of light from there that arrives.
+    transmittance: vec3f,
+}
+
+// The ray of a direction, cut to the air; it ends on the ground below the horizon.
+fn sky_view_ray(dir: vec3f) -> SkyRay {
+    return sky_ray(sky_view.air, sky_view.altitude, dir.z, view_place(sky_view.edges, dir.z) < 0.0);
+}
+
+// Optical depth from the observer to `distance`.
+fn sky_depth(ray: SkyRay, distance: Length) -> vec3f {
+    let inside = clamp(distance - ray.before, 0.0, ray.length);
+    return air_optical_depth(sky_view.air, columns_along(sky_view.air, ray, inside));
+}
+
+fn lamp_azimuth(lamp: SkyLamp, dir: vec3f) -> f32 {
+    let level = dot(dir.xy, dir.xy);
+    return sky_acos(clamp(dot(dir.xy, lamp.level) * inverseSqrt(max(level, 1e-12)), -1.0, 1.0)) / SKY_PI;
+}
+
+fn lamp_light(lamp: SkyLamp, dir: vec3f, smooth_light: vec4f, haze_light: vec4f) -> Radiance {
+    let nu = dot(dir, lamp.toward);
+    let phase = mie_phase(nu, sky_view.air.asymmetry_g);
+    return lamp.irradiance * (sky_decode(smooth_light) + phase * sky_decode(haze_light));
+}
+
+// The same by a march: the model that has no tables of its own but for light scattered more than once.
+fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
+    let nu = dot(dir, lamp.toward);
+    let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
+    let mu_s = clamp((r * lamp.toward.z + ray.before * nu) / ray.radius, -1.0, 1.0);
+    let light = sky_march(sky_view.air, sky_view.dims, sky_sources, sky_sampler, ray, 0.0, end, sky_view.march_cells, mu_s, nu);
+    let once = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, sky_view.air.asymmetry_g);
+    return lamp.irradiance * (once + light.more);
+}
+
+// Radiance that the air scatters into a whole ray: to space, or to the ground below the horizon. Discs and the ground's
+// own light are not in it.
+fn sky_radiance(dir: vec3f) -> Radiance {
+    let dims = sky_view.dims;
+    let v = view_place(sky_view.edges, dir.z);
+    var out = vec3f(0.0);
+    if (SKY_MARCH) {
+        let ray = sky_view_ray(dir);
+        for (var i = 0u; i < sky_view.lamp_count; i++) {
+            out += lamp_march(sky_view.lamps[i], dir, ray, ray.length);
+        }
+        return out;
+    }
+    let size = vec2f(f32(dims.sky_azimuths), f32(dims.sky_above + dims.sky_below));
+    let row = view_row(v, dims.sky_above, dims.sky_below);
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        let lamp = sky_view.lamps[i];
+        let uv = vec2f(0.5 + lamp_azimuth(lamp, dir) * (size.x - 1.0), row) / size;
+        let a = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer, 0.0);
+        let b = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer + 1u, 0.0);
+        out += lamp_light(lamp, dir, a, b);
+    }
+    if (v < 0.0) {
+        let ray = sky_view_ray(dir);
+        out *= air_opacity(sky_depth(ray, ray.before + ray.length));
+    }
+    return out;
+}
+
+// Air between the observer and a point `distance` metres away in direction `dir`.
+fn aerial(dir: vec3f, distance: Length) -> Aerial {
+    let dims = sky_view.dims;
+    let ray = sky_view_ray(dir);
+    let end = clamp(distance - ray.before, 0.0, ray.length);
+    let depth = sky_depth(ray, distance);
+    var out = vec3f(0.0);
+    if (SKY_MARCH) {
+        for (var i = 0u; i < sky_view.lamp_count; i++) {
+            out += lamp_march(sky_view.lamps[i], dir, ray, end);
+        }
+        return Aerial(out, exp(-depth));
+    }
+    let tile = vec2f(f32(dims.air_azimuths), f32(dims.air_above + dims.air_below));
+    let size = vec2f(tile.x * f32(dims.air_slices), tile.y);
+    let row = view_row(view_place(sky_view.edges, dir.z), dims.air_above, dims.air_below);
+    let slice = slice_of(end, ray.length) * f32(dims.air_slices - 1u);
+    let near = min(floor(slice), f32(dims.air_slices - 2u));
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        let lamp = sky_view.lamps[i];
+        let x = 0.5 + lamp_azimuth(lamp, dir) * (tile.x - 1.0) + near * tile.x;
+        let uv = vec2f(x, row) / size;
+        let next = uv + vec2f(tile.x / size.x, 0.0);
+        let f = slice - near;
+        let a = mix(textureSampleLevel(sky_volume, sky_sampler, uv, lamp.layer, 0.0),
+            textureSampleLevel(sky_volume, sky_sampler, next, lamp.layer, 0.0), f);
+        let b = mix(textureSampleLevel(sky_volume, sky_sampler, uv, lamp.layer + 1u, 0.0),
+            textureSampleLevel(sky_volume, sky_sampler, next, lamp.layer + 1u, 0.0), f);
+        out += lamp_light(lamp, dir, a, b);
+    }
+    return Aerial(out * air_opacity(depth), exp(-depth));
+}
+
+// Transmittance of a whole ray to space; 0 below the horizon.
+fn sky_transmittance(dir: vec3f) -> vec3f {
+    let ray = sky_view_ray(dir);
+    return select(exp(-sky_depth(ray, ray.before + ray.length)), vec3f(0.0), ray.grounded == 1u);
+}
+
+// Irradiance of all lamps' skies on a level surface facing up; sun angles are those at the observer's place.
+fn sky_irradiance(altitude: Length) -> vec3f {
+    var out = vec3f(0.0);
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        let lamp = sky_view.lamps[i];
+        out += lamp.irradiance * diffuse_irradiance(altitude, lamp.toward.z);
+    }
+    return out;
+}
+
+const SKY_LIGHT_TILES: f32 = 7.0;
+const SKY_LIGHT_SCALE: f32 = 4096.0;
+
+fn diffuse_irradiance(altitude: Length, mu_s: Cosine) -> vec3f {
+    let dims = sky_view.dims;
+    let size = vec2f(SKY_LIGHT_TILES * f32(dims.suns), f32(dims.altitudes));
+    let at = planet_texel(sky_view.air, dims, altitude, mu_s) / size;
+    return max(textureSampleLevel(sky_lights, sky_sampler, at, 0.0).rgb, vec3f(0.0)) / SKY_LIGHT_SCALE;
+}
+
+// Irradiance of a lamp on a surface that faces it, at `altitude` under the observer's sun angle.
+fn lamp_irradiance(index: u32, altitude: Length) -> vec3f {
+    let lamp = sky_view.lamps[index];
+    let h = clamp(altitude, 0.0, sky_view.air.thickness_m);
+    return lamp.irradiance * sun_transmittance(sky_view.air, h, lamp.toward.z);
+}
+
+// Radiance of the planet's own ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the horizon.
+fn ground_radiance(dir: vec3f) -> Radiance {
+    let ray = sky_view_ray(dir);
+    if (ray.grounded == 0u) {
+        return vec3f(0.0);
+    }
+    let distance = ray.before + ray.length;
+    let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
+    var lit = vec3f(0.0);
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        let lamp = sky_view.lamps[i];
+        let mu_s = clamp((r * lamp.toward.z + distance * dot(dir, lamp.toward)) / sky_view.air.bottom_m, -1.0, 1.0);
+        let direct = max(mu_s, 0.0) * sun_transmittance(sky_view.air, 0.0, mu_s);
+        lit += lamp.irradiance * (direct + diffuse_irradiance(0.0, mu_s));
+    }
+    return sky_view.air.ground_albedo / SKY_PI * lit * exp(-sky_depth(ray, distance));
+}

@@ -1,0 +1,94 @@
+//!include "sky/ray.wgsl"
+// Where things lie in the tables. Every map has its inverse beside it; both are tested to be inverse.
+
+struct SkyDims {
+    // Nodes of the tables over the planet: sun angles, altitudes, and directions (zenith angle, azimuth) of a source.
+    suns: u32,
+    altitudes: u32,
+    zeniths: u32,
+    azimuths: u32,
+    // Directions of the quadrature over the sphere: zenith angles on each side of the horizon, azimuths on [0, pi].
+    rule_zeniths: u32,
+    rule_azimuths: u32,
+    // Cells of a march.
+    build_cells: u32,
+    sky_cells: u32,
+    // Texels of an observer's tables: the sky above and below the horizon, and the volume likewise, with its slices.
+    sky_azimuths: u32,
+    sky_above: u32,
+    sky_below: u32,
+    air_cells: u32,
+    air_azimuths: u32,
+    air_above: u32,
+    air_below: u32,
+    air_slices: u32,
+}
+
+// Sun angle: even steps where the sun is below the middle of the terminator as the air's top and bottom see it, and
+// coarser with height above it. Ends where the shadow reaches twice as high as the air: nothing is lit there.
+const SUN_SPREAD: f32 = 0.3;
+const SUN_BELOW: f32 = 0.22;
+
+fn sun_coordinate(air: SkyAir, mu_s: Cosine) -> f32 {
+    let center = -0.5 * air.top_dip;
+    let u = (mu_s - center) / SUN_SPREAD;
+    let x = select(u, u / (1.0 + abs(u)), u > 0.0);
+    let lo = -(0.5 * air.top_dip + SUN_BELOW) / SUN_SPREAD;
+    let hi = (1.0 - center) / (SUN_SPREAD + 1.0 - center);
+    return clamp((x - lo) / (hi - lo), 0.0, 1.0);
+}
+
+fn sun_from_coordinate(air: SkyAir, coordinate: f32) -> Cosine {
+    let center = -0.5 * air.top_dip;
+    let lo = -(0.5 * air.top_dip + SUN_BELOW) / SUN_SPREAD;
+    let hi = (1.0 - center) / (SUN_SPREAD + 1.0 - center);
+    let x = mix(lo, hi, coordinate);
+    let u = select(x, x / (1.0 - x), x > 0.0);
+    return min(center + SUN_SPREAD * u, 1.0);
+}
+
+fn altitude_coordinate(air: SkyAir, altitude: Length) -> f32 {
+    return sqrt(clamp(altitude / air.thickness_m, 0.0, 1.0));
+}
+
+fn altitude_from_coordinate(air: SkyAir, coordinate: f32) -> Length {
+    return air.thickness_m * coordinate * coordinate;
+}
+
+// Texel of a (sun angle, altitude) tile, counted from the tile's corner, for hardware interpolation.
+fn planet_texel(air: SkyAir, dims: SkyDims, altitude: Length, mu_s: Cosine) -> vec2f {
+    let at = vec2f(sun_coordinate(air, mu_s), altitude_coordinate(air, altitude));
+    return 0.5 + at * vec2f(f32(dims.suns - 1u), f32(dims.altitudes - 1u));
+}
+
+// A direction of the quadrature: zenith cosine and weight, so that sum of weight f = integral of f over mu. Nodes are
+// dense at the horizon of `altitude` and never lie on it; the first half is below.
+fn rule_direction(air: SkyAir, altitude: Length, index: u32, half_size: u32, node: vec2f) -> vec2f {
+    let horizon = horizon_mu(air, altitude);
+    let y = node.x;
+    if (index < half_size) {
+        return vec2f(horizon - (1.0 + horizon) * y * y, (1.0 + horizon) * 2.0 * y * node.y);
+    }
+    return vec2f(horizon + (1.0 - horizon) * y * y, (1.0 - horizon) * 2.0 * y * node.y);
+}
+
+// The table of light scattered once holds 64 view angles as 8 x 8 tiles: 32 above the horizon and 32 below it, each dense
+// at it. A view angle is kept as in view.wgsl, by q = sin(angle/2).
+const ONCE_ROWS: u32 = 32u;
+
+fn once_mu(air: SkyAir, altitude: Length, row: u32) -> Cosine {
+    let horizon = sqrt(0.5 - 0.5 * horizon_mu(air, altitude));
+    let v = f32(row % ONCE_ROWS) / f32(ONCE_ROWS - 1u);
+    let q = horizon + v * v * select(-horizon, 1.0 - horizon, row >= ONCE_ROWS);
+    return clamp(1.0 - 2.0 * q * q, -1.0, 1.0);
+}
+
+// Row and fraction of a direction on the given side of the horizon.
+fn once_row(air: SkyAir, altitude: Length, mu: Cosine, below: bool) -> vec2f {
+    let horizon = sqrt(0.5 - 0.5 * horizon_mu(air, altitude));
+    let over = horizon - sqrt(max(0.5 - 0.5 * mu, 0.0));
+    let share = select(over / max(horizon, 1e-7), -over / max(1.0 - horizon, 1e-7), below);
+    let row = sqrt(clamp(share, 0.0, 1.0)) * f32(ONCE_ROWS - 1u);
+    let first = min(floor(row), f32(ONCE_ROWS - 2u));
+    return vec2f(first + select(0.0, f32(ONCE_ROWS), below), row - first);
+}

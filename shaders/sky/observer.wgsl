@@ -1,0 +1,138 @@
+//!include "common/fullscreen.wgsl"
+//!include "sky/march.wgsl"
+//!include "sky/view.wgsl"
+// An observer's tables: the sky by direction, and the air in front of things by direction and distance. They hold two
+// colours: light scattered by gas or more than once, complete; and light scattered once by haze, whose phase function
+// is left out and put on per pixel, so that the glow round the light is as sharp as it should be.
+
+struct SkyObserver {
+    altitude: Length,
+    // Zenith cosine of the light.
+    mu_s: Cosine,
+    unused_a: f32,
+    unused_b: f32,
+    edges: SkyEdges,
+}
+
+@group(0) @binding(0) var<uniform> air: SkyAir;
+@group(0) @binding(1) var<uniform> dims: SkyDims;
+@group(0) @binding(2) var sky_sources: texture_2d<f32>;
+@group(0) @binding(3) var sky_sampler: sampler;
+@group(0) @binding(4) var once_gas: texture_2d<f32>;
+@group(0) @binding(5) var once_haze: texture_2d<f32>;
+@group(1) @binding(0) var<uniform> observer: SkyObserver;
+
+struct SkyTexel {
+    @location(0) smooth_light: vec4f,
+    @location(1) haze_light: vec4f,
+}
+
+struct ViewTexel {
+    mu: Cosine,
+    nu: Cosine,
+    below: bool,
+}
+
+fn view_texel(texel: vec2u, azimuths: u32, above: u32, below: u32) -> ViewTexel {
+    let is_below = texel.y >= above;
+    let row = select(texel.y, texel.y - above, is_below);
+    let rows = select(above, below, is_below);
+    let mu = view_mu(observer.edges, f32(row) / f32(rows - 1u), is_below);
+    let azimuth = SKY_PI * f32(texel.x) / f32(azimuths - 1u);
+    let sines = sqrt(max((1.0 - mu * mu) * (1.0 - observer.mu_s * observer.mu_s), 0.0));
+    return ViewTexel(mu, clamp(mu * observer.mu_s + sines * cos(azimuth), -1.0, 1.0), is_below);
+}
+
+// The light's zenith cosine at the ray's start, which is not the observer if that is in space.
+fn mu_s_at_start(ray: SkyRay, nu: Cosine) -> Cosine {
+    let r = air.bottom_m + max(observer.altitude, 0.0);
+    return clamp((r * observer.mu_s + ray.before * nu) / ray.radius, -1.0, 1.0);
+}
+
+// Light over the opacity of the air it comes from: the mean source, which hardly varies with distance.
+fn as_source(light: vec3f, depth: vec3f) -> vec4f {
+    return sky_encode(light / max(air_opacity(depth), vec3f(1e-30)));
+}
+
+@fragment
+fn sky(@builtin(position) position: vec4f) -> SkyTexel {
+    let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
+    let ray = sky_ray(air, observer.altitude, view.mu, view.below);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_cells, mu_s_at_start(ray, view.nu), view.nu);
+    let even = light.gas * rayleigh_phase(view.nu) + light.more;
+    if (view.below) {
+        return SkyTexel(as_source(even, light.depth), as_source(light.haze, light.depth));
+    }
+    return SkyTexel(sky_encode(even), sky_encode(light.haze));
+}
+
+@fragment
+fn volume(@builtin(position) position: vec4f) -> SkyTexel {
+    let px = vec2u(position.xy);
+    let slice = px.x / dims.air_azimuths;
+    let texel = vec2u(px.x - slice * dims.air_azimuths, px.y);
+    let view = view_texel(texel, dims.air_azimuths, dims.air_above, dims.air_below);
+    let ray = sky_ray(air, observer.altitude, view.mu, view.below);
+    let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
+    let end = slice_distance(w, ray.length);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, dims.air_cells, mu_s_at_start(ray, view.nu), view.nu);
+    let even = light.gas * rayleigh_phase(view.nu) + light.more;
+    return SkyTexel(as_source(even, light.depth), as_source(light.haze, light.depth));
+}
+
+struct TableLight {
+    gas: vec3f,
+    haze: vec3f,
+}
+
+// The table of light scattered once, at a point inside the air.
+fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLight {
+    let at = planet_texel(air, dims, altitude, mu_s);
+    let row = once_row(air, altitude, mu, below);
+    let tile = vec2f(f32(dims.suns), f32(dims.altitudes));
+    let a = (at + vec2f(row.x % 8.0, floor(row.x / 8.0)) * tile) / (8.0 * tile);
+    let b = (at + vec2f((row.x + 1.0) % 8.0, floor((row.x + 1.0) / 8.0)) * tile) / (8.0 * tile);
+    let gas = mix(textureSampleLevel(once_gas, sky_sampler, a, 0.0), textureSampleLevel(once_gas, sky_sampler, b, 0.0), row.y);
+    let haze =
+        mix(textureSampleLevel(once_haze, sky_sampler, a, 0.0), textureSampleLevel(once_haze, sky_sampler, b, 0.0), row.y);
+    return TableLight(sky_decode(gas), sky_decode(haze));
+}
+
+// A whole ray. From space it is that of the point where it enters the air, under the sun angle there.
+@fragment
+fn sky_from_table(@builtin(position) position: vec4f) -> SkyTexel {
+    let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
+    let ray = sky_ray(air, observer.altitude, view.mu, view.below);
+    let light = once_at(ray.altitude, ray.mu, mu_s_at_start(ray, view.nu), view.below);
+    let even = light.gas * rayleigh_phase(view.nu) * f32(ray.length > 0.0);
+    let haze = light.haze * f32(ray.length > 0.0);
+    if (view.below) {
+        let depth = air_optical_depth(air, columns_along(air, ray, ray.length));
+        return SkyTexel(as_source(even, depth), as_source(haze, depth));
+    }
+    return SkyTexel(sky_encode(even), sky_encode(haze));
+}
+
+// A part of a ray: the whole less what comes from behind the part's end, through the part.
+@fragment
+fn volume_from_table(@builtin(position) position: vec4f) -> SkyTexel {
+    let px = vec2u(position.xy);
+    let slice = px.x / dims.air_azimuths;
+    let texel = vec2u(px.x - slice * dims.air_azimuths, px.y);
+    let view = view_texel(texel, dims.air_azimuths, dims.air_above, dims.air_below);
+    let ray = sky_ray(air, observer.altitude, view.mu, view.below);
+    let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
+    let end = slice_distance(w, ray.length);
+    let mu_s = mu_s_at_start(ray, view.nu);
+    let altitude = clamp(altitude_along(ray.radius, ray.altitude, ray.mu, end), 0.0, air.thickness_m);
+    let r = air.bottom_m + altitude;
+    let mu_end = clamp((ray.radius * ray.mu + end) / r, -1.0, 1.0);
+    let mu_s_end = clamp((ray.radius * mu_s + end * view.nu) / r, -1.0, 1.0);
+    let whole = once_at(ray.altitude, ray.mu, mu_s, view.below);
+    let rest = once_at(altitude, mu_end, mu_s_end, view.below);
+    let depth = air_optical_depth(air, columns_along(air, ray, end));
+    let is_part = f32(slice + 1u < dims.air_slices);
+    let even = max(whole.gas - is_part * exp(-depth) * rest.gas, vec3f(0.0)) * rayleigh_phase(view.nu);
+    let haze = max(whole.haze - is_part * exp(-depth) * rest.haze, vec3f(0.0));
+    return SkyTexel(as_source(even, depth), as_source(haze, depth));
+}

@@ -1,0 +1,45 @@
+//!include "common/fullscreen.wgsl"
+//!include "sky/disc.wgsl"
+// Answers single questions by the look-ups that draw. One texel a question; answers leave as the bits of f32.
+
+// xyz: direction (unit, the observer's frame), w: distance, m.
+@group(0) @binding(0) var questions: texture_2d<f32>;
+
+struct Answer {
+    @location(0) radiance: vec4u,
+    @location(1) transmittance: vec4u,
+}
+
+fn answer(radiance: vec3f, transmittance: vec3f) -> Answer {
+    return Answer(vec4u(bitcast<vec3u>(radiance), 0u), vec4u(bitcast<vec3u>(transmittance), 0u));
+}
+
+@fragment
+fn probe_sky(@builtin(position) position: vec4f) -> Answer {
+    let dir = textureLoad(questions, vec2u(position.xy), 0).xyz;
+    return answer(sky_radiance(dir), sky_transmittance(dir));
+}
+
+@fragment
+fn probe_aerial(@builtin(position) position: vec4f) -> Answer {
+    let question = textureLoad(questions, vec2u(position.xy), 0);
+    let seen = aerial(question.xyz, question.w);
+    return answer(seen.radiance, seen.transmittance);
+}
+
+// Direct light of the lamps and light of the sky on a level surface at the observer's altitude.
+@fragment
+fn probe_irradiance(@builtin(position) position: vec4f) -> Answer {
+    var direct = vec3f(0.0);
+    for (var i = 0u; i < sky_view.lamp_count; i++) {
+        direct += lamp_irradiance(i, sky_view.altitude) * max(sky_view.lamps[i].toward.z, 0.0);
+    }
+    return answer(direct, sky_irradiance(sky_view.altitude));
+}
+
+// The ground's own light, and the discs'.
+@fragment
+fn probe_ground(@builtin(position) position: vec4f) -> Answer {
+    let dir = textureLoad(questions, vec2u(position.xy), 0).xyz;
+    return answer(ground_radiance(dir), disc_radiance(dir, 1e-4));
+}

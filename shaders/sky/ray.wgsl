@@ -1,0 +1,143 @@
+//!include "sky/air.wgsl"
+// Rays in a shell of air, in f32 from -100 m to 1e7 m: altitudes are never formed as a difference of radii, and lengths
+// that nearly cancel come from their conjugates. Twin: src/sky/reference/ray.rs.
+
+struct SkyRay {
+    // Start, at most at the air's top, and the cosine of the zenith angle there.
+    altitude: Length,
+    mu: Cosine,
+    radius: Length,
+    // Radius and altitude of the point of the line that is closest to the planet's centre.
+    perigee_radius: Length,
+    perigee: Length,
+    // From the true start to the start, and from the start to where ray or air end.
+    before: Length,
+    length: Length,
+    // 1 if the ray ends on the ground.
+    grounded: u32,
+}
+
+// Cosine of the zenith angle of the horizon: -sqrt(h (2R + h))/(R + h).
+fn horizon_mu(air: SkyAir, altitude: Length) -> Cosine {
+    let h = max(altitude, 0.0);
+    return -sqrt(h * (2.0 * air.bottom_m + h)) / (air.bottom_m + h);
+}
+
+// Altitude of the point `distance` along a ray.
+fn altitude_along(radius: Length, altitude: Length, mu: Cosine, distance: Length) -> Length {
+    let s = distance * (distance + 2.0 * radius * mu);
+    return altitude + s / (radius + sqrt(max(radius * radius + s, 0.0)));
+}
+
+// A ray from `altitude` at zenith cosine `mu`, cut to the air. `grounded` is the caller's word, not a root's sign, so
+// that both sides of the horizon are free of speckles.
+fn sky_ray(air: SkyAir, altitude: Length, mu_start: Cosine, grounded: bool) -> SkyRay {
+    var h = max(altitude, 0.0);
+    var mu = mu_start;
+    var r = air.bottom_m + h;
+    var before = 0.0;
+    var inside = true;
+    if (h > air.thickness_m) {
+        let b = r * mu;
+        let c = (h - air.thickness_m) * (2.0 * air.bottom_m + h + air.thickness_m);
+        let root = sqrt(max(b * b - c, 0.0));
+        inside = b < 0.0 && b * b > c;
+        before = select(0.0, c / max(root - b, 1.0), inside);
+        h = air.thickness_m;
+        r = air.bottom_m + h;
+        mu = select(0.0, max(-root / r, -1.0), inside);
+    }
+    let sine = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
+    let drop = r * mu * mu / (1.0 + sine);
+    let b = r * mu;
+    let up = (air.thickness_m - h) * (2.0 * air.bottom_m + air.thickness_m + h);
+    let down = h * (2.0 * air.bottom_m + h);
+    let up_root = sqrt(b * b + up);
+    let to_top = select(up_root - b, up / max(up_root + b, 1e-3), b > 0.0);
+    let to_ground = down / max(sqrt(max(b * b - down, 0.0)) - b, 1e-3);
+    let len = select(0.0, select(to_top, to_ground, grounded), inside);
+    return SkyRay(h, mu, r, r * sine, h - drop, before, len, u32(grounded));
+}
+
+// e^(z^2) erfc(z) for z >= 0 within 2e-6: t P(t), t = 1/(1 + 0.35 z), P fitted at Chebyshev nodes.
+fn erfcx(z: vec2f) -> vec2f {
+    let t = 1.0 / (1.0 + 0.35 * z);
+    let p = 0.19746665 + t * (0.19742708 + t * (0.18628623 + t * (0.15254212 + t * (0.16876432
+        + t * (-0.02277911 + t * (0.20700841 - t * 0.08671662))))));
+    return t * p;
+}
+
+// Columns of gas and haze from the point at radius r straight out along the ray, in metres at the density of that point,
+// `rise` over the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first order round the
+// point, which leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H): relative error 5e-7 for the Earth and 5e-3 where H is
+// a sixth of the radius, at any angle. (Chapman 1931 is the function; the expansion is our own.)
+fn chapman(air: SkyAir, rise: Length, r: Length, p: Length) -> vec2f {
+    let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
+    let z = sqrt(max(rise, 0.0) / scale_height);
+    let e = 0.88622693 * erfcx(z);
+    let sum = r + p;
+    let g0 = 2.0 * r * inverseSqrt(sum);
+    let g1 = (r + 2.0 * p) * inverseSqrt(sum) / sum;
+    return sqrt(scale_height) * (g0 * e + g1 * scale_height * (0.5 * z + e * (0.5 - z * z)));
+}
+
+// Column of the ozone tent from the perigee up to `altitude`, with Simpson's rule in each half of the tent.
+fn ozone_from_perigee(air: SkyAir, perigee: Length, p: Length, altitude: Length) -> Length {
+    let edges = vec3f(-air.ozone_half_width_m, 0.0, air.ozone_half_width_m) + air.ozone_center_m;
+    let h = clamp(edges, vec3f(perigee), vec3f(altitude));
+    let t = sqrt(max((h - perigee) * (h + (perigee + 2.0 * air.bottom_m)), vec3f(0.0)));
+    let m = 0.5 * (t.xy + t.yz);
+    let hm = perigee + m * m / (sqrt(p * p + m * m) + p);
+    let d = max(1.0 - abs(h - air.ozone_center_m) / air.ozone_half_width_m, vec3f(0.0));
+    let dm = max(1.0 - abs(hm - air.ozone_center_m) / air.ozone_half_width_m, vec2f(0.0));
+    let parts = (t.yz - t.xy) * (d.xy + 4.0 * dm + d.yz);
+    return (parts.x + parts.y) / 6.0;
+}
+
+// Columns of gas, haze and ozone from the ray's start to `distance` along it, in metres at density 1, in closed form.
+fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
+    let h0 = ray.altitude;
+    let h1 = clamp(altitude_along(ray.radius, h0, ray.mu, distance), 0.0, air.thickness_m);
+    let hm = altitude_along(ray.radius, h0, ray.mu, 0.5 * distance);
+    let side0 = select(-1.0, 1.0, ray.mu >= 0.0);
+    let side1 = select(-1.0, 1.0, ray.radius * ray.mu + distance >= 0.0);
+    let across = side0 != side1;
+    let p = ray.perigee_radius;
+    let r = air.bottom_m + vec2f(h0, h1);
+    let rise = vec2f(h0, h1) - ray.perigee;
+    let spread = select(abs(h1 - h0), max(rise.x, rise.y), across);
+    let d0 = air_density(air, h0);
+    let d1 = air_density(air, h1);
+    let dm = air_density(air, hm);
+    let turn = 2.0 * air_density(air, ray.perigee).xy * chapman(air, 0.0, p, p);
+    let long = side0 * d0.xy * chapman(air, rise.x, r.x, p) - side1 * d1.xy * chapman(air, rise.y, r.y, p)
+        + select(vec2f(0.0), turn, across);
+    let short = distance / 6.0 * (d0.xy + 4.0 * dm.xy + d1.xy);
+    let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
+    let columns = max(select(long, short, vec2f(spread) < 0.3 * scale_height), vec2f(0.0));
+    let ozone = side1 * ozone_from_perigee(air, ray.perigee, p, h1) - side0 * ozone_from_perigee(air, ray.perigee, p, h0);
+    return vec3f(columns, max(ozone, 0.0));
+}
+
+// Share of the light's disc above the horizon of a point, and the zenith cosine of the middle of that share. x: height
+// of the disc's centre over the horizon in disc radii.
+fn disc_above_horizon(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec2f {
+    let h = max(altitude, 0.0);
+    let r = air.bottom_m + h;
+    let horizon = -sqrt(h * (2.0 * air.bottom_m + h)) / r;
+    let radius = max(air.sun_angular_radius, 1e-5) * air.bottom_m / r;
+    let x = clamp((mu_s - horizon) / radius, -1.0, 1.0);
+    let y = 0.5 + 0.5 * x;
+    // The area of a disc cut by a chord, 1/2 + (x sqrt(1 - x^2) + asin x)/pi, as a series whose last term closes it.
+    let xx = x * x;
+    let share = 0.5 + x * (0.63662 - xx * (0.10610 + xx * (0.01592 + xx * 0.01460)));
+    let middle = horizon + radius * y * (0.7 + 0.3 * y);
+    return vec2f(share, max(mu_s, middle));
+}
+
+// Transmittance from a point to the light, over the share of its disc that the planet does not hide.
+fn sun_transmittance(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec3f {
+    let disc = disc_above_horizon(air, altitude, mu_s);
+    let ray = sky_ray(air, altitude, disc.y, false);
+    return disc.x * exp(-air_optical_depth(air, columns_along(air, ray, ray.length)));
+}

@@ -1,0 +1,81 @@
+//! Light of the sky for hosts: irradiance and nine spherical harmonics at any altitude and sun angle, on the CPU.
+//!
+//! Built with the tables on the GPU from the radiances of every order, read back once a build, then looked up without the
+//! GPU. Everything is per unit irradiance of the lamp.
+
+use half::f16;
+
+use super::uniforms::{AirUniform, LIGHT_SCALE, LIGHT_TILES};
+use crate::gpu::{Device, readback};
+use crate::{Result, sky::passes::Table};
+
+/// Nine coefficients of the sky's radiance in real spherical harmonics, per wavelength, in the order 00; 1y, 1z, 1x;
+/// 2xy, 2yz, 2zz, 2xz, 2xx-yy (as Ramamoorthi and Hanrahan 2001). The planet's lit ground is the lower half.
+pub type Sh9 = [[f32; 3]; 9];
+
+/// Light of one planet's sky over altitudes and sun angles.
+#[derive(Clone, Debug)]
+pub struct LightTable {
+    air: AirUniform,
+    suns: usize,
+    altitudes: usize,
+    /// [altitude][tile][sun angle].
+    values: Vec<[f32; 3]>,
+}
+
+/// `SUN_SPREAD` and `SUN_BELOW` of `sky/maps.wgsl`.
+const SUN_SPREAD: f32 = 0.3;
+const SUN_BELOW: f32 = 0.22;
+
+impl LightTable {
+    /// Reads a finished table; waits for the GPU.
+    pub(crate) fn read(device: &Device, table: &Table, air: AirUniform) -> Result<Self> {
+        let (width, height) = (table.texture.width() as usize, table.texture.height() as usize);
+        let raw = readback::bytes(device, &table.texture, 0)?;
+        let number = |b: &[u8], i: usize| f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32() / LIGHT_SCALE;
+        let values = raw.chunks_exact(8).map(|b| [number(b, 0), number(b, 1), number(b, 2)]).collect();
+        Ok(Self { air, suns: width / LIGHT_TILES as usize, altitudes: height, values })
+    }
+
+    /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s`: cosine of the lamp's
+    /// geometric zenith angle. Thread-safe.
+    pub fn irradiance(&self, altitude_m: f64, mu_s: f64) -> [f32; 3] {
+        self.tile(0, altitude_m, mu_s).map(|v| v.max(0.0))
+    }
+
+    /// The sky's radiance in spherical harmonics in the frame in which `toward` (unit, z up) points at the lamp, per unit
+    /// irradiance of the lamp. Thread-safe.
+    pub fn sh9(&self, altitude_m: f64, toward: [f64; 3]) -> Sh9 {
+        let m: [[f32; 3]; 6] = std::array::from_fn(|i| self.tile(i + 1, altitude_m, toward[2]));
+        let level = toward[0].hypot(toward[1]);
+        let (c, s) = if level > 1e-9 { (toward[0] / level, toward[1] / level) } else { (1.0, 0.0) };
+        let (c, s) = (c as f32, s as f32);
+        let times = |v: [f32; 3], k: f32| v.map(|x| x * k);
+        let [l0, z, x, zz, xz, xx] = m;
+        let (c2, s2) = (c * c - s * s, 2.0 * c * s);
+        [l0, times(x, s), z, times(x, c), times(xx, s2), times(xz, s), zz, times(xz, c), times(xx, c2)]
+    }
+
+    /// Bilinear, as the GPU does it.
+    fn tile(&self, tile: usize, altitude_m: f64, mu_s: f64) -> [f32; 3] {
+        let x = self.sun_coordinate(mu_s as f32) * (self.suns - 1) as f32;
+        let share = (altitude_m as f32 / self.air.thickness_m).clamp(0.0, 1.0);
+        let y = share.sqrt() * (self.altitudes - 1) as f32;
+        let (i, j) = ((x as usize).min(self.suns - 2), (y as usize).min(self.altitudes - 2));
+        let (fx, fy) = (x - i as f32, y - j as f32);
+        let at = |i: usize, j: usize| self.values[(j * LIGHT_TILES as usize + tile) * self.suns + i];
+        let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
+        std::array::from_fn(|k| (a[k] * (1.0 - fx) + b[k] * fx) * (1.0 - fy) + (c[k] * (1.0 - fx) + d[k] * fx) * fy)
+    }
+
+    /// `sun_coordinate` of `sky/maps.wgsl`.
+    fn sun_coordinate(&self, mu_s: f32) -> f32 {
+        let dip = self.air.top_dip;
+        let center = -0.5 * dip;
+        let u = (mu_s - center) / SUN_SPREAD;
+        let x = if u > 0.0 { u / (1.0 + u) } else { u };
+        let lo = -(0.5 * dip + SUN_BELOW) / SUN_SPREAD;
+        let hi = (1.0 - center) / (SUN_SPREAD + 1.0 - center);
+        ((x - lo) / (hi - lo)).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,264 @@
+//! GPU resources of the tables over the planet: textures, layouts and pipelines. Everything is a full-screen fragment
+//! pass into rgba16float, so that one code path serves every tier.
+
+use std::sync::Arc;
+
+use bytemuck::bytes_of;
+use wgpu::util::DeviceExt as _;
+
+use super::recipe::{Kind, Pass};
+use super::settings::SkySettings;
+use super::uniforms::{DimsUniform, JobUniform};
+use crate::error::Result;
+use crate::gpu::Device;
+use crate::gpu::pass::{FullscreenDesc, fullscreen};
+
+/// Format of every table.
+pub(crate) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// A table: texture and its whole view.
+pub(crate) struct Table {
+    pub texture: wgpu::Texture,
+    pub view: wgpu::TextureView,
+}
+
+impl Table {
+    pub fn new(device: &Device, label: &str, (width, height): (u32, u32)) -> Self {
+        let texture = table_texture(device, label, (width, height), 1);
+        let view = texture.create_view(&Default::default());
+        Self { texture, view }
+    }
+}
+
+/// A texture that passes draw into and look-ups read; also copied, for the cache and for queries.
+pub(crate) fn table_texture(device: &Device, label: &str, size: (u32, u32), layers: u32) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TABLE_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// A uniform buffer with contents.
+pub(crate) fn uniform_buffer(device: &Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    device.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+    })
+}
+
+/// Layout entries in order: what a binding is, for fragment shaders.
+#[derive(Clone, Copy)]
+pub(crate) enum Slot {
+    Uniform,
+    DynamicUniform,
+    Table,
+    TableArray,
+    Sampler,
+}
+
+/// A layout of `slots`, numbered from 0.
+pub(crate) fn layout(device: &Device, label: &str, slots: &[Slot]) -> wgpu::BindGroupLayout {
+    let texture = |view_dimension| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension,
+        multisampled: false,
+    };
+    let buffer = |has_dynamic_offset| wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset,
+        min_binding_size: None,
+    };
+    let entries: Vec<_> = slots
+        .iter()
+        .enumerate()
+        .map(|(i, slot)| wgpu::BindGroupLayoutEntry {
+            binding: i as u32,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: match slot {
+                Slot::Uniform => buffer(false),
+                Slot::DynamicUniform => buffer(true),
+                Slot::Table => texture(wgpu::TextureViewDimension::D2),
+                Slot::TableArray => texture(wgpu::TextureViewDimension::D2Array),
+                Slot::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            },
+            count: None,
+        })
+        .collect();
+    device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+/// A bind group of `resources`, numbered from 0.
+pub(crate) fn bind(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .enumerate()
+        .map(|(i, resource)| wgpu::BindGroupEntry { binding: i as u32, resource: resource.clone() })
+        .collect();
+    device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+/// A texture view as a binding.
+pub(crate) fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(view)
+}
+
+/// The linear sampler of all tables.
+pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
+    device.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("sky tables"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// Pipelines and what all builds of one setting share.
+pub(crate) struct Builder {
+    shared_layout: wgpu::BindGroupLayout,
+    tables_layout: wgpu::BindGroupLayout,
+    pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
+    pub dims: wgpu::Buffer,
+    rule: wgpu::Buffer,
+    jobs: wgpu::Buffer,
+    job_stride: u32,
+    pub sampler: wgpu::Sampler,
+}
+
+impl Builder {
+    pub fn new(device: &Arc<Device>, settings: &SkySettings, passes: &[Pass]) -> Result<Self> {
+        use Slot::{DynamicUniform, Sampler, Table, Uniform};
+        let shared_layout = layout(device, "sky build", &[Uniform, Uniform, Uniform, Sampler, DynamicUniform]);
+        let tables_layout = layout(device, "sky build tables", &[Table; 6]);
+        let mut pipelines: Vec<(Kind, wgpu::RenderPipeline)> = Vec::new();
+        for pass in passes {
+            if pipelines.iter().all(|(k, _)| *k != pass.kind) {
+                let layouts = [&shared_layout, &tables_layout];
+                pipelines.push((pass.kind, pipeline(device, settings, pass, &layouts)?));
+            }
+        }
+        let job_stride = device.device.limits().min_uniform_buffer_offset_alignment.max(16);
+        let mut jobs = vec![0; job_stride as usize * passes.len()];
+        for (i, pass) in passes.iter().enumerate() {
+            let job = JobUniform { order: pass.order, last: pass.last.into(), unused: [0; 2] };
+            let at = job_stride as usize * i;
+            jobs[at..at + 16].copy_from_slice(bytes_of(&job));
+        }
+        Ok(Self {
+            pipelines,
+            dims: uniform_buffer(device, "sky dims", bytes_of(&DimsUniform::of(settings))),
+            rule: uniform_buffer(device, "sky rule", bytemuck::cast_slice(&rule(settings.rule_zeniths as usize))),
+            jobs: uniform_buffer(device, "sky jobs", &jobs),
+            job_stride,
+            sampler: linear_sampler(device),
+            shared_layout,
+            tables_layout,
+        })
+    }
+
+    /// The pipeline of a kind that is among the passes given to `new`.
+    pub fn pipeline(&self, kind: Kind) -> Option<&wgpu::RenderPipeline> {
+        self.pipelines.iter().find(|(k, _)| *k == kind).map(|(_, p)| p)
+    }
+
+    /// Offset of pass `index` among the jobs.
+    pub fn job_offset(&self, index: usize) -> u32 {
+        self.job_stride * index as u32
+    }
+
+    /// Uniforms and sampler of a build, for an air.
+    pub fn shared_group(&self, device: &Device, air: &wgpu::Buffer) -> wgpu::BindGroup {
+        let job = wgpu::BufferBinding { buffer: &self.jobs, offset: 0, size: wgpu::BufferSize::new(16) };
+        let resources = [
+            air.as_entire_binding(),
+            self.dims.as_entire_binding(),
+            self.rule.as_entire_binding(),
+            wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::Buffer(job),
+        ];
+        bind(device, &self.shared_layout, &resources)
+    }
+
+    /// The tables that a pass reads.
+    pub fn tables_group(&self, device: &Device, reads: [&wgpu::TextureView; 6]) -> wgpu::BindGroup {
+        bind(device, &self.tables_layout, &reads.map(tex))
+    }
+}
+
+fn pipeline(
+    device: &Device,
+    settings: &SkySettings,
+    pass: &Pass,
+    layouts: &[&wgpu::BindGroupLayout],
+) -> Result<wgpu::RenderPipeline> {
+    let target: wgpu::ColorTargetState = TABLE_FORMAT.into();
+    let entry = match pass.kind {
+        Kind::Norm => "norm",
+        Kind::Gather => "gather",
+        Kind::Scatter => "scatter",
+        Kind::Light => "light",
+        Kind::IsotropicGather => "isotropic_gather",
+        Kind::IsotropicScatter => "isotropic_scatter",
+        Kind::Once => "once",
+    };
+    let directional = f64::from(u8::from(settings.model.is_directional()));
+    let desc = FullscreenDesc {
+        shader: "sky/build.wgsl",
+        entry,
+        layouts,
+        targets: &vec![target; pass.draws.len()],
+        constants: &[("DIRECTIONAL", directional)],
+        samples: 1,
+    };
+    fullscreen(device, &desc)
+}
+
+/// Gauss and Legendre's rule of `n` nodes on (0, 1): (node, weight, 0, 0), filled up to 16.
+fn rule(n: usize) -> [[f32; 4]; 16] {
+    let mut out = [[0.0; 4]; 16];
+    for (i, slot) in out.iter_mut().enumerate().take(n) {
+        // Newton's iteration on P_n from Tricomi's estimate of its root.
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..50 {
+            let (mut p0, mut p1) = (1.0, x);
+            for k in 2..=n {
+                let k = k as f64;
+                (p0, p1) = (p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k);
+            }
+            slope = n as f64 * (x * p1 - p0) / (x * x - 1.0);
+            x -= p1 / slope;
+        }
+        *slot = [(0.5 + 0.5 * x) as f32, (1.0 / ((1.0 - x * x) * slope * slope)) as f32, 0.0, 0.0];
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rule_integrates_polynomials() {
+        for n in [2, 5, 8, 16] {
+            let r = rule(n);
+            for k in 0..2 * n as i32 {
+                let sum: f64 = r[..n].iter().map(|a| f64::from(a[1]) * f64::from(a[0]).powi(k)).sum();
+                assert!((sum * f64::from(k + 1) - 1.0).abs() < 2e-5, "n {n} degree {k}: {sum}");
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! In which order a model's tables over the planet are built: a list of passes, each with what it reads and draws.
+
+use super::settings::{SkyModel, SkySettings};
+use super::uniforms::LIGHT_TILES;
+
+/// What a build pass does; the names are the entry points of `sky/build.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Norm,
+    Gather,
+    Scatter,
+    Light,
+    IsotropicGather,
+    IsotropicScatter,
+    Once,
+}
+
+/// The tables that a build knows. `Sources`, `Lights` and the two `Once` are its results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Name {
+    Nothing,
+    Norms,
+    Radiances,
+    Transfer,
+    Order(usize),
+    OrderLight(usize),
+    PartSources,
+    PartLights,
+    Sources,
+    Lights,
+    OnceGas,
+    OnceHaze,
+}
+
+impl Name {
+    /// Tables that are kept while a build is under way only.
+    pub const SCRATCH: [Name; 10] = [
+        Name::Nothing,
+        Name::Norms,
+        Name::Radiances,
+        Name::Transfer,
+        Name::Order(0),
+        Name::Order(1),
+        Name::OrderLight(0),
+        Name::OrderLight(1),
+        Name::PartSources,
+        Name::PartLights,
+    ];
+    /// What a finished build leaves.
+    pub const RESULTS: [Name; 4] = [Name::Sources, Name::Lights, Name::OnceGas, Name::OnceHaze];
+
+    /// Size in texels.
+    pub fn size(self, s: &SkySettings) -> (u32, u32) {
+        let (x, y) = match self {
+            Name::Nothing => return (1, 1),
+            Name::Norms => (1, 1),
+            Name::Radiances => (s.rule_azimuths, 2 * s.rule_zeniths),
+            Name::Transfer if s.model == SkyModel::IsotropicTables => (s.rule_azimuths, 2 * s.rule_zeniths),
+            Name::OnceGas | Name::OnceHaze if s.model == SkyModel::Table3d => return (s.suns * 8, s.altitudes * 8),
+            Name::Transfer | Name::OnceGas | Name::OnceHaze => return (1, 1),
+            Name::Order(_) | Name::PartSources | Name::Sources if s.model.is_directional() => (s.azimuths, s.zeniths),
+            Name::Order(_) | Name::PartSources | Name::Sources => (1, 1),
+            Name::OrderLight(_) | Name::PartLights | Name::Lights => (LIGHT_TILES, 1),
+        };
+        (x * s.suns, y * s.altitudes)
+    }
+}
+
+/// One pass.
+#[derive(Clone, Debug)]
+pub(crate) struct Pass {
+    pub kind: Kind,
+    /// Order that is gathered, and whether the orders after it are added as a series.
+    pub order: u32,
+    pub last: bool,
+    /// Sources, radiances, light, sum of sources, sum of light, norms, as `sky/build.wgsl` binds them.
+    pub reads: [Name; 6],
+    pub draws: Vec<Name>,
+}
+
+impl Pass {
+    fn new(kind: Kind, order: u32, last: bool, reads: [Name; 6], draws: &[Name]) -> Self {
+        Self { kind, order, last, reads, draws: draws.to_vec() }
+    }
+
+    /// Work of one texel, in cells of a march, as measured on the software driver.
+    pub fn texel_cost(&self, s: &SkySettings) -> f64 {
+        let directions = f64::from(2 * s.rule_zeniths * s.rule_azimuths);
+        match self.kind {
+            Kind::Gather | Kind::IsotropicGather => f64::from(s.build_cells),
+            Kind::Once => f64::from(s.sky_cells),
+            Kind::Scatter => 0.3 * directions,
+            Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.2 * directions,
+        }
+    }
+}
+
+/// The passes of a model.
+pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
+    let mut out = vec![Pass::new(Kind::Norm, 0, false, [Name::Nothing; 6], &[Name::Norms])];
+    match s.model {
+        SkyModel::Directional | SkyModel::BruteForce => directional(s, &mut out),
+        SkyModel::IsotropicTables => isotropic(&mut out),
+        SkyModel::Table3d => table3d(&mut out),
+    }
+    out
+}
+
+/// Light that is gathered along the quadrature: reads the order's source and the light of the order before.
+fn gather(order: u32, source: Name, light: Name) -> Pass {
+    let reads = [source, Name::Nothing, light, Name::Nothing, Name::Nothing, Name::Norms];
+    Pass::new(Kind::Gather, order, false, reads, &[Name::Radiances])
+}
+
+/// Adds the light of what was gathered last to the sum: `from` is read, `to` drawn.
+fn light(order: u32, last: bool, from: Name, to: Name) -> Pass {
+    let n = order as usize;
+    let (before, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));
+    let reads = [Name::Nothing, Name::Radiances, before, Name::Nothing, from, Name::Nothing];
+    Pass::new(Kind::Light, order, last, reads, &[now, to])
+}
+
+fn directional(s: &SkySettings, out: &mut Vec<Pass>) {
+    let count = s.orders - 1;
+    for order in 1..=count {
+        let last = order == count;
+        let n = order as usize;
+        // The sums go to and fro so that the last lies in the result.
+        let to_result = (count - order).is_multiple_of(2);
+        let pick = |result, part| if to_result { (part, result) } else { (result, part) };
+        let (before, now) = (Name::Order((n + 1) % 2), Name::Order(n % 2));
+        out.push(gather(order, before, Name::OrderLight((n + 1) % 2)));
+        let (from, to) = pick(Name::Lights, Name::PartLights);
+        out.push(light(order, last, from, to));
+        let (from, to) = pick(Name::Sources, Name::PartSources);
+        let reads = [before, Name::Radiances, Name::Nothing, from, Name::Nothing, Name::Nothing];
+        out.push(Pass::new(Kind::Scatter, order, last, reads, &[now, to]));
+    }
+}
+
+fn isotropic(out: &mut Vec<Pass>) {
+    out.push(Pass::new(Kind::IsotropicGather, 1, false, [Name::Nothing; 6], &[Name::Radiances, Name::Transfer]));
+    let reads = [Name::Transfer, Name::Radiances, Name::Nothing, Name::Nothing, Name::Nothing, Name::Nothing];
+    out.push(Pass::new(Kind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
+    out.push(gather(1, Name::Nothing, Name::Nothing));
+    out.push(light(1, false, Name::Lights, Name::PartLights));
+    // All orders after the first at once.
+    out.push(gather(2, Name::Sources, Name::OrderLight(1)));
+    out.push(light(2, false, Name::PartLights, Name::Lights));
+}
+
+fn table3d(out: &mut Vec<Pass>) {
+    out.push(Pass::new(Kind::Once, 1, false, [Name::Nothing; 6], &[Name::OnceGas, Name::OnceHaze]));
+    out.push(gather(1, Name::Nothing, Name::Nothing));
+    out.push(light(1, false, Name::PartLights, Name::Lights));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_pass_reads_what_it_draws_and_results_are_drawn_last() {
+        for (_, model) in SkyModel::NAMES {
+            for orders in 2..=6 {
+                let s = SkySettings { orders, ..SkySettings::with_model(model) };
+                let list = passes(&s);
+                for p in &list {
+                    let own = |n: &Name| *n != Name::Nothing && p.draws.contains(n);
+                    assert!(!p.reads.iter().any(own), "{model:?} {orders} {p:?}");
+                    let size = p.draws[0].size(&s);
+                    assert!(p.draws.iter().all(|d| d.size(&s) == size), "{model:?} {p:?}");
+                }
+                let last = |n: Name| list.iter().rposition(|p| p.draws.contains(&n));
+                assert!(last(Name::Lights) > last(Name::PartLights), "{model:?} {orders}");
+                if model != SkyModel::Table3d {
+                    assert!(last(Name::Sources) >= last(Name::PartSources), "{model:?} {orders}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! How the sky is drawn: which model, and with how many nodes, cells and texels.
+
+use crate::error::{Error, Result};
+
+/// The ways to draw one sky. All share the same look-ups, so that a frame never asks which it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SkyModel {
+    /// Light scattered once, from a table over (altitude, view angle, sun angle) with the phase functions put on
+    /// afterwards (Elek 2008). Its azimuth is that of the sun: right by day to 3 %, wrong by a factor of 2 to 3 at
+    /// sunset away from the sun, worse from space; all light scattered more than once is missing (20 to 50 %).
+    Table3d,
+    /// Light scattered more than once is the same in all directions (Hillaire 2020). Errs by -3 to -6 % near the
+    /// horizon and +3 % at the zenith; built in a tenth of the default's time.
+    IsotropicTables,
+    /// Light scattered more than once keeps its direction, order by order. The default.
+    #[default]
+    Directional,
+    /// As the default, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] cells: what
+    /// the tables are measured against.
+    BruteForce,
+}
+
+impl SkyModel {
+    /// All models with the names that programs use for them.
+    pub const NAMES: [(&'static str, SkyModel); 4] = [
+        ("table3d", SkyModel::Table3d),
+        ("isotropic", SkyModel::IsotropicTables),
+        ("directional", SkyModel::Directional),
+        ("brute-force", SkyModel::BruteForce),
+    ];
+
+    /// The model of that name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] with the known names.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let known = Self::NAMES.map(|(n, _)| n).join(", ");
+        let found = Self::NAMES.iter().find(|(n, _)| *n == name);
+        found.map(|(_, m)| *m).ok_or_else(|| Error::range("model", &format!("one of {known}"), name))
+    }
+
+    /// Whether light scattered more than once keeps its direction.
+    pub(crate) fn is_directional(self) -> bool {
+        matches!(self, Self::Directional | Self::BruteForce)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, m)| *m == self).map_or("", |(n, _)| n)
+    }
+}
+
+/// Numbers of the sky's tables. The defaults hold the errors stated in the documentation of [`crate::sky`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SkySettings {
+    /// Which model draws, default [`SkyModel::Directional`].
+    pub model: SkyModel,
+    /// Orders of scattering that are carried one by one, `[2, 16]`, default 5; the rest is a geometric series.
+    pub orders: u32,
+    /// Sun angles of the planet's tables, `[16, 128]`, default 64.
+    pub suns: u32,
+    /// Altitudes of the planet's tables, `[8, 64]`, default 20.
+    pub altitudes: u32,
+    /// Zenith angles in which a source is known, `[4, 32]`, default 13.
+    pub zeniths: u32,
+    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 7.
+    pub azimuths: u32,
+    /// Zenith angles on each side of the horizon that are summed over, `[2, 16]`, default 8.
+    pub rule_zeniths: u32,
+    /// Azimuths on `[0, pi]` that are summed over, `[2, 24]`, default 8.
+    pub rule_azimuths: u32,
+    /// Cells of a ray's march while the planet's tables are built, `[4, 64]`, default 14.
+    pub build_cells: u32,
+    /// Azimuths on `[0, pi]` of an observer's sky, `[8, 256]`, default 40.
+    pub sky_azimuths: u32,
+    /// Rows of it above the horizon, `[8, 256]`, default 80.
+    pub sky_above: u32,
+    /// Rows of it below the horizon, `[8, 256]`, default 40.
+    pub sky_below: u32,
+    /// Cells of its rays' marches, `[4, 128]`, default 20.
+    pub sky_cells: u32,
+    /// Azimuths on `[0, pi]` of the air in front of things, `[4, 64]`, default 16.
+    pub air_azimuths: u32,
+    /// Rows of it above the horizon, `[4, 128]`, default 20.
+    pub air_above: u32,
+    /// Rows of it below the horizon, `[4, 128]`, default 20.
+    pub air_below: u32,
+    /// Distances of it, `[4, 64]`, default 16.
+    pub air_slices: u32,
+    /// Cells of a march to one of them, `[2, 64]`, default 8.
+    pub air_cells: u32,
+    /// Cells of a march per pixel ([`SkyModel::BruteForce`]), `[1, 4096]`, default 64.
+    pub march_cells: u32,
+}
+
+impl Default for SkySettings {
+    fn default() -> Self {
+        Self {
+            model: SkyModel::default(),
+            orders: 5,
+            suns: 64,
+            altitudes: 20,
+            zeniths: 13,
+            azimuths: 7,
+            rule_zeniths: 8,
+            rule_azimuths: 8,
+            build_cells: 14,
+            sky_azimuths: 40,
+            sky_above: 80,
+            sky_below: 40,
+            sky_cells: 20,
+            air_azimuths: 16,
+            air_above: 20,
+            air_below: 20,
+            air_slices: 16,
+            air_cells: 8,
+            march_cells: 64,
+        }
+    }
+}
+
+impl SkySettings {
+    /// The default numbers with another model.
+    pub fn with_model(model: SkyModel) -> Self {
+        Self { model, ..Self::default() }
+    }
+
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and the range.
+    pub fn check(&self) -> Result<()> {
+        let fields = [
+            ("orders", self.orders, 2, 16),
+            ("suns", self.suns, 16, 128),
+            ("altitudes", self.altitudes, 8, 64),
+            ("zeniths", self.zeniths, 4, 32),
+            ("azimuths", self.azimuths, 3, 24),
+            ("rule_zeniths", self.rule_zeniths, 2, 16),
+            ("rule_azimuths", self.rule_azimuths, 2, 24),
+            ("build_cells", self.build_cells, 4, 64),
+            ("sky_azimuths", self.sky_azimuths, 8, 256),
+            ("sky_above", self.sky_above, 8, 256),
+            ("sky_below", self.sky_below, 8, 256),
+            ("sky_cells", self.sky_cells, 4, 128),
+            ("air_azimuths", self.air_azimuths, 4, 64),
+            ("air_above", self.air_above, 4, 128),
+            ("air_below", self.air_below, 4, 128),
+            ("air_slices", self.air_slices, 4, 64),
+            ("air_cells", self.air_cells, 2, 64),
+            ("march_cells", self.march_cells, 1, 4096),
+        ];
+        for (name, value, lo, hi) in fields {
+            if !(lo..=hi).contains(&value) {
+                return Err(Error::range(name, &format!("in [{lo}, {hi}]"), value));
+            }
+        }
+        // Every device draws into 2048 texels; an atlas must not be wider.
+        for (name, a, b) in [
+            ("suns x rule_azimuths", self.suns, self.rule_azimuths),
+            ("suns x azimuths", self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES)),
+            ("altitudes x 2 rule_zeniths", self.altitudes, 2 * self.rule_zeniths),
+            ("altitudes x zeniths", self.altitudes, self.zeniths),
+            ("air_azimuths x air_slices", self.air_azimuths, self.air_slices),
+        ] {
+            if a * b > 2048 {
+                return Err(Error::range(name, "at most 2048 texels", a * b));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_both_ways_and_faults_say_the_range() {
+        for (name, model) in SkyModel::NAMES {
+            assert_eq!(SkyModel::from_name(name).unwrap(), model);
+            assert_eq!(model.name(), name);
+        }
+        assert!(SkyModel::from_name("best").unwrap_err().message.contains("directional"));
+        assert!(SkySettings::default().check().is_ok());
+        let e = SkySettings { sky_cells: 3, ..Default::default() }.check().unwrap_err();
+        assert!(e.message.contains("sky_cells") && e.message.contains("[4, 128]"), "{}", e.message);
+        let wide = SkySettings { suns: 128, azimuths: 24, ..Default::default() };
+        assert!(wide.check().unwrap_err().message.contains("suns x azimuths"));
+    }
+}

@@ -1,0 +1,330 @@
+//! The tables over a planet: built at once or by parts, and followed through a change of its air without a jump.
+
+use std::sync::Arc;
+
+use bytemuck::bytes_of;
+
+use super::Planet;
+use super::light::LightTable;
+use super::passes::{Builder, Table, uniform_buffer};
+use super::recipe::{Name, Pass, passes};
+use super::settings::{SkyModel, SkySettings};
+use super::uniforms::AirUniform;
+use crate::error::{Error, Result};
+use crate::gpu::Device;
+
+/// One planet's finished or growing tables.
+pub(crate) struct TableSet {
+    planet: Option<Planet>,
+    pub air: wgpu::Buffer,
+    shared: wgpu::BindGroup,
+    results: Vec<(Name, Table)>,
+    /// Tables that each pass reads.
+    reads: Vec<wgpu::BindGroup>,
+}
+
+impl TableSet {
+    /// The view of one of [`Name::RESULTS`].
+    pub fn result(&self, name: Name) -> &Table {
+        // Made of exactly these names; the first stands in for one that cannot be asked for.
+        &self.results.iter().find(|(n, _)| *n == name).unwrap_or(&self.results[0]).1
+    }
+}
+
+/// A part of a pass: rows of its target.
+#[derive(Clone, Copy, Debug)]
+struct Strip {
+    pass: usize,
+    first_row: u32,
+    rows: u32,
+    cost: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    Idle,
+    /// Strips done of a build into the set that is not shown.
+    Building(usize),
+    /// Share of the new set in what is shown.
+    Fading(f32),
+}
+
+/// What [`SkyTables::update`] did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TablesProgress {
+    /// Work recorded by this call, as a share of a whole build.
+    pub work: f32,
+    /// Share of the tables for the last planet given that is done, 1 when they are shown.
+    pub done: f32,
+}
+
+/// Tables over a planet for one model: light scattered more than once, and the light at every altitude and sun angle.
+/// They hold radiances per unit irradiance of the light, so sun and moon share them.
+///
+/// Two sets are kept: the one that is shown, and the one that a changed planet is built into. One thread at a time.
+pub struct SkyTables {
+    pub(crate) device: Arc<Device>,
+    settings: SkySettings,
+    pub(crate) builder: Builder,
+    passes: Vec<Pass>,
+    strips: Vec<Strip>,
+    total_cost: f64,
+    scratch: Vec<(Name, Table)>,
+    sets: [TableSet; 2],
+    shown: usize,
+    state: State,
+    revision: u64,
+}
+
+/// A pass is cut into strips of at most this share of a whole build.
+const STRIP_SHARE: f64 = 1.0 / 48.0;
+
+impl SkyTables {
+    /// Makes the textures and pipelines; nothing is built until [`SkyTables::update`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for settings out of range; GPU faults.
+    pub fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
+        settings.check()?;
+        let passes = passes(settings);
+        let builder = Builder::new(device, settings, &passes)?;
+        let make = |names: &[Name]| -> Vec<(Name, Table)> {
+            names.iter().map(|n| (*n, Table::new(device, &format!("sky {n:?}"), n.size(settings)))).collect()
+        };
+        let scratch = make(&Name::SCRATCH);
+        let set = || {
+            let results = make(&Name::RESULTS);
+            let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(&Planet::earth())));
+            let find = |name: Name| {
+                let known = results.iter().chain(&scratch).find(|(n, _)| *n == name);
+                &known.unwrap_or(&scratch[0]).1.view
+            };
+            let reads = passes.iter().map(|p| builder.tables_group(device, p.reads.map(find))).collect();
+            TableSet { planet: None, shared: builder.shared_group(device, &air), air, results, reads }
+        };
+        let sets = [set(), set()];
+        let (strips, total_cost) = strips(settings, &passes);
+        device.check()?;
+        Ok(Self {
+            device: device.clone(),
+            settings: *settings,
+            builder,
+            passes,
+            strips,
+            total_cost,
+            scratch,
+            sets,
+            shown: 0,
+            state: State::Idle,
+            revision: 0,
+        })
+    }
+
+    /// The settings of these tables.
+    pub fn settings(&self) -> &SkySettings {
+        &self.settings
+    }
+
+    /// The planet whose tables are shown; while a change fades in, the older one.
+    pub fn planet(&self) -> Option<&Planet> {
+        self.sets[self.shown].planet.as_ref()
+    }
+
+    /// Changes whenever something shown changes, so that an observer's tables follow.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Values of `override` constants for every pipeline whose shader includes `sky/lookup.wgsl`.
+    pub fn pipeline_constants(&self) -> [(&'static str, f64); 1] {
+        [("SKY_MARCH", f64::from(u8::from(self.settings.model == SkyModel::BruteForce)))]
+    }
+
+    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/48 is not
+    /// cut). The first planet, and any at `fraction` 1, is built and shown at once. Else a changed planet is built beside
+    /// what is shown over 1/fraction calls, and then fades in over as many; a planet given meanwhile comes after it.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a planet or fraction out of range.
+    pub fn update(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        planet: &Planet,
+        fraction: f32,
+    ) -> Result<TablesProgress> {
+        if !(fraction > 0.0 && fraction <= 1.0) {
+            return Err(Error::range("fraction", "in (0, 1]", fraction));
+        }
+        let target = match self.state {
+            State::Idle => self.shown,
+            _ => 1 - self.shown,
+        };
+        let at_once = fraction >= 1.0 || self.planet().is_none();
+        if self.sets[target].planet.as_ref() != Some(planet) && (at_once || self.state == State::Idle) {
+            planet.check()?;
+            self.begin(planet);
+        }
+        if at_once {
+            return Ok(self.finish(encoder));
+        }
+        match self.state {
+            State::Idle => Ok(TablesProgress { work: 0.0, done: 1.0 }),
+            State::Building(_) => Ok(self.build_some(encoder, f64::from(fraction))),
+            State::Fading(t) => {
+                let t = t + fraction;
+                self.revision += 1;
+                self.state = State::Fading(t);
+                if t >= 1.0 - 1e-4 {
+                    self.show_other();
+                }
+                Ok(TablesProgress { work: 0.0, done: t.min(1.0) })
+            }
+        }
+    }
+
+    /// The light of the sky over altitudes and sun angles, read back from what is shown. Waits for the GPU: call it after
+    /// [`SkyTables::revision`] has changed, not in every frame; its answers need no GPU.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn read_light(&self) -> Result<LightTable> {
+        LightTable::read(&self.device, self.sets[self.shown].result(Name::Lights), self.air())
+    }
+
+    /// Both sets.
+    pub(crate) fn sets(&self) -> [&TableSet; 2] {
+        self.sets.each_ref()
+    }
+
+    /// Which set is shown.
+    pub(crate) fn shown_index(&self) -> usize {
+        self.shown
+    }
+
+    /// Share of the other set while it fades in.
+    pub(crate) fn fade(&self) -> Option<f32> {
+        match self.state {
+            State::Fading(t) => Some(t),
+            _ => None,
+        }
+    }
+
+    /// The air that look-ups use: between two while one fades into the other.
+    pub(crate) fn air(&self) -> AirUniform {
+        let of = |set: &TableSet| AirUniform::of(set.planet.as_ref().unwrap_or(&Planet::earth()));
+        let shown = of(&self.sets[self.shown]);
+        self.fade().map_or(shown, |t| shown.mix(&of(&self.sets[1 - self.shown]), t))
+    }
+
+    /// Starts a build into the set that is not shown.
+    fn begin(&mut self, planet: &Planet) {
+        let set = &mut self.sets[1 - self.shown];
+        set.planet = Some(*planet);
+        self.device.queue.write_buffer(&set.air, 0, bytes_of(&AirUniform::of(planet)));
+        self.state = State::Building(0);
+    }
+
+    /// Builds the rest and shows it without a fade.
+    fn finish(&mut self, encoder: &mut wgpu::CommandEncoder) -> TablesProgress {
+        let mut work = 0.0;
+        if let State::Building(_) = self.state {
+            work = self.build_some(encoder, 2.0).work;
+        }
+        if self.state != State::Idle {
+            self.show_other();
+        }
+        TablesProgress { work, done: 1.0 }
+    }
+
+    fn show_other(&mut self) {
+        self.shown = 1 - self.shown;
+        self.state = State::Idle;
+        self.revision += 1;
+    }
+
+    /// Records strips up to `share` of a whole build.
+    fn build_some(&mut self, encoder: &mut wgpu::CommandEncoder, share: f64) -> TablesProgress {
+        let State::Building(first) = self.state else { return TablesProgress { work: 0.0, done: 1.0 } };
+        let budget = share * self.total_cost * (1.0 + 1e-6);
+        let mut cost = 0.0;
+        let mut next = first;
+        while let Some(strip) = self.strips.get(next) {
+            if next > first && cost + strip.cost > budget {
+                break;
+            }
+            cost += strip.cost;
+            next += 1;
+        }
+        self.record(encoder, first, next);
+        self.state = if next == self.strips.len() { State::Fading(0.0) } else { State::Building(next) };
+        let before: f64 = self.strips[..next].iter().map(|s| s.cost).sum();
+        TablesProgress { work: (cost / self.total_cost) as f32, done: (0.5 * before / self.total_cost) as f32 }
+    }
+
+    /// Records strips `first..end`, those of one pass in one render pass.
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, first: usize, end: usize) {
+        let set = &self.sets[1 - self.shown];
+        for strips in self.strips[first..end].chunk_by(|a, b| a.pass == b.pass) {
+            let index = strips[0].pass;
+            let pass = &self.passes[index];
+            let Some(pipeline) = self.builder.pipeline(pass.kind) else { continue };
+            let view = |name: &Name| {
+                let known = set.results.iter().chain(&self.scratch).find(|(n, _)| n == name);
+                known.map(|(_, t)| wgpu::RenderPassColorAttachment {
+                    view: &t.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+                })
+            };
+            let targets: Vec<_> = pass.draws.iter().map(view).collect();
+            let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("sky build"),
+                color_attachments: &targets,
+                ..Default::default()
+            });
+            recorded.set_pipeline(pipeline);
+            recorded.set_bind_group(0, &set.shared, &[self.builder.job_offset(index)]);
+            recorded.set_bind_group(1, &set.reads[index], &[]);
+            let rows: u32 = strips.iter().map(|s| s.rows).sum();
+            recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&self.settings).0, rows);
+            recorded.draw(0..3, 0..1);
+        }
+    }
+}
+
+/// Cuts the passes into strips; also the cost of all.
+fn strips(settings: &SkySettings, passes: &[Pass]) -> (Vec<Strip>, f64) {
+    let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_cost(settings);
+    let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();
+    let mut out = Vec::new();
+    for (pass, p) in passes.iter().enumerate() {
+        let height = p.draws[0].size(settings).1;
+        let each = ((STRIP_SHARE * total / row_cost(p)) as u32).clamp(1, height);
+        for first_row in (0..height).step_by(each as usize) {
+            let rows = each.min(height - first_row);
+            out.push(Strip { pass, first_row, rows, cost: row_cost(p) * f64::from(rows) });
+        }
+    }
+    (out, total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_cover_every_pass_and_are_small() {
+        for (_, model) in SkyModel::NAMES {
+            let s = SkySettings::with_model(model);
+            let list = passes(&s);
+            let (strips, total) = strips(&s, &list);
+            assert!(strips.iter().all(|x| x.cost <= total / 32.0), "{model:?}");
+            assert!((strips.iter().map(|x| x.cost).sum::<f64>() / total - 1.0).abs() < 1e-9);
+            for (i, p) in list.iter().enumerate() {
+                let rows: u32 = strips.iter().filter(|x| x.pass == i).map(|x| x.rows).sum();
+                assert_eq!(rows, p.draws[0].size(&s).1);
+            }
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! One observer's tables: the sky by direction and the air in front of things, for each lamp.
+
+use std::sync::Arc;
+
+use bytemuck::{Zeroable as _, bytes_of};
+
+use super::observer::{Lamp, Observer};
+use super::passes::{Builder, Slot, TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
+use super::recipe::Name;
+use super::settings::{SkyModel, SkySettings};
+use super::tables::{SkyTables, TableSet};
+use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
+use crate::error::Result;
+use crate::gpu::Device;
+use crate::gpu::pass::{FullscreenDesc, fullscreen};
+
+/// Layers of a lamp: what is complete, and light scattered once by haze without its phase function.
+const LAYERS: u32 = 2;
+const LAMPS: usize = 2;
+
+/// An array texture that passes draw into layer by layer.
+struct Layered {
+    whole: wgpu::TextureView,
+    layers: Vec<wgpu::TextureView>,
+}
+
+impl Layered {
+    fn new(device: &Device, label: &str, size: (u32, u32)) -> Self {
+        let texture = table_texture(device, label, size, LAYERS * LAMPS as u32);
+        let view = |dimension, base, count| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(dimension),
+                base_array_layer: base,
+                array_layer_count: count,
+                ..Default::default()
+            })
+        };
+        let layers = (0..LAYERS * LAMPS as u32).map(|i| view(wgpu::TextureViewDimension::D2, i, Some(1))).collect();
+        Self { whole: view(wgpu::TextureViewDimension::D2Array, 0, None), layers }
+    }
+}
+
+/// Plain and blending variant of a pass.
+struct Pair([wgpu::RenderPipeline; 2]);
+
+/// What an observer's table was drawn for.
+#[derive(Clone, Copy, PartialEq)]
+struct Drawn {
+    revision: u64,
+    altitude_m: f64,
+    mu_s: f64,
+}
+
+/// An observer's tables, and the bind group with which shaders look them up (`shaders/sky/lookup.wgsl`, group 1).
+///
+/// One thread at a time; one [`SkyVolume::prepare`] a submission, since it writes uniforms through the queue.
+pub struct SkyVolume {
+    device: Arc<Device>,
+    settings: SkySettings,
+    sky: Layered,
+    air: Layered,
+    sky_pass: Pair,
+    air_pass: Pair,
+    /// Tables over the planet, for each of its two sets.
+    planet_groups: [wgpu::BindGroup; 2],
+    observer_groups: Vec<wgpu::BindGroup>,
+    observers: Vec<wgpu::Buffer>,
+    view: wgpu::Buffer,
+    view_layout: wgpu::BindGroupLayout,
+    view_groups: [wgpu::BindGroup; 2],
+    current: usize,
+    drawn: [Option<Drawn>; LAMPS],
+    written: ViewUniform,
+}
+
+impl SkyVolume {
+    /// Makes an observer's textures for `tables`; nothing is drawn yet.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn new(tables: &SkyTables) -> Result<Self> {
+        let device = tables.device.clone();
+        let s = *tables.settings();
+        let sky = Layered::new(&device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
+        let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
+        let air = Layered::new(&device, "air of an observer", air_size);
+        use Slot::{Sampler, Table, Uniform};
+        let planet_layout = layout(&device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]);
+        let observer_layout = layout(&device, "sky observer", &[Uniform]);
+        let view_layout = Self::view_layout(&device);
+        let layouts = [&planet_layout, &observer_layout];
+        let (sky_entry, air_entry) = match s.model {
+            SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
+            _ => ("sky", "volume"),
+        };
+        let sky_pass = pair(&device, &s, sky_entry, &layouts)?;
+        let air_pass = pair(&device, &s, air_entry, &layouts)?;
+        let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
+        let observers: Vec<_> = (0..LAMPS).map(|_| uniform_buffer(&device, "sky observer", &zero)).collect();
+        let observer_groups =
+            observers.iter().map(|b| bind(&device, &observer_layout, &[b.as_entire_binding()])).collect();
+        let written = ViewUniform::zeroed();
+        let view = uniform_buffer(&device, "sky view", bytes_of(&written));
+        let sets = tables.sets();
+        let planet_groups = sets.map(|set| planet_group(&device, &planet_layout, &tables.builder, set));
+        let view_groups = sets.map(|set| {
+            let sampler = wgpu::BindingResource::Sampler(&tables.builder.sampler);
+            let lights = tex(&set.result(Name::Lights).view);
+            let sources = tex(&set.result(Name::Sources).view);
+            bind(
+                &device,
+                &view_layout,
+                &[view.as_entire_binding(), tex(&sky.whole), tex(&air.whole), lights, sources, sampler],
+            )
+        });
+        device.check()?;
+        let (current, drawn) = (0, [None; LAMPS]);
+        Ok(Self {
+            device,
+            settings: s,
+            sky,
+            air,
+            sky_pass,
+            air_pass,
+            planet_groups,
+            observer_groups,
+            observers,
+            view,
+            view_layout,
+            view_groups,
+            current,
+            drawn,
+            written,
+        })
+    }
+
+    /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
+    pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
+        use Slot::{Sampler, Table, TableArray, Uniform};
+        layout(device, "sky view", &[Uniform, TableArray, TableArray, Table, Table, Sampler])
+    }
+
+    /// The layout that this volume's group was made with.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.view_layout
+    }
+
+    /// Group 1 of every shader that includes `sky/lookup.wgsl`. Ask again after every [`SkyVolume::prepare`].
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.view_groups[self.current]
+    }
+
+    /// Brings the tables up to date and says whether anything had to be drawn. Nothing is, when neither altitude nor sun
+    /// nor air changed: turning the camera is free.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for an observer out of range.
+    pub fn prepare(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        tables: &SkyTables,
+        observer: &Observer,
+    ) -> Result<bool> {
+        observer.check()?;
+        self.current = tables.shown_index();
+        let air = tables.air();
+        let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
+        // Lamps that matter, and the altitude that all their tables were drawn for.
+        let lamps: Vec<&Lamp> = observer.lamps.iter().flatten().filter(|l| l.is_lit()).collect();
+        let kept = lamps.iter().enumerate().all(|(i, lamp)| self.is_current(i, tables, observer, lamp));
+        if !kept {
+            let edges = EdgesUniform::of(&air, observer.altitude_m);
+            for (i, lamp) in lamps.iter().enumerate() {
+                let drawn =
+                    Drawn { revision: tables.revision(), altitude_m: observer.altitude_m, mu_s: lamp.toward[2] };
+                let altitude = observer.altitude_m.max(0.0) as f32;
+                let uniform = ObserverUniform { altitude, mu_s: lamp.toward[2] as f32, unused: [0.0; 2], edges };
+                self.device.queue.write_buffer(&self.observers[i], 0, bytes_of(&uniform));
+                self.draw(encoder, tables, i);
+                self.drawn[i] = Some(drawn);
+            }
+        }
+        let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
+        let mut view = ViewUniform {
+            air,
+            dims: DimsUniform::of(&self.settings),
+            edges: EdgesUniform::of(&air, altitude_m),
+            altitude: altitude_m as f32,
+            lamp_count: lamps.len() as u32,
+            refraction: observer.refraction as f32,
+            march_cells: self.settings.march_cells,
+            lamps: [LampUniform::zeroed(); LAMPS],
+        };
+        for (i, lamp) in lamps.iter().enumerate() {
+            view.lamps[i] = lamp.uniform(&planet, LAYERS * i as u32);
+        }
+        if view != self.written {
+            self.device.queue.write_buffer(&self.view, 0, bytes_of(&view));
+            self.written = view;
+        }
+        Ok(!kept)
+    }
+
+    /// Whether lamp `i`'s tables still serve.
+    fn is_current(&self, i: usize, tables: &SkyTables, observer: &Observer, lamp: &Lamp) -> bool {
+        let Some(drawn) = self.drawn[i] else { return false };
+        let (altitude_m, mu_s) = (observer.altitude_m, lamp.toward[2]);
+        if drawn.revision != tables.revision() {
+            return false;
+        }
+        if observer.exact {
+            return drawn.altitude_m == altitude_m && drawn.mu_s == mu_s;
+        }
+        (drawn.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (drawn.mu_s - mu_s).abs() <= 2e-5
+    }
+
+    /// Draws lamp `i`'s tables; while an air fades into another, both, one over the other.
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tables: &SkyTables, i: usize) {
+        if self.settings.model == SkyModel::BruteForce {
+            return;
+        }
+        let (shown, next) = (tables.shown_index(), tables.fade());
+        for (pass, target) in [(&self.sky_pass, &self.sky), (&self.air_pass, &self.air)] {
+            let layer = |k: usize| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view: &target.layers[LAYERS as usize * i + k],
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            };
+            let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("sky of an observer"),
+                color_attachments: &[layer(0), layer(1)],
+                ..Default::default()
+            });
+            recorded.set_pipeline(&pass.0[0]);
+            recorded.set_bind_group(0, &self.planet_groups[shown], &[]);
+            recorded.set_bind_group(1, &self.observer_groups[i], &[]);
+            recorded.draw(0..3, 0..1);
+            if let Some(t) = next {
+                let t = f64::from(t);
+                recorded.set_pipeline(&pass.0[1]);
+                recorded.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
+                recorded.set_bind_group(0, &self.planet_groups[1 - shown], &[]);
+                recorded.draw(0..3, 0..1);
+            }
+        }
+    }
+}
+
+fn planet_group(device: &Device, layout: &wgpu::BindGroupLayout, builder: &Builder, set: &TableSet) -> wgpu::BindGroup {
+    let view = |name| tex(&set.result(name).view);
+    let sampler = wgpu::BindingResource::Sampler(&builder.sampler);
+    let (air, dims) = (set.air.as_entire_binding(), builder.dims.as_entire_binding());
+    bind(device, layout, &[air, dims, view(Name::Sources), sampler, view(Name::OnceGas), view(Name::OnceHaze)])
+}
+
+fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGroupLayout]) -> Result<Pair> {
+    let over = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Constant,
+        dst_factor: wgpu::BlendFactor::OneMinusConstant,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let make = |blend| {
+        let target = wgpu::ColorTargetState { format: TABLE_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL };
+        let desc = FullscreenDesc {
+            shader: "sky/observer.wgsl",
+            entry,
+            layouts,
+            targets: &[target.clone(), target],
+            constants: &[("DIRECTIONAL", f64::from(u8::from(s.model.is_directional())))],
+            samples: 1,
+        };
+        fullscreen(device, &desc)
+    };
+    Ok(Pair([make(None)?, make(Some(wgpu::BlendState { color: over, alpha: over }))?]))
+}

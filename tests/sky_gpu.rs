@@ -1,0 +1,125 @@
+//! The drawn sky against published numbers and against the reference in f64.
+
+use welkin::gpu::{Device, DeviceOptions};
+use welkin::sky::probe::{Probe, Question, Ray};
+use welkin::sky::{Planet, SkyModel, SkySettings};
+
+fn golden_planet() -> Planet {
+    Planet::from_toml(include_str!("../examples/data/planet_golden.toml")).unwrap()
+}
+
+fn probe(model: SkyModel, planet: &Planet) -> Probe {
+    let device = Device::headless(&DeviceOptions::default()).unwrap();
+    Probe::new(&device, &SkySettings::with_model(model), planet).unwrap()
+}
+
+/// Sun's and view's zenith angles in degrees, azimuth 0, observer 1 m up, and the radiance of Bruneton's reference.
+const GOLDEN: [(f64, f64, [f32; 3]); 5] = [
+    (60.0, 0.0, [2.0240e-2, 1.1083e-2, 6.4186e-3]),
+    (60.0, 85.0, [0.11143, 0.09987, 0.07861]),
+    (80.0, 85.0, [0.09454, 0.14420, 0.16550]),
+    (90.0, 0.0, [2.039e-3, 1.934e-3, 1.723e-3]),
+    (95.0, 0.0, [4.45e-5, 4.48e-5, 4.35e-5]),
+];
+
+/// Largest relative error to the golden table with the sun up, and with it at 95 degrees.
+fn golden_errors(model: SkyModel) -> (f32, f32) {
+    let mut probe = probe(model, &golden_planet());
+    let mut worst = (0.0f32, 0.0f32);
+    for (sun, view, expected) in GOLDEN {
+        let ray = Ray::at(f64::to_radians(view), 0.0, 0.0);
+        let a = probe.under_sun(Question::Sky, 1.0, f64::to_radians(sun), &[ray]).unwrap()[0];
+        let off: Vec<f32> = (0..3).map(|i| a.radiance[i] / expected[i] - 1.0).collect();
+        println!("{model:?} sun {sun} view {view}: {:?} {off:.4?}", a.radiance);
+        let largest = off.iter().fold(0.0f32, |m, e| m.max(e.abs()));
+        let slot = if sun > 90.0 { &mut worst.1 } else { &mut worst.0 };
+        *slot = slot.max(largest);
+    }
+    worst
+}
+
+#[test]
+fn default_model_meets_the_golden_table() {
+    let (day, twilight) = golden_errors(SkyModel::Directional);
+    assert!(day < 0.03 && twilight < 0.1, "{day} {twilight}");
+}
+
+#[test]
+fn isotropic_model_shows_its_known_error() {
+    let (day, _) = golden_errors(SkyModel::IsotropicTables);
+    assert!(day > 0.025 && day < 0.08, "{day}");
+}
+
+#[test]
+fn source_systems_table_lacks_what_is_scattered_twice() {
+    let (day, _) = golden_errors(SkyModel::Table3d);
+    assert!(day > 0.2 && day < 0.6, "{day}");
+}
+
+#[test]
+fn brute_force_meets_the_golden_table() {
+    let (day, twilight) = golden_errors(SkyModel::BruteForce);
+    assert!(day < 0.03 && twilight < 0.1, "{day} {twilight}");
+}
+
+#[test]
+fn transmittance_is_that_of_direct_quadrature() {
+    let mut probe = probe(SkyModel::Table3d, &golden_planet());
+    let ray = Ray::at(f64::to_radians(85.0), 1.0, 0.0);
+    let t = probe.under_sun(Question::Sky, 1.0, 1.0, &[ray]).unwrap()[0].transmittance;
+    for (a, b) in t.iter().zip([0.06437, 0.23805, 0.43356]) {
+        assert!((a / b - 1.0).abs() < 5e-4, "{t:?}");
+    }
+}
+
+/// Directions over the whole sphere that stand for equal solid angles, dense enough to sum a sky.
+fn sphere() -> Vec<Ray> {
+    let n = 48;
+    let mut rays = Vec::new();
+    for i in 0..2 * n {
+        for j in 0..n {
+            let mu: f64 = (f64::from(i) + 0.5) / f64::from(n) - 1.0;
+            rays.push(Ray::at(mu.acos(), (f64::from(j) + 0.5) * std::f64::consts::TAU / f64::from(n), 0.0));
+        }
+    }
+    rays
+}
+
+#[test]
+fn light_for_the_host_is_the_light_that_is_drawn() {
+    let planet = golden_planet();
+    let mut probe = probe(SkyModel::Directional, &planet);
+    let light = probe.tables().read_light().unwrap();
+    let rays = sphere();
+    let share = 4.0 * std::f32::consts::PI / rays.len() as f32;
+    for (altitude, sun) in [(0.0, 0.3), (2000.0, 1.2), (12_000.0, 1.5), (0.0, 1.6)] {
+        let drawn = probe.under_sun(Question::Irradiance, altitude, sun, &rays[..1]).unwrap()[0].transmittance;
+        let known = light.irradiance(altitude, sun.cos());
+        let sh = light.sh9(altitude, [sun.sin(), 0.0, sun.cos()]);
+        let turned = light.sh9(altitude, [0.0, sun.sin(), sun.cos()]);
+        // The same by adding up the sky and the ground that are drawn.
+        let sky = probe.under_sun(Question::Sky, altitude, sun, &rays).unwrap();
+        let ground = probe.under_sun(Question::Ground, altitude, sun, &rays).unwrap();
+        for (c, known) in known.iter().enumerate() {
+            let sum = |f: &dyn Fn([f32; 3]) -> f32| -> f32 {
+                let seen = rays.iter().zip(sky.iter().zip(&ground));
+                seen.map(|(r, (a, b))| f(r.direction.map(|v| v as f32)) * (a.radiance[c] + b.radiance[c])).sum::<f32>()
+                    * share
+            };
+            let level = sum(&|d| d[2].max(0.0));
+            assert!((known / drawn[c] - 1.0).abs() < 0.01, "{altitude} {sun}: {known} {}", drawn[c]);
+            assert!((level / drawn[c] - 1.0).abs() < 0.03, "{altitude} {sun}: {level} {}", drawn[c]);
+            for (i, own) in [
+                (0, sum(&|_| 0.282_094_8)),
+                (2, sum(&|d| 0.488_602_5 * d[2])),
+                (3, sum(&|d| 0.488_602_5 * d[0])),
+                (6, sum(&|d| 0.315_391_6 * (3.0 * d[2] * d[2] - 1.0))),
+                (7, sum(&|d| 1.092_548_4 * d[0] * d[2])),
+                (8, sum(&|d| 0.546_274_2 * (d[0] * d[0] - d[1] * d[1]))),
+            ] {
+                assert!((own - sh[i][c]).abs() < 0.03 * sh[0][c], "{altitude} {sun} {i}: {own} {}", sh[i][c]);
+            }
+            assert!((turned[1][c] - sh[3][c]).abs() < 1e-6 && (turned[8][c] + sh[8][c]).abs() < 1e-6);
+        }
+    }
+}
