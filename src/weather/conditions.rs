@@ -1,5 +1,7 @@
 //! `Conditions`: what every effect reads. Plain numbers that follow from a [`super::Weather`], each continuous in time.
 
+use serde::{Deserialize, Serialize};
+
 use super::model::MAX_CLOUD_LAYERS;
 
 /// ln 20: extinction times the distance at which contrast falls to 5 % (Koschmieder 1924 with the WMO threshold).
@@ -10,7 +12,7 @@ pub const LN_20: f64 = 2.995_732_273_553_991;
 /// Made by [`super::derive`] or [`super::Timeline::at`]. No field is a kind: what a report names by words is a quantity here,
 /// so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the station unless they say otherwise;
 /// extinctions are at 550 nm. Plain data, any thread.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Total extinction at station height, 1/m: air, aerosol, fog, what falls and what the wind lifts.
     /// Excludes a shallow or patchy fog that the reported visibility looks over or past.
@@ -38,7 +40,7 @@ pub struct Conditions {
 }
 
 /// Clear air.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Air {
     /// Temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,
@@ -60,7 +62,7 @@ pub struct Air {
 }
 
 /// Particles whose density falls as exp(-height / `scale_height_m`).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AerosolLayer {
     /// Extinction at 550 nm and station height, 1/m.
     pub extinction_per_m: f64,
@@ -81,7 +83,7 @@ pub struct AerosolLayer {
 /// A layer at the ground: full below `top_m - softness_m`, nothing above `top_m`, smooth between.
 ///
 /// Where `extinction_per_m` is 0 there is no layer and the other fields mean nothing.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FogLayer {
     /// Extinction inside the layer at 550 nm, 1/m.
     pub extinction_per_m: f64,
@@ -104,7 +106,7 @@ pub struct FogLayer {
 }
 
 /// What falls, as rates of liquid water at the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Falling {
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -127,7 +129,7 @@ pub struct Falling {
 }
 
 /// A horizontally mixed layer of cloud.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CloudSlab {
     /// Part of the sky covered, 0 to 1; 0 means that there is no such layer.
     pub cover: f64,
@@ -148,7 +150,7 @@ pub struct CloudSlab {
 }
 
 /// The host's own cloud light. `weight` 0: the slabs decide; 1: these figures do.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct CloudLightOverride {
     /// How much the override counts, 0 to 1.
     pub weight: f64,
@@ -159,7 +161,7 @@ pub struct CloudLightOverride {
 }
 
 /// Mean wind as a neutral logarithmic profile over height.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindProfile {
     /// Velocity at 10 m towards the east, m/s (where the air goes, not where it comes from).
     pub east_m_s: f64,
@@ -178,7 +180,7 @@ pub struct WindProfile {
 }
 
 /// The sea's surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeaState {
     /// Significant height of the wind sea, m.
     pub significant_wave_height_m: f64,
@@ -195,7 +197,7 @@ pub struct SeaState {
 }
 
 /// What weather has done to the ground, where no simulation says it better.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceCover {
     /// 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,

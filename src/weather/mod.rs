@@ -7,6 +7,7 @@ mod blend;
 mod conditions;
 mod kinds;
 mod model;
+pub mod timeline;
 mod validate;
 
 pub use conditions::{
@@ -18,3 +19,4 @@ pub use model::{
     Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,
 };
+pub use timeline::Timeline;

@@ -1,0 +1,225 @@
+//! The weather over time: changes with absolute starts, laid over each other without a jump in value or in rate.
+
+use serde::{Deserialize, Serialize};
+
+use super::Conditions;
+use crate::error::{Error, Result, Status, check_range};
+
+/// Longest transition, s: a year.
+const MAX_TRANSITION_S: f64 = 3.2e7;
+/// Latest and earliest simulation time, s.
+const MAX_TIME_S: f64 = 1e12;
+/// Number that begins a saved timeline; grows when its form changes.
+const VERSION: u32 = 1;
+/// Most changes that are under way or to come.
+const MAX_CHANGES: usize = 1024;
+
+/// One change: towards `to`, from `start_s` on, for `transition_s`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Change {
+    start_s: f64,
+    transition_s: f64,
+    to: Conditions,
+}
+
+impl Change {
+    /// Share of the change that has happened at `t`: 3x^2 - 2x^3, at rest at both ends.
+    fn share(&self, t: f64) -> f64 {
+        if t >= self.start_s + self.transition_s {
+            return 1.0;
+        }
+        let x = ((t - self.start_s) / self.transition_s).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+/// Conditions as a function of simulation time. Two timelines that were told the same give the same bits on every
+/// machine (nothing but + - * / and `libm`).
+///
+/// A change that begins while another is under way is laid over it: the older one goes on below while the newer one
+/// takes over, so neither the weather nor its rate of change jumps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Timeline {
+    version: u32,
+    /// Time of the last advance; nothing may be changed before it.
+    now_s: f64,
+    base: Conditions,
+    #[serde(default)]
+    changes: Vec<Change>,
+}
+
+impl Timeline {
+    /// `base` for ever.
+    pub fn new(base: Conditions) -> Self {
+        Self { version: VERSION, now_s: -MAX_TIME_S, base, changes: Vec::new() }
+    }
+
+    /// Changes to `to`, beginning at simulation time `start_s` (\[-1e12, 1e12\] s) and lasting `transition_s`
+    /// (\[0, 3.2e7\] s; 0 is a cut).
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] by name; [`Status::WrongOrder`] if it begins before the last update or before a
+    /// change that was given earlier. The timeline stays as it was.
+    pub fn change(&mut self, to: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
+        check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
+        let earliest = self.changes.last().map_or(self.now_s, |c| c.start_s.max(self.now_s));
+        if start_s < earliest {
+            return Err(Error::new(
+                Status::WrongOrder,
+                format!("start_time_s must not lie before the last update or change at {earliest} s, got {start_s}"),
+            ));
+        }
+        // Of two changes that begin together with a cut, the later call counts; the earlier one never shows.
+        if self.changes.len() >= MAX_CHANGES {
+            return Err(Error::range("changes", &format!("at most {MAX_CHANGES} under way or to come"), "one more"));
+        }
+        self.changes.push(Change { start_s, transition_s, to });
+        Ok(())
+    }
+
+    /// The conditions at simulation time `t`. Before the time of the last [`advance`](Self::advance) history may be
+    /// forgotten: the answer is then that of the oldest moment still known.
+    pub fn at(&self, t: f64) -> Conditions {
+        let started = self.changes.iter().take_while(|c| c.start_s <= t);
+        started.fold(self.base, |below, change| match change.share(t) {
+            share if share >= 1.0 => change.to,
+            share => below.lerp(&change.to, share),
+        })
+    }
+
+    /// Whether the conditions at two times may differ.
+    pub fn changes_between(&self, a: f64, b: f64) -> bool {
+        let (a, b) = (a.min(b), a.max(b));
+        self.changes.iter().any(|c| c.start_s <= b && c.start_s + c.transition_s >= a)
+    }
+
+    /// Moves the present to `now_s` and forgets what has ended before it. Earlier times do nothing.
+    pub fn advance(&mut self, now_s: f64) {
+        self.now_s = self.now_s.max(now_s);
+        if let Some(ended) =
+            self.changes.iter().rposition(|c| c.start_s + c.transition_s <= now_s && c.start_s <= now_s)
+        {
+            self.base = self.changes[ended].to;
+            self.changes.drain(..=ended);
+        }
+    }
+
+    /// The timeline as text (TOML), for [`Timeline::load`]; numbers come back bit for bit.
+    ///
+    /// # Errors
+    /// [`Status::Internal`] if a number cannot be written.
+    pub fn save(&self) -> Result<String> {
+        toml::to_string(self).map_err(|e| Error::new(Status::Internal, format!("the timeline cannot be written: {e}")))
+    }
+
+    /// A timeline from the text of [`Timeline::save`].
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for text of another version, cut short or changed.
+    pub fn load(text: &str) -> Result<Self> {
+        let parse = |e: &dyn std::fmt::Display| Error::new(Status::Parse, format!("saved timeline: {e}"));
+        #[derive(Deserialize)]
+        struct Head {
+            version: u32,
+        }
+        let head: Head = toml::from_str(text).map_err(|e| parse(&e))?;
+        if head.version != VERSION {
+            return Err(parse(&format!("version must be {VERSION}, got {}", head.version)));
+        }
+        let timeline: Self = toml::from_str(text).map_err(|e| parse(&e))?;
+        if let Some(line) = text.lines().position(|l| l.ends_with("nan") || l.ends_with("inf")) {
+            return Err(parse(&format!("line {}: numbers must be finite", line + 1)));
+        }
+        let ordered = timeline.changes.windows(2).all(|w| w[0].start_s <= w[1].start_s);
+        let finite = timeline
+            .changes
+            .iter()
+            .all(|c| c.start_s.is_finite() && (0.0..=MAX_TRANSITION_S).contains(&c.transition_s));
+        if !ordered || !finite || timeline.changes.len() > MAX_CHANGES {
+            return Err(parse(&"changes must be finite, in order of their starts, and no more than 1024"));
+        }
+        Ok(timeline)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Weather, derive};
+    use super::*;
+
+    fn clear_and_fog() -> (Conditions, Conditions) {
+        let clear = Weather { visibility_m: 10_000.0, ..Weather::default() };
+        let fog = Weather { visibility_m: 150.0, ..Weather::default() };
+        (derive(&clear).unwrap(), derive(&fog).unwrap())
+    }
+
+    #[test]
+    fn a_change_is_monotone_without_jumps_and_even_to_the_eye() {
+        let (clear, fog) = clear_and_fog();
+        let mut timeline = Timeline::new(clear);
+        timeline.change(fog, 100.0, 600.0).unwrap();
+        assert_eq!((timeline.at(100.0), timeline.at(700.0)), (clear, fog));
+        let seen = |i: u32| timeline.at(100.0 + f64::from(i)).visibility_m().ln();
+        let whole = seen(600) - seen(0);
+        let mut steepest = 0.0f64;
+        for i in 0..600 {
+            let step = (seen(i + 1) - seen(i)) / whole;
+            assert!(step >= 0.0, "{i}: visibility turned back");
+            steepest = steepest.max(step * 600.0);
+        }
+        assert!(steepest < 1.6, "the fastest second is 1.5 times the mean one, as smoothstep says: {steepest}");
+    }
+
+    #[test]
+    fn an_interrupting_change_jumps_neither_in_value_nor_in_rate() {
+        let (clear, fog) = clear_and_fog();
+        let mut timeline = Timeline::new(clear);
+        timeline.change(fog, 0.0, 100.0).unwrap();
+        timeline.change(clear, 50.0, 100.0).unwrap();
+        let f = |t: f64| timeline.at(t).extinction_per_m;
+        let h = 1e-3;
+        let (before, after) = ((f(50.0) - f(50.0 - h)) / h, (f(50.0 + h) - f(50.0)) / h);
+        assert!(before > 1e-6 && (after / before - 1.0).abs() < 1e-2, "{before} {after}");
+        assert_eq!(timeline.at(151.0), clear);
+    }
+
+    #[test]
+    fn what_is_past_cannot_be_changed_and_what_has_ended_is_forgotten() {
+        let (clear, fog) = clear_and_fog();
+        let mut timeline = Timeline::new(clear);
+        timeline.change(fog, 10.0, 5.0).unwrap();
+        let ahead = timeline.at(20.0);
+        timeline.advance(20.0);
+        assert_eq!(timeline.at(20.0), ahead);
+        assert!(timeline.changes.is_empty() && !timeline.changes_between(20.0, 30.0));
+        for (start, transition, name) in [(19.0, 0.0, "start_time_s"), (f64::NAN, 0.0, "start_time_s"), (30.0, -1.0, "transition_s")] {
+            let e = timeline.change(clear, start, transition).unwrap_err();
+            assert!(e.message.contains(name), "{e}");
+            assert_eq!(e.status == Status::WrongOrder, start == 19.0);
+        }
+        timeline.change(clear, 30.0, 0.0).unwrap();
+        assert_eq!((timeline.at(29.999), timeline.at(30.0)), (fog, clear));
+    }
+
+    #[test]
+    fn a_saved_timeline_goes_on_bit_for_bit_and_damage_is_refused() {
+        let (clear, fog) = clear_and_fog();
+        let mut timeline = Timeline::new(clear);
+        timeline.change(fog, 0.1, 60.0).unwrap();
+        timeline.advance(7.3);
+        let text = timeline.save().unwrap();
+        let again = Timeline::load(&text).unwrap();
+        assert_eq!(again, timeline);
+        assert_eq!(again.at(33.3), timeline.at(33.3));
+        let other = text.replacen("version = 1", "version = 2", 1);
+        assert!(Timeline::load(&other).unwrap_err().message.contains("version must be 1"));
+        for cut in [0, 10, text.len() / 2, text.len() - 30] {
+            assert_eq!(Timeline::load(&text[..cut]).unwrap_err().status, Status::Parse, "cut at {cut}");
+        }
+        let broken = text.replacen("transition_s = 60.0", "transition_s = nan", 1);
+        assert!(Timeline::load(&broken).unwrap_err().message.contains("finite"));
+    }
+}
