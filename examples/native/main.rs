@@ -135,25 +135,12 @@ impl Host {
 
     /// Draws the host's own world, lit by what Welkin's query says of sun and sky.
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, camera: &Camera, scene: &Scene, world: Option<&wgpu::Buffer>) {
+        let pad = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
         let block = HostUniform {
             view_projection: (camera.projection * camera.view).as_mat4(),
-            sun: scene.sun.direction.as_vec3().extend(0.0).to_array(),
-            sun_light: scene
-                .sun_ground_lux
-                .map(|v| v as f32)
-                .into_iter()
-                .chain([0.0])
-                .collect::<Vec<_>>()
-                .try_into()
-                .unwrap_or_default(),
-            sky_light: scene
-                .sky_ground_lux
-                .map(|v| v as f32)
-                .into_iter()
-                .chain([0.0])
-                .collect::<Vec<_>>()
-                .try_into()
-                .unwrap_or_default(),
+            sun: pad(scene.sun.direction.to_array()),
+            sun_light: pad(scene.ground.sun_lux),
+            sky_light: pad(scene.ground.sky_lux),
         };
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         let (color, depth) = (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
@@ -199,7 +186,7 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let mut view = View::new(&context)?;
     let vertices = shot.above_ground.then(|| host.vertices(eye));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
-    host.draw(&mut encoder, &camera, &context.scene_at(eye), vertices.as_ref());
+    host.draw(&mut encoder, &camera, &context.scene_at(eye)?, vertices.as_ref());
     let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;

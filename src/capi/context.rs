@@ -223,7 +223,7 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
         WK_TONE_FILMIC => ToneCurve::Filmic,
         _ => ToneCurve::Exponential,
     };
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone })
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, ..ContextDesc::default() })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for

@@ -1,22 +1,30 @@
 //! A context: the weather, the time and the place that all views of a simulator share.
 //!
-//! Everything here is a function of (timeline, time, position): two contexts with the same timeline, seed and time
+//! Everything here is a function of (description, timeline, time, position): two contexts that were told the same
 //! answer alike on every machine. The queries need no device and no frame.
 
+mod air;
+mod lights;
 mod scene;
+mod state;
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
-pub use scene::{Light, Scene};
+pub use lights::Light;
+pub use scene::{GroundLight, Scene};
 
 use crate::{
-    error::{Result, check_range},
+    error::{Error, Result, Status, check_range},
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
     scene::WorldFrame,
-    sky::Planet,
+    sky::{
+        Planet,
+        sun::{Utc, direction},
+    },
+    weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
 };
 
 /// How to make a context.
@@ -32,6 +40,8 @@ pub struct ContextDesc {
     pub exposure: Exposure,
     /// From luminance to the display.
     pub tone: ToneCurve,
+    /// Universal time at simulation time 0. Default 2026-06-21 10:00 UTC.
+    pub utc_at_zero: Utc,
 }
 
 impl Default for ContextDesc {
@@ -42,6 +52,7 @@ impl Default for ContextDesc {
             seed: 0,
             exposure: Exposure::default(),
             tone: ToneCurve::default(),
+            utc_at_zero: Utc(1_782_036_000.0),
         }
     }
 }
@@ -62,31 +73,38 @@ impl GivenDirection {
     }
 
     fn unit(&self) -> DVec3 {
-        let (sa, ca) = self.azimuth_deg.to_radians().sin_cos();
-        let (se, ce) = self.elevation_deg.to_radians().sin_cos();
-        DVec3::new(sa * ce, ca * ce, se)
+        direction(self.azimuth_deg, self.elevation_deg)
     }
 }
 
+/// Largest distance of simulation time from 0, s.
+const MAX_TIME_S: f64 = 1e10;
+
 /// The weather, the time and the place that all views of a simulator share.
+///
+/// Thread rule: `&Context` from any number of threads, `&mut Context` exclusive.
 pub struct Context {
     device: Arc<Device>,
     shared: Arc<Shared>,
     desc: ContextDesc,
+    timeline: Timeline,
     given_sun: Option<GivenDirection>,
+    given_moon: Option<GivenDirection>,
     time_s: f64,
 }
 
 impl Context {
-    /// Makes a context on `device`. Contexts of one device share `shared`.
+    /// Makes a context on `device`, with the default weather, at time 0. Contexts of one device share `shared`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field of `desc`.
+    /// [`Status::InvalidArgument`] naming the field of `desc`.
     pub fn new(device: Arc<Device>, shared: Arc<Shared>, desc: ContextDesc) -> Result<Self> {
         desc.world.validate()?;
         desc.planet.check()?;
         desc.exposure.validate()?;
-        Ok(Self { device, shared, desc, given_sun: None, time_s: 0.0 })
+        crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
+        let timeline = Timeline::new(derive(&Weather::default())?);
+        Ok(Self { device, shared, desc, timeline, given_sun: None, given_moon: None, time_s: 0.0 })
     }
 
     /// The device it was made on.
@@ -99,9 +117,24 @@ impl Context {
         &self.shared
     }
 
+    /// Where the host's world lies.
+    pub fn world(&self) -> &WorldFrame {
+        &self.desc.world
+    }
+
     /// Exposure of frames that bring none.
     pub fn exposure(&self) -> Exposure {
         self.desc.exposure
+    }
+
+    /// Sets the exposure of frames that bring none.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field.
+    pub fn set_exposure(&mut self, exposure: Exposure) -> Result<()> {
+        exposure.validate()?;
+        self.desc.exposure = exposure;
+        Ok(())
     }
 
     /// From luminance to the display.
@@ -109,20 +142,93 @@ impl Context {
         self.desc.tone
     }
 
+    /// Changes the weather, beginning at simulation time `start_s` and lasting `transition_s`; see
+    /// [`Timeline::change`].
+    ///
+    /// # Errors
+    /// As [`derive`] and [`Timeline::change`]; the weather stays as it was.
+    pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
+        self.timeline.change(derive(weather)?, start_s, transition_s)
+    }
+
+    /// As [`Context::set_weather`], with the host's own figures in place of some couplings.
+    ///
+    /// # Errors
+    /// As [`derive_with`] and [`Timeline::change`]; the weather stays as it was.
+    pub fn set_weather_with(
+        &mut self,
+        weather: &Weather,
+        overrides: &Overrides,
+        start_s: f64,
+        transition_s: f64,
+    ) -> Result<()> {
+        self.timeline.change(derive_with(weather, overrides)?, start_s, transition_s)
+    }
+
+    /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] for times out of range.
+    pub fn set_clock(&mut self, utc: Utc, at_s: f64) -> Result<()> {
+        check_range("time_s", at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let zero = Utc(utc.0 - at_s);
+        crate::sky::sun::sun_position(zero, &self.desc.world.origin)?;
+        self.desc.utc_at_zero = zero;
+        Ok(())
+    }
+
     /// Puts the sun where the host says; `None` returns it to the almanac.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the angle.
+    /// [`Status::InvalidArgument`] naming the angle.
     pub fn set_sun(&mut self, sun: Option<GivenDirection>) -> Result<()> {
-        if let Some(sun) = &sun {
-            sun.validate("sun")?;
-        }
+        sun.map_or(Ok(()), |s| s.validate("sun"))?;
         self.given_sun = sun;
+        Ok(())
+    }
+
+    /// Puts the moon where the host says (its phase follows from the sun's place); `None` returns it to the almanac.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the angle.
+    pub fn set_moon(&mut self, moon: Option<GivenDirection>) -> Result<()> {
+        moon.map_or(Ok(()), |m| m.validate("moon"))?;
+        self.given_moon = moon;
+        Ok(())
+    }
+
+    /// Moves simulation time to `time_s`, [-1e10, 1e10]. The same time again changes nothing.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] if it is not finite or out of range, [`Status::WrongOrder`] if it lies before the
+    /// present; the state stays as it was.
+    pub fn update(&mut self, time_s: f64) -> Result<()> {
+        check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        if time_s < self.time_s {
+            let now = self.time_s;
+            return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
+        }
+        self.time_s = time_s;
+        self.timeline.advance(time_s);
         Ok(())
     }
 
     /// Simulation time, s.
     pub fn time_s(&self) -> f64 {
         self.time_s
+    }
+
+    /// Universal time at simulation time `time_s`.
+    pub fn utc_at(&self, time_s: f64) -> Utc {
+        Utc(self.desc.utc_at_zero.0 + time_s)
+    }
+
+    /// The weather's conditions at simulation time `time_s`; what was before the last update may be forgotten.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] if the time is not finite or out of range.
+    pub fn conditions_at(&self, time_s: f64) -> Result<Conditions> {
+        check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        Ok(self.timeline.at(time_s))
     }
 }

@@ -1,31 +1,28 @@
-//! What a camera's place and the present moment come to: lights, air and what the frame needs of them.
+//! What a camera's place and the present moment come to: lights, air, clouds overhead, and the light on the ground.
+
+use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::Context;
-use crate::scene::Place;
+use super::{Context, Light, air::planet_under};
+use crate::{
+    error::Result,
+    scene::Place,
+    sky::Planet,
+    weather::{Conditions, slab_reflectance},
+};
 
-/// The sun or the moon as it stands over a place.
+/// Light that falls on level ground at a place, lux a channel of linear Rec. 709.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
-    /// Towards it, local east-north-up, without refraction: what scattering sees.
-    pub direction: DVec3,
-    /// Towards it as it appears, lifted by refraction.
-    pub apparent: DVec3,
-    /// Towards where the bright limb points.
-    pub bright_limb: DVec3,
-    /// Angular radius, rad.
-    pub angular_radius: f64,
-    /// Lit part of the face.
-    pub lit: f64,
-    /// Illuminance above the air on a surface facing it, lux a channel.
-    pub illuminance_lux: [f64; 3],
-    /// Vertical over horizontal diameter.
-    pub flattening: f64,
-    /// Share of direct light that clouds let through.
-    pub direct_share: f64,
-    /// Whether it adds anything to the picture.
-    pub matters: bool,
+pub struct GroundLight {
+    /// Direct sun on a surface that faces it, after air and clouds.
+    pub sun_lux: [f64; 3],
+    /// Direct moon on a surface that faces it.
+    pub moon_lux: [f64; 3],
+    /// Sky and clouds on level ground.
+    pub sky_lux: [f64; 3],
+    /// Everything on level ground as a luminance-weighted sum, lux.
+    pub total_lux: f64,
 }
 
 /// Everything a view draws from, at one camera position and time.
@@ -35,54 +32,213 @@ pub struct Scene {
     pub place: Place,
     /// Host axes to local east-north-up.
     pub world_to_enu: DMat3,
+    /// Place on the map, m east and north of the world's origin.
+    pub map_m: [f64; 2],
+    /// The weather there.
+    pub conditions: Conditions,
+    /// The planet's air under that weather.
+    pub planet: Planet,
     /// The sun.
     pub sun: Light,
     /// The moon.
     pub moon: Light,
+    /// Light on the ground.
+    pub ground: GroundLight,
     /// Airglow and starlight, cd/m^2 a channel.
     pub night_floor_cd_m2: [f64; 3],
     /// Zenith luminance of the cloud deck's underside, cd/m^2 a channel.
     pub deck_cd_m2: [f64; 3],
     /// Share of the sky that the deck hides.
     pub deck_cover: f64,
-    /// Share of the clear sky's light that the air below a deck scatters.
+    /// Share of the clear sky's light that the air below the clouds scatters.
     pub medium_share: f64,
-    /// Illuminance on level ground, lux.
-    pub ground_illuminance_lux: f64,
-    /// Direct sun at the place on a surface facing it, lux a channel.
-    pub sun_ground_lux: [f64; 3],
-    /// The sky's light on level ground, lux a channel.
-    pub sky_ground_lux: [f64; 3],
+}
+
+/// Luminance of a moonless night sky near the zenith, cd/m^2: 21.9 mag/arcsec^2, airglow and unresolved stars (Leinert
+/// et al. 1998), and its colour.
+const NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
+/// Illuminance of a moonless, starlit sky on level ground, lux (Leinert et al. 1998, integrated).
+const NIGHT_LUX: f64 = 8e-4;
+/// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to the
+/// Astronomical Almanac 1992, table 8.1, night included at -18).
+const TWILIGHT_LN_LUX: [(f64, f64); 6] =
+    [(-18.0, -7.34), (-15.0, -6.3), (-12.0, -4.82), (-9.0, -1.9), (-6.0, 1.227), (-0.8, 6.116)];
+/// Colour of twilight's light in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
+const TWILIGHT_COLOR: [f64; 3] = [0.83, 1.0, 1.5];
+
+fn luminance(rgb: [f64; 3]) -> f64 {
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| f(a[i], b[i]))
+}
+
+fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
+    let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Optical depths above `altitude_m` straight up, per wavelength: of what scatters (gas, haze), and of ozone.
+fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
+    let h = altitude_m.max(0.0);
+    let column = |scale: f64| if scale > 0.0 { scale * (-h / scale).exp() } else { 0.0 };
+    let (gas, haze) = (column(planet.rayleigh.scale_height_m), column(planet.mie.scale_height_m));
+    let tent = &planet.absorption;
+    let above = smooth(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
+    let scattering =
+        [0, 1, 2].map(|i| planet.rayleigh.scattering_per_m[i] * gas + planet.mie.extinction_per_m[i] * haze);
+    (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
+}
+
+/// Relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by its tangent's square.
+fn air_mass(elevation_deg: f64) -> f64 {
+    let h = elevation_deg.max(-0.8);
+    1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364)).max(0.02)
+}
+
+/// Light of a source of `lux` above clear air: (direct on a surface facing it, sky on level ground).
+///
+/// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, within 10 % of the
+/// scattering tables' irradiance; below 5 degrees it is led over to measured twilight.
+fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, lux: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let (depth, ozone) = zenith_depths(planet, altitude_m);
+    let mass = air_mass(elevation_deg);
+    let up = smooth(-0.9, -0.25, elevation_deg);
+    let lux = map(lux, ozone, |l, t| l * (-t * mass).exp());
+    let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
+    let mu = elevation_deg.to_radians().sin().max(0.08);
+    let day = map(lux, depth, |l, t| l * mu * (1.0 - slab_reflectance(t, 0.0, mu) - (-t / mu).exp()).max(0.0));
+    let whole = luminance(lux) / luminance(super::lights::SUN_COLOR) / 133_334.0;
+    let (first, last) = (TWILIGHT_LN_LUX[0], TWILIGHT_LN_LUX[5]);
+    let h = elevation_deg.clamp(first.0, last.0);
+    let i = TWILIGHT_LN_LUX.iter().rposition(|p| p.0 <= h).unwrap_or(0).min(4);
+    let (a, b) = (TWILIGHT_LN_LUX[i], TWILIGHT_LN_LUX[i + 1]);
+    let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
+    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * whole);
+    let t = smooth(-0.8, 5.0, elevation_deg);
+    (direct, map(dusk, day, |n, d| n + (d - n) * t))
 }
 
 impl Context {
-    /// What the camera at `position` draws from now.
-    pub fn scene_at(&self, position: DVec3) -> Scene {
+    /// What the camera at `position` draws from now. Closed form: no device is asked.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
+    pub fn scene_at(&self, position: DVec3) -> Result<Scene> {
         let local = self.desc.world.frame_at(position);
-        let direction = self.given_sun.map_or(DVec3::Z, |s| s.unit());
-        let sun = Light {
-            direction,
-            apparent: direction,
-            bright_limb: DVec3::Z,
-            angular_radius: self.desc.planet.sun_angular_radius_deg.to_radians(),
-            lit: 1.0,
-            illuminance_lux: [128e3; 3],
-            flattening: 1.0,
-            direct_share: 1.0,
-            matters: true,
-        };
-        Scene {
+        local.place.validate()?;
+        let conditions = self.timeline.at(self.time_s);
+        let planet = planet_under(&self.desc.planet, &conditions);
+        let (sun, moon) = self.lights_over(&local.place, &conditions)?;
+        let station_m = conditions.air.station_altitude_m;
+        let lowest = conditions.cloud_slabs().map(|s| s.base_m + station_m).fold(f64::INFINITY, f64::min);
+        let below = smooth(0.0, 300.0, lowest + 150.0 - local.place.altitude_m);
+        let ground = self.ground_light(&planet, &local.place, &conditions, &sun, &moon, below);
+        // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
+        let deck_cover = smooth(0.55, 0.95, conditions.cloud_cover()) * below;
+        Ok(Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
+            map_m: self.map_place(position),
+            planet,
             sun,
-            moon: Light { matters: false, illuminance_lux: [0.0; 3], ..sun },
-            night_floor_cd_m2: [2e-4; 3],
-            deck_cd_m2: [0.0; 3],
-            deck_cover: 0.0,
-            medium_share: 1.0,
-            ground_illuminance_lux: 1e5 * direction.z.max(0.0) + 0.01,
-            sun_ground_lux: [1e5; 3],
-            sky_ground_lux: [1.2e4, 1.5e4, 2e4],
+            moon,
+            night_floor_cd_m2: NIGHT_CD_M2,
+            deck_cd_m2: ground.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
+            deck_cover,
+            medium_share: self.medium_share(&conditions, sun.direction.z, below),
+            ground,
+            conditions,
+        })
+    }
+
+    fn map_place(&self, position: DVec3) -> [f64; 2] {
+        let p = self.desc.world.frame_at(position).place;
+        let o = &self.desc.world.origin;
+        match self.desc.world.kind {
+            crate::scene::WorldKind::Flat => {
+                let enu = self.desc.world.frame_at(DVec3::ZERO).world_to_enu * position;
+                [enu.x, enu.y]
+            }
+            _ => {
+                let metres_per_deg = self.desc.planet.bottom_radius_m.to_radians();
+                let east = (p.longitude_deg - o.longitude_deg) * o.latitude_deg.to_radians().cos();
+                [east * metres_per_deg, (p.latitude_deg - o.latitude_deg) * metres_per_deg]
+            }
+        }
+    }
+
+    /// What the clouds leave of the light that the air below them scatters: their total transmission, on the mean.
+    fn medium_share(&self, c: &Conditions, sun_up: f64, below: f64) -> f64 {
+        let left = c.cloud_light(sun_up, 0.2);
+        let share = (left.direct + left.diffuse).clamp(0.0, 1.0);
+        1.0 + (share - 1.0) * below
+    }
+
+    fn ground_light(
+        &self,
+        planet: &Planet,
+        place: &Place,
+        c: &Conditions,
+        sun: &Light,
+        moon: &Light,
+        below: f64,
+    ) -> GroundLight {
+        let one = |light: &Light| {
+            let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
+            let (direct, sky) = clear_light(planet, place.altitude_m, elevation.to_degrees(), light.illuminance_lux);
+            let clouds = c.cloud_light(light.direction.z, 0.2);
+            let share = |v: f64| 1.0 + (v - 1.0) * below;
+            let level = light.direction.z.max(0.0);
+            let from_clouds = clouds.diffuse * below;
+            (
+                direct.map(|d| d * share(clouds.direct)),
+                map(direct, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
+            )
+        };
+        let (sun_lux, sun_sky) = one(sun);
+        let (moon_lux, moon_sky) = one(moon);
+        let floor = NIGHT_CD_M2.map(|v| v / luminance(NIGHT_CD_M2) * NIGHT_LUX);
+        let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + floor[i]);
+        let total_lux = luminance(sky_lux)
+            + luminance(sun_lux) * sun.direction.z.max(0.0)
+            + luminance(moon_lux) * moon.direction.z.max(0.0);
+        GroundLight { sun_lux, moon_lux, sky_lux, total_lux }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lux(elevation_deg: f64) -> f64 {
+        let (direct, sky) =
+            clear_light(&Planet::earth(), 0.0, elevation_deg, super::super::lights::SUN_COLOR.map(|c| c * 133_334.0));
+        luminance(direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(sky)
+    }
+
+    #[test]
+    fn clear_sky_illuminance_follows_the_almanacs() {
+        // Explanatory Supplement 1992, table 8.1 (clear, sea level): elevation, lux.
+        for (h, want) in [(60.0, 102_000.0), (30.0, 52_600.0), (10.0, 10_900.0), (-6.0, 3.41), (-12.0, 8.06e-3)] {
+            let got = lux(h);
+            // The table's air is hazier than the default planet's, which shows most at a low sun.
+            assert!((got / want).ln().abs() < 0.4, "{h}: {got} lux, want {want}");
+        }
+    }
+
+    #[test]
+    fn illuminance_rises_with_the_sun_without_a_jump() {
+        let mut last = lux(-20.0);
+        for i in 1..2200 {
+            let now = lux(-20.0 + 0.05 * f64::from(i));
+            assert!(
+                now >= last * 0.999 && now < (last + 1e-5) * 1.2,
+                "{}: {last} to {now}",
+                -20.0 + 0.05 * f64::from(i)
+            );
+            last = now;
         }
     }
 }

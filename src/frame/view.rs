@@ -139,7 +139,7 @@ impl View {
         self.check_order(frame.frame_id, stages)?;
         let drawn = stages.has(Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::TONE));
         frame.camera.validate()?;
-        let scene = context.scene_at(frame.camera.position);
+        let scene = context.scene_at(frame.camera.position)?;
         let rays = if drawn { Some(self.check_targets(frame, stages, &scene)?) } else { None };
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
@@ -227,7 +227,7 @@ impl View {
             return Ok(());
         }
         self.bind(frame, color)?;
-        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground_illuminance_lux);
+        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.total_lux);
         self.report.exposure = exposure;
         let block = uniform(frame, scene, rays, color, exposure, context, tone);
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));

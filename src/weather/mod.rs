@@ -1,22 +1,35 @@
 //! The weather as the host says it, in SI units, and what follows from it.
 //!
-//! [`Weather`] is what a host or a report states; [`Conditions`] is what every effect reads. Transcendental functions here
-//! come from `libm` (pure Rust), never from the platform: the same weather and time then give the same bits on every machine.
+//! [`Weather`] is what a host or a report states; [`derive`] makes of it [`Conditions`], which every effect reads.
+//! Transcendental functions here come from `libm` (pure Rust), never from the platform: the same weather and time then give
+//! the same bits on every machine.
 
+pub mod air;
 mod blend;
+mod cloud_light;
 mod conditions;
+mod derive;
+pub mod hydrometeors;
 mod kinds;
 mod model;
+mod particles;
+mod surface;
 pub mod timeline;
 mod validate;
 
+pub use cloud_light::{
+    CloudLight, cloud_optical_depth, slab_diffuse_reflectance, slab_reflectance, water_path_for_rate_kg_m2,
+};
 pub use conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, FogLayer, LN_20, SeaState, SurfaceCover,
     WindProfile,
 };
+pub use derive::{Overrides, derive, derive_with};
 pub use kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 pub use model::{
     Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,
 };
+pub use particles::{humidity_growth, unlimited_visibility_m};
+pub use surface::{fully_developed_wave_height_m, sea_roughness_length_m, wave_height_of_state_m, wetness_from_rain};
 pub use timeline::Timeline;

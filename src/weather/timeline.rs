@@ -195,7 +195,9 @@ mod tests {
         timeline.advance(20.0);
         assert_eq!(timeline.at(20.0), ahead);
         assert!(timeline.changes.is_empty() && !timeline.changes_between(20.0, 30.0));
-        for (start, transition, name) in [(19.0, 0.0, "start_time_s"), (f64::NAN, 0.0, "start_time_s"), (30.0, -1.0, "transition_s")] {
+        for (start, transition, name) in
+            [(19.0, 0.0, "start_time_s"), (f64::NAN, 0.0, "start_time_s"), (30.0, -1.0, "transition_s")]
+        {
             let e = timeline.change(clear, start, transition).unwrap_err();
             assert!(e.message.contains(name), "{e}");
             assert_eq!(e.status == Status::WrongOrder, start == 19.0);

@@ -1,0 +1,116 @@
+//! The sun and the moon as they stand over a place: direction, light, disc.
+
+use glam::DVec3;
+
+use super::Context;
+use crate::{
+    error::Result,
+    scene::Place,
+    sky::{moon, sun},
+    weather::Conditions,
+};
+
+/// The sun or the moon as it stands over a place. Vectors are (east, north, up) there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Unit vector towards it, without refraction: what scattering sees.
+    pub direction: DVec3,
+    /// Unit vector towards it as it appears, lifted by refraction.
+    pub apparent: DVec3,
+    /// Unit vector in the disc's plane towards the middle of the lit limb (moon).
+    pub bright_limb: DVec3,
+    /// Angular radius, rad.
+    pub angular_radius: f64,
+    /// Lit part of the face, 0 to 1.
+    pub lit: f64,
+    /// Illuminance above the air on a surface facing it, lux in linear Rec. 709: their luminance-weighted sum is the
+    /// illuminance.
+    pub illuminance_lux: [f64; 3],
+    /// Vertical over horizontal diameter of the disc, flattened by refraction.
+    pub flattening: f64,
+    /// Share of the direct light that clouds let through.
+    pub direct_share: f64,
+    /// Whether it adds to the picture.
+    pub matters: bool,
+}
+
+/// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
+const SUN_LUX: f64 = 133_334.0;
+/// Colour of unscattered sunlight in linear Rec. 709 of luminance 1: ASTM G173's extraterrestrial spectrum seen by the
+/// CIE 1931 observer (chromaticity 0.3234, 0.3333).
+pub(super) const SUN_COLOR: [f64; 3] = [1.0937, 0.9784, 0.9390];
+/// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
+const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
+/// The moon adds less than a hundredth to a twilight whose sun stands above this elevation, degrees.
+const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
+
+impl Context {
+    pub(super) fn lights_over(&self, place: &Place, c: &Conditions) -> Result<(Light, Light)> {
+        let utc = self.utc_at(self.time_s);
+        let almanac = sun::sun_position(utc, place)?;
+        let to_sun = self.given_sun.map_or(almanac.direction, |g| g.unit());
+        let pressure = c.air.pressure_hpa * (-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m).exp();
+        let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
+        let (apparent, flattening) = see(to_sun);
+        let clouds = c.cloud_light(to_sun.z, 0.2);
+        let lux = SUN_LUX / (almanac.distance_au * almanac.distance_au);
+        let sun = Light {
+            direction: to_sun,
+            apparent,
+            bright_limb: DVec3::Z,
+            angular_radius: (self.desc.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
+            lit: 1.0,
+            illuminance_lux: SUN_COLOR.map(|v| v * lux),
+            flattening,
+            direct_share: clouds.direct,
+            matters: true,
+        };
+        Ok((sun, self.moon_over(place, &sun, c, see)?))
+    }
+
+    fn moon_over(
+        &self,
+        place: &Place,
+        sun: &Light,
+        c: &Conditions,
+        see: impl Fn(DVec3) -> (DVec3, f64),
+    ) -> Result<Light> {
+        let mut at = moon::moon_position(self.utc_at(self.time_s), place)?;
+        if let Some(given) = &self.given_moon {
+            at.direction = given.unit();
+        }
+        if self.given_moon.is_some() || self.given_sun.is_some() {
+            // The host moved one of them: the phase follows from where they stand now.
+            let elongation = at.direction.angle_between(sun.direction);
+            at.phase_angle = std::f64::consts::PI - elongation;
+            at.illuminated = 0.5 * (1.0 + at.phase_angle.cos());
+            let in_disc = sun.direction - at.direction * sun.direction.dot(at.direction);
+            at.bright_limb = in_disc.normalize_or(at.direction.any_orthonormal_vector());
+            at.illuminance_lux = moon::moon_illuminance_lux(at.phase_angle, at.distance_m);
+        }
+        let (apparent, flattening) = see(at.direction);
+        let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
+        let above = apparent.z > -0.02;
+        Ok(Light {
+            direction: at.direction,
+            apparent,
+            bright_limb: at.bright_limb,
+            angular_radius: at.angular_radius,
+            lit: at.illuminated,
+            illuminance_lux: [0, 1, 2].map(|i| SUN_COLOR[i] * MOON_TINT[i] * at.illuminance_lux),
+            flattening,
+            direct_share: c.cloud_light(at.direction.z, 0.2).direct,
+            matters: dark && above,
+        })
+    }
+}
+
+/// The direction as seen and the flattening of a disc there.
+fn refracted(d: DVec3, pressure_hpa: f64, temperature_c: f64) -> (DVec3, f64) {
+    let elevation = d.z.clamp(-1.0, 1.0).asin();
+    let lift = sun::refraction_deg(elevation.to_degrees(), pressure_hpa, temperature_c).to_radians();
+    let (s, c) = (elevation + lift).sin_cos();
+    let horizontal = DVec3::new(d.x, d.y, 0.0).normalize_or(DVec3::Y);
+    let seen = if elevation.cos() < 1e-6 { d } else { horizontal * c + DVec3::Z * s };
+    (seen, sun::disc_flattening(elevation.to_degrees(), pressure_hpa, temperature_c))
+}

@@ -1,0 +1,96 @@
+//! Saving a context and taking it up again, and a number by which channels compare theirs.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Context, GivenDirection};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    sky::sun::Utc,
+    weather::Timeline,
+};
+
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Saved {
+    version: u32,
+    time_s: f64,
+    utc_at_zero: f64,
+    seed: String,
+    planet: String,
+    sun: Option<[f64; 2]>,
+    moon: Option<[f64; 2]>,
+    timeline: String,
+}
+
+impl Context {
+    fn saved(&self) -> Result<String> {
+        let angles = |g: Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
+        let saved = Saved {
+            version: VERSION,
+            time_s: self.time_s,
+            utc_at_zero: self.desc.utc_at_zero.0,
+            seed: self.desc.seed.to_string(),
+            planet: format!("{:016x}", self.desc.planet.hash()),
+            sun: angles(self.given_sun),
+            moon: angles(self.given_moon),
+            timeline: self.timeline.save()?,
+        };
+        toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
+    }
+
+    /// Everything that decides what this context shows from now on, as UTF-8 text.
+    ///
+    /// # Errors
+    /// [`Status::Internal`] if a number cannot be written.
+    pub fn save(&self) -> Result<Vec<u8>> {
+        Ok(self.saved()?.into_bytes())
+    }
+
+    /// Takes up a state that [`Context::save`] wrote, on a context of the same planet and seed.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for bytes that are no such state, cut short, or of another version;
+    /// [`Status::InvalidArgument`] if planet or seed differ. The context stays as it was.
+    pub fn load(&mut self, bytes: &[u8]) -> Result<()> {
+        let parse = |e: &dyn std::fmt::Display| Error::new(Status::Parse, format!("saved state: {e}"));
+        let text = std::str::from_utf8(bytes).map_err(|e| parse(&e))?;
+        let saved: Saved = toml::from_str(text).map_err(|e| parse(&e))?;
+        if saved.version != VERSION {
+            return Err(parse(&format!("version must be {VERSION}, got {}", saved.version)));
+        }
+        let planet = format!("{:016x}", self.desc.planet.hash());
+        if saved.planet != planet || saved.seed != self.desc.seed.to_string() {
+            return Err(Error::range(
+                "state",
+                &format!("of planet {planet} and seed {}", self.desc.seed),
+                format!("planet {} and seed {}", saved.planet, saved.seed),
+            ));
+        }
+        let given = |name: &str, a: Option<[f64; 2]>| -> Result<Option<GivenDirection>> {
+            let given = a.map(|[azimuth_deg, elevation_deg]| GivenDirection { azimuth_deg, elevation_deg });
+            given.map_or(Ok(()), |g| g.validate(name))?;
+            Ok(given)
+        };
+        check_range("time_s", saved.time_s, -super::MAX_TIME_S, super::MAX_TIME_S, "s")?;
+        crate::sky::sun::sun_position(Utc(saved.utc_at_zero), &self.desc.world.origin)?;
+        let (sun, moon) = (given("sun", saved.sun)?, given("moon", saved.moon)?);
+        let timeline = Timeline::load(&saved.timeline)?;
+        self.timeline = timeline;
+        (self.given_sun, self.given_moon) = (sun, moon);
+        self.time_s = saved.time_s;
+        self.desc.utc_at_zero = Utc(saved.utc_at_zero);
+        Ok(())
+    }
+
+    /// A number that is equal on two channels whose contexts show the same world from now on (FNV-1a of the saved
+    /// state).
+    ///
+    /// # Errors
+    /// As [`Context::save`].
+    pub fn state_hash(&self) -> Result<u64> {
+        let fold = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        Ok(self.saved()?.as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, fold))
+    }
+}

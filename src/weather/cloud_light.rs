@@ -1,0 +1,286 @@
+//! Clouds as slabs of water, and the light that they let through.
+
+use super::conditions::{CloudSlab, Conditions};
+use super::kinds::{CloudKind, PrecipitationKind};
+use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
+
+/// What a kind of cloud is made of, as means over its depth.
+struct Substance {
+    thickness_m: f64,
+    water_g_m3: f64,
+    droplet_radius_um: f64,
+    convection: f64,
+    ice_fraction: f64,
+}
+
+/// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
+/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4); tall clouds are diluted by entrainment, so their mean is below the core's
+/// 2.5 g/m^3; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas).
+fn substance(kind: CloudKind) -> Substance {
+    let s = |thickness_m, water_g_m3, droplet_radius_um, convection, ice_fraction| Substance {
+        thickness_m,
+        water_g_m3,
+        droplet_radius_um,
+        convection,
+        ice_fraction,
+    };
+    match kind {
+        CloudKind::Stratus | CloudKind::Unknown => s(300.0, 0.2, 7.0, 0.0, 0.0),
+        CloudKind::Stratocumulus => s(400.0, 0.3, 8.0, 0.2, 0.0),
+        CloudKind::Cumulus => s(500.0, 0.5, 4.0, 0.5, 0.0),
+        CloudKind::ToweringCumulus => s(3000.0, 1.0, 10.0, 0.8, 0.1),
+        CloudKind::Cumulonimbus => s(9000.0, 0.6, 15.0, 1.0, 0.5),
+        CloudKind::Nimbostratus => s(3000.0, 0.3, 10.0, 0.0, 0.3),
+        CloudKind::Altocumulus => s(400.0, 0.1, 8.0, 0.3, 0.0),
+        CloudKind::Altostratus => s(1500.0, 0.05, 10.0, 0.0, 0.5),
+        CloudKind::Cirrus => s(1000.0, 0.005, 30.0, 0.1, 1.0),
+        CloudKind::Cirrostratus => s(1500.0, 0.01, 30.0, 0.0, 1.0),
+        CloudKind::Cirrocumulus => s(300.0, 0.01, 20.0, 0.3, 1.0),
+    }
+}
+
+/// Bases at which low, middle and high clouds divide, m (WMO levels of temperate latitudes).
+const MIDDLE_FROM_M: f64 = 2000.0;
+const HIGH_FROM_M: f64 = 6000.0;
+
+/// The kind of a layer whose kind nobody named: by level, by cover (half and more is a sheet), and by what falls from it.
+fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
+    let sheet = layer.cover > 0.5;
+    match (layer.base_m, sheet) {
+        (b, true) if b < MIDDLE_FROM_M && raining && !showers => CloudKind::Nimbostratus,
+        (b, _) if b < MIDDLE_FROM_M && raining && showers => CloudKind::ToweringCumulus,
+        (b, true) if b < 450.0 => CloudKind::Stratus,
+        (b, true) if b < MIDDLE_FROM_M => CloudKind::Stratocumulus,
+        (b, false) if b < 150.0 => CloudKind::Stratus,
+        (b, false) if b < MIDDLE_FROM_M => CloudKind::Cumulus,
+        (b, true) if b < HIGH_FROM_M => CloudKind::Altostratus,
+        (b, false) if b < HIGH_FROM_M => CloudKind::Altocumulus,
+        (_, true) => CloudKind::Cirrostratus,
+        (_, false) => CloudKind::Cirrus,
+    }
+}
+
+/// Optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens 1978), rho that of
+/// water or ice.
+pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: f64) -> f64 {
+    let density = 1000.0 + (917.0 - 1000.0) * ice_fraction;
+    1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
+}
+
+/// Water that a cloud must hold for the rate it lets fall, kg/m^2: rate over the 1e-3 1/s at which cloud water turns into
+/// rain (Kessler 1969).
+pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
+    rate_mm_h / 3600.0 / 1e-3
+}
+
+/// One layer as a slab, with `least_water_kg_m2` of water at least where there is cloud.
+fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64) -> CloudSlab {
+    let s = substance(kind);
+    let thickness = layer.thickness_m.unwrap_or(s.thickness_m);
+    let radius = layer.droplet_radius_um.unwrap_or(s.droplet_radius_um);
+    let water = (layer.water_g_m3.unwrap_or(s.water_g_m3) * 1e-3 * thickness).max(least_water_kg_m2);
+    CloudSlab {
+        cover: layer.cover,
+        base_m: layer.base_m,
+        thickness_m: thickness,
+        optical_depth: cloud_optical_depth(water, radius, s.ice_fraction),
+        droplet_radius_um: radius,
+        asymmetry: 0.85 + (0.77 - 0.85) * s.ice_fraction,
+        convection: s.convection,
+        ice_fraction: s.ice_fraction,
+    }
+}
+
+/// Index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers most.
+fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
+    let low = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.base_m.total_cmp(&b.1.base_m);
+    let most = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.cover.total_cmp(&b.1.cover);
+    let all: Vec<(usize, &CloudLayer)> = layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0).collect();
+    let tower = |k| matches!(k, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus | CloudKind::Nimbostratus);
+    all.iter()
+        .find(|(_, l)| tower(l.kind))
+        .or_else(|| all.iter().filter(|(_, l)| l.cover >= 0.5).min_by(low))
+        .or_else(|| all.iter().max_by(most))
+        .map(|(i, _)| *i)
+}
+
+/// The slabs of the weather, each in the slot of its level so that a blend pairs low with low and high with high.
+///
+/// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no cloud
+/// at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice crystals fall from
+/// a clear sky.
+pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
+    let p = &w.precipitation;
+    let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
+    let showers = p.showers || p.thunderstorm;
+    let mut layers = w.clouds.clone();
+    if raining && rain_needs_cloud && layers.iter().all(|l| l.cover <= 0.0) {
+        layers.clear();
+        layers.push(CloudLayer::new(1.0, 600.0));
+    }
+    let source = if raining { rain_layer(&layers) } else { None };
+    let mut made: Vec<CloudSlab> = Vec::with_capacity(layers.len());
+    for (i, layer) in layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0) {
+        let rains = source == Some(i);
+        let known = if layer.kind == CloudKind::Unknown { likely_kind(layer, rains, showers) } else { layer.kind };
+        let water = if rains && rain_needs_cloud { water_path_for_rate_kg_m2(p.rate_mm_h) } else { 0.0 };
+        made.push(slab(layer, known, water));
+    }
+    into_slots(made)
+}
+
+/// First slots of low, middle and high clouds.
+const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
+
+/// Puts slabs, lowest first, into the slots of their level, or any free one if those are full.
+fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
+    slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
+    let mut slots = [CloudSlab::NONE; MAX_CLOUD_LAYERS];
+    for s in slabs {
+        let level = usize::from(s.base_m >= MIDDLE_FROM_M) + usize::from(s.base_m >= HIGH_FROM_M);
+        let first = LEVEL_SLOTS[level];
+        let free = (first..MAX_CLOUD_LAYERS).chain(0..first).find(|&i| slots[i].cover <= 0.0);
+        if let Some(i) = free {
+            slots[i] = s;
+        }
+    }
+    slots
+}
+
+/// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver (1980, eq. 24)
+/// with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976). Transmittance, direct and
+/// diffuse together, is 1 minus this.
+pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> f64 {
+    let mu = cos_zenith.clamp(0.01, 1.0);
+    let tau = optical_depth * (1.0 - asymmetry * asymmetry);
+    let g = asymmetry / (1.0 + asymmetry);
+    let gamma1 = 0.75 * (1.0 - g);
+    let gamma3 = 0.25 * (2.0 - 3.0 * g * mu);
+    let beam = -libm::expm1(-tau / mu);
+    ((gamma1 * tau + (gamma3 - gamma1 * mu) * beam) / (1.0 + gamma1 * tau)).clamp(0.0, 1.0)
+}
+
+/// Reflectance of the same slab for light from all sides: gamma1 tau / (1 + gamma1 tau) (Meador and Weaver 1980).
+pub fn slab_diffuse_reflectance(optical_depth: f64, asymmetry: f64) -> f64 {
+    let tau = optical_depth * (1.0 - asymmetry * asymmetry);
+    let x = 0.75 * (1.0 - asymmetry / (1.0 + asymmetry)) * tau;
+    x / (1.0 + x)
+}
+
+/// What clouds leave of the light, each as a part of what there is above them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CloudLight {
+    /// Of the sun's beam, what arrives as a beam (mean over the place: a hole counts by its chance).
+    pub direct: f64,
+    /// Of the sun's beam on a horizontal surface, what arrives diffuse from the clouds, light thrown back and forth between
+    /// ground and cloud included.
+    pub diffuse: f64,
+    /// Of the clear sky's diffuse light, what arrives.
+    pub sky: f64,
+}
+
+impl Conditions {
+    /// What the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky light x sky.
+    ///
+    /// `cos_sun_zenith`: cosine of the sun's zenith distance, held above 0.01. `ground_albedo`: 0 to 1, default of most land
+    /// 0.2. Layers are combined from the top by adding (van de Hulst 1980), each a mixture of cover and holes; the host's
+    /// [`super::CloudLightOverride`] is blended in last.
+    pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
+        let mu = cos_sun_zenith.clamp(0.01, 1.0);
+        let mut order: Vec<&CloudSlab> = self.cloud_slabs().collect();
+        order.sort_by(|a, b| b.base_m.total_cmp(&a.base_m));
+        let (mut direct, mut diffuse, mut sky, mut above) = (1.0, 0.0, 1.0, 0.0);
+        for s in order {
+            let beam = 1.0 - s.cover + s.cover * libm::exp(-s.optical_depth / mu);
+            let back_beam = s.cover * slab_reflectance(s.optical_depth, s.asymmetry, mu);
+            let back = s.cover * slab_diffuse_reflectance(s.optical_depth, s.asymmetry);
+            let bounce = 1.0 / (1.0 - above * back);
+            let between = (diffuse + above * back_beam * direct) * bounce;
+            diffuse = (1.0 - back) * between + direct * (1.0 - back_beam - beam).max(0.0);
+            sky *= (1.0 - back) * bounce;
+            above = back + (1.0 - back) * (1.0 - back) * above * bounce;
+            direct *= beam;
+        }
+        let albedo = ground_albedo.clamp(0.0, 1.0);
+        let bounce = 1.0 / (1.0 - albedo * above).max(1e-6);
+        diffuse = (diffuse + above * albedo * direct) * bounce;
+        sky *= bounce;
+        let o = &self.cloud_light;
+        let host = |computed: f64, said: f64| computed + (said - computed) * o.weight;
+        CloudLight { direct: host(direct, o.direct), diffuse: host(diffuse, o.diffuse), sky: host(sky, o.diffuse) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_stream_holds_to_discrete_ordinates() {
+        // Reflectance of a conservative Henyey-Greenstein slab, g = 0.85, by PythonicDISORT; worst cases are thin slabs.
+        let table =
+            [(1.0, 0.04232, 0.16488), (4.0, 0.19092, 0.41602), (16.0, 0.55721, 0.69740), (64.0, 0.84628, 0.89497)];
+        for (tau, high, low) in table {
+            let (a, b) = (slab_reflectance(tau, 0.85, 1.0), slab_reflectance(tau, 0.85, 0.5));
+            assert!((a - high).abs() < 0.012, "tau {tau}, mu 1: {a} against {high}");
+            assert!((b - low).abs() < 0.025, "tau {tau}, mu .5: {b} against {low}");
+        }
+        assert_eq!(slab_reflectance(0.0, 0.85, 1.0), 0.0);
+        assert!(slab_reflectance(1e9, 0.85, 0.5) <= 1.0);
+    }
+
+    fn under(slabs: &[CloudSlab]) -> Conditions {
+        let mut c = super::super::derive(&Weather::default()).unwrap();
+        c.clouds[..slabs.len()].copy_from_slice(slabs);
+        c
+    }
+
+    fn sheet(optical_depth: f64, base_m: f64) -> CloudSlab {
+        CloudSlab { cover: 1.0, base_m, optical_depth, ..CloudSlab::NONE }
+    }
+
+    #[test]
+    fn light_is_conserved_and_falls_with_cover() {
+        assert_eq!(under(&[]).cloud_light(0.7, 0.2), CloudLight { direct: 1.0, diffuse: 0.0, sky: 1.0 });
+        let one = under(&[sheet(16.0, 900.0)]).cloud_light(1.0, 0.0);
+        assert!((one.direct + one.diffuse - (1.0 - slab_reflectance(16.0, 0.85, 1.0))).abs() < 1e-9);
+        // Two sheets of 8 are one of 16, nearly: adding treats what lies between as diffuse.
+        let two = under(&[sheet(8.0, 900.0), sheet(8.0, 3000.0)]).cloud_light(1.0, 0.0);
+        assert!((two.diffuse / one.diffuse - 1.0).abs() < 0.12, "{two:?} {one:?}");
+        let mut last = f64::INFINITY;
+        for i in 0..=10 {
+            let slab = CloudSlab { cover: f64::from(i) / 10.0, ..sheet(20.0, 900.0) };
+            let l = under(&[slab]).cloud_light(0.6, 0.2);
+            assert!(l.direct + l.diffuse < last, "cover must darken");
+            last = l.direct + l.diffuse;
+        }
+    }
+
+    #[test]
+    fn snow_under_cloud_is_brighter_than_soil() {
+        let c = under(&[sheet(20.0, 600.0)]);
+        assert!(c.cloud_light(0.5, 0.8).diffuse > 1.5 * c.cloud_light(0.5, 0.1).diffuse);
+    }
+
+    #[test]
+    fn override_replaces_the_slabs_light() {
+        let mut c = under(&[sheet(20.0, 600.0)]);
+        c.cloud_light = super::super::CloudLightOverride { weight: 1.0, direct: 0.25, diffuse: 0.5 };
+        assert_eq!(c.cloud_light(0.5, 0.2), CloudLight { direct: 0.25, diffuse: 0.5, sky: 0.5 });
+    }
+
+    #[test]
+    fn published_extinctions_of_three_clouds() {
+        // 3 LWC / (2 rho r): congestus 2.5 g/m^3 in 10 um droplets is 0.375 1/m.
+        assert!((cloud_optical_depth(2.5e-3, 10.0, 0.0) - 0.375).abs() < 1e-12);
+        assert!((cloud_optical_depth(0.2e-3, 7.0, 0.0) - 0.042_857).abs() < 1e-6);
+    }
+
+    #[test]
+    fn slots_keep_levels_apart_and_take_sixteen() {
+        let slabs: Vec<CloudSlab> = (0..16).map(|i| sheet(1.0, 100.0 * f64::from(i))).collect();
+        assert_eq!(into_slots(slabs).iter().filter(|s| s.cover > 0.0).count(), 16);
+        let slots = into_slots(vec![sheet(1.0, 9000.0), sheet(1.0, 500.0), sheet(1.0, 3000.0)]);
+        assert_eq!([slots[0].base_m, slots[7].base_m, slots[11].base_m], [500.0, 3000.0, 9000.0]);
+    }
+}

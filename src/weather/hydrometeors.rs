@@ -1,0 +1,199 @@
+//! What falls, and how much light it stops.
+
+use super::conditions::Falling;
+use super::kinds::PrecipitationKind;
+use super::model::Precipitation;
+
+/// Extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
+///
+/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm, its number renormalised
+/// so that falling at Gunn and Kinzer's (1949) speeds the drops make the rate; a cubic in ln R fitted to that integral from
+/// 0.01 to 400 mm/h, within 0.7 % of it (tested). Below 0.01 mm/h the cubic's slope there goes on.
+pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
+    const C: [f64; 4] =
+        [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4];
+    const LN_SMALLEST: f64 = -4.605_170_185_988_091;
+    if rate_mm_h <= 0.0 {
+        return 0.0;
+    }
+    let log_rate = libm::log(rate_mm_h);
+    let x = log_rate.max(LN_SMALLEST);
+    let slope = C[1] + x * (2.0 * C[2] + x * 3.0 * C[3]);
+    libm::exp(C[0] + x * (C[1] + x * (C[2] + x * C[3])) + slope * (log_rate - x))
+}
+
+/// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm and
+/// 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h.
+pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
+    if rate_mm_h <= 0.0 { 0.0 } else { 5.575e-4 * libm::pow(rate_mm_h, 0.605) }
+}
+
+/// Extinction of snow, 1/m, at a melted rate.
+///
+/// Gunn and Marshall's (1958) sizes, N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter; flakes of density
+/// 0.17 g/cm^3 over their diameter in mm (Holroyd 1971), so D^2 = Dm^3 / 0.17; Q = 2 on 0.6 of the disc (aggregates'
+/// area ratio). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. It puts 1 mm/h at a visibility of 1.0 km, where the
+/// classes by visibility (light above 1 km) divide.
+pub fn snow_extinction_per_m(rate_mm_h: f64) -> f64 {
+    if rate_mm_h <= 0.0 { 0.0 } else { SNOW_AT_1_MM_H * libm::pow(rate_mm_h, SNOW_EXPONENT) }
+}
+
+/// (pi / 2) x 0.6 x (3800 / 0.17) x 6 / 2.55^4 x 1e-6, 1/m.
+const SNOW_AT_1_MM_H: f64 = 2.989_494e-3;
+/// 4 x 0.48 - 0.87.
+const SNOW_EXPONENT: f64 = 1.05;
+
+/// Melted rate of snow, mm/h, whose extinction is `extinction_per_m`: the inverse of [`snow_extinction_per_m`].
+pub fn snow_rate_mm_h(extinction_per_m: f64) -> f64 {
+    if extinction_per_m <= 0.0 { 0.0 } else { libm::pow(extinction_per_m / SNOW_AT_1_MM_H, 1.0 / SNOW_EXPONENT) }
+}
+
+/// Extinction of equal particles, 1/m: 3 R / (D v), D the diameter (m) of as much water and v the fall speed (m/s); Q = 2.
+fn large_particle_extinction_per_m(rate_mm_h: f64, diameter_m: f64, fall_speed_m_s: f64) -> f64 {
+    3.0 * (rate_mm_h / 3.6e6) / (diameter_m * fall_speed_m_s)
+}
+
+/// Extinction of ice pellets and small hail of 3 mm at 6 m/s, 1/m.
+pub fn ice_pellet_extinction_per_m(rate_mm_h: f64) -> f64 {
+    large_particle_extinction_per_m(rate_mm_h, 3e-3, 6.0)
+}
+
+/// Extinction of hail of 10 mm at 11.5 m/s (Matson and Huggins 1980), 1/m.
+pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
+    large_particle_extinction_per_m(rate_mm_h, 10e-3, 11.5)
+}
+
+/// Part of the water of a shower that falls as hail where the report names hail beside rain.
+const HAIL_SHARE: f64 = 0.2;
+
+/// The rates of what falls, from the report's kind: liquid and frozen parts apart, hail beside rain taking [`HAIL_SHARE`].
+pub(super) fn falling(p: &Precipitation) -> Falling {
+    use PrecipitationKind as K;
+    let liquid = p.liquid_fraction.unwrap_or_else(|| p.kind.default_liquid_fraction());
+    let hail_beside = if p.hail && p.kind != K::Hail { HAIL_SHARE * p.rate_mm_h } else { 0.0 };
+    let rest = p.rate_mm_h - hail_beside;
+    let (wet, frozen) = (rest * liquid, rest * (1.0 - liquid));
+    let drizzle = matches!(p.kind, K::Drizzle | K::FreezingDrizzle);
+    let flag = |on: bool| if on { 1.0 } else { 0.0 };
+    let only = |on: bool, amount: f64| if on { amount } else { 0.0 };
+    let pellets = matches!(p.kind, K::IcePellets | K::SmallHail);
+    let mut f = Falling {
+        rain_mm_h: only(!drizzle, wet),
+        drizzle_mm_h: only(drizzle, wet),
+        snow_mm_h: only(!pellets && p.kind != K::Hail, frozen),
+        ice_pellets_mm_h: only(pellets, frozen),
+        hail_mm_h: hail_beside + only(p.kind == K::Hail, frozen),
+        freezing: flag(p.kind.is_freezing()),
+        showers: flag(p.showers || p.thunderstorm),
+        thunder: flag(p.thunderstorm),
+        extinction_per_m: 0.0,
+    };
+    f.extinction_per_m = rain_extinction_per_m(f.rain_mm_h)
+        + drizzle_extinction_per_m(f.drizzle_mm_h)
+        + snow_extinction_per_m(f.snow_mm_h)
+        + ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
+        + hail_extinction_per_m(f.hail_mm_h);
+    f
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Gunn and Kinzer 1949: diameter mm, terminal speed cm/s.
+    #[rustfmt::skip]
+    const SPEEDS: [(f64, f64); 35] = [
+        (0.078, 18.), (0.1, 27.), (0.2, 72.), (0.3, 117.), (0.4, 162.), (0.5, 206.), (0.6, 247.), (0.7, 287.), (0.8, 327.),
+        (0.9, 367.), (1.0, 403.), (1.2, 464.), (1.4, 517.), (1.6, 565.), (1.8, 609.), (2.0, 649.), (2.2, 690.), (2.4, 727.),
+        (2.6, 757.), (2.8, 782.), (3.0, 806.), (3.2, 826.), (3.4, 844.), (3.6, 860.), (3.8, 872.), (4.0, 883.), (4.2, 892.),
+        (4.4, 898.), (4.6, 903.), (4.8, 907.), (5.0, 909.), (5.2, 912.), (5.4, 914.), (5.6, 916.), (5.8, 917.),
+    ];
+
+    fn speed_m_s(d: f64) -> f64 {
+        let i = SPEEDS.partition_point(|s| s.0 < d).clamp(1, SPEEDS.len() - 1);
+        let ((a, va), (b, vb)) = (SPEEDS[i - 1], SPEEDS[i]);
+        0.01 * (va + (vb - va) * ((d - a) / (b - a)).min(1.0))
+    }
+
+    /// Rate (mm/h) and extinction (1/m) of N0 exp(-lambda D), D in mm from 0.1 to 6, by the midpoint rule.
+    fn integrals(n0: f64, lambda: f64) -> (f64, f64) {
+        let n = 4000;
+        let h = 5.9 / f64::from(n);
+        (0..n).fold((0.0, 0.0), |(rate, ext), i| {
+            let d = 0.1 + (f64::from(i) + 0.5) * h;
+            let number = n0 * (-lambda * d).exp() * h;
+            (rate + number * PI / 6.0 * d.powi(3) * speed_m_s(d) * 3.6e-3, ext + number * PI / 2.0 * d * d * 1e-6)
+        })
+    }
+
+    #[test]
+    fn rate_integral_of_the_raw_distribution_misses_by_the_published_factor() {
+        for (r, factor) in [(1.0_f64, 1.183), (10.0, 1.164), (25.0, 1.131), (100.0, 1.051)] {
+            let (rate, ext) = integrals(8000.0, 4.1 * r.powf(-0.21));
+            // The published factors integrate to infinity; the cut at 6 mm takes up to 2 % away at 100 mm/h.
+            assert!((rate / r / factor - 1.0).abs() < 0.022, "{r}: {}", rate / r);
+            assert!((ext / (0.365e-3 * r.powf(0.63)) - 1.0).abs() < 0.03, "{r}: {ext}");
+        }
+    }
+
+    #[test]
+    fn rain_fit_holds_to_the_integral() {
+        for i in 0..=60 {
+            let r = 0.01 * (400.0f64 / 0.01).powf(f64::from(i) / 60.0);
+            let (rate, ext) = integrals(8000.0, 4.1 * r.powf(-0.21));
+            let truth = ext * r / rate;
+            let fit = rain_extinction_per_m(r);
+            assert!((fit / truth - 1.0).abs() < 0.007, "{r} mm/h: {fit} against {truth}");
+        }
+        assert_eq!(rain_extinction_per_m(0.0), 0.0);
+        assert!(rain_extinction_per_m(1e-9) > 0.0 && rain_extinction_per_m(1e-9) < 1e-8);
+    }
+
+    #[test]
+    fn drizzle_fit_holds_to_the_integral() {
+        for r in [0.1f64, 0.2, 0.3, 0.5, 0.7, 1.0] {
+            let (rate, ext) = integrals(30_000.0, 5.7 * r.powf(-0.21));
+            assert!((drizzle_extinction_per_m(r) * rate / (ext * r) - 1.0).abs() < 0.005, "{r}");
+        }
+    }
+
+    #[test]
+    fn snow_law_is_its_integral_and_inverts() {
+        for r in [0.1f64, 0.5, 1.0, 2.5, 6.0] {
+            let (n0, lambda) = (3800.0 * r.powf(-0.87), 2.55 * r.powf(-0.48));
+            let n = 20_000;
+            let h = 40.0 / lambda / f64::from(n);
+            let ext: f64 = (0..n)
+                .map(|i| {
+                    let dm = (f64::from(i) + 0.5) * h;
+                    n0 * (-lambda * dm).exp() * h * PI / 2.0 * 0.6 * dm.powi(3) / 0.17 * 1e-6
+                })
+                .sum();
+            assert!((snow_extinction_per_m(r) / ext - 1.0).abs() < 1e-4, "{r}: {}", snow_extinction_per_m(r) / ext);
+            assert!((snow_rate_mm_h(snow_extinction_per_m(r)) / r - 1.0).abs() < 1e-12);
+        }
+        let visibility_1 = super::super::LN_20 / snow_extinction_per_m(1.0);
+        assert!((visibility_1 - 1000.0).abs() < 10.0, "{visibility_1}");
+    }
+
+    #[test]
+    fn kinds_split_into_rates_that_keep_the_water() {
+        for &kind in PrecipitationKind::ALL {
+            for hail in [false, true] {
+                let rate = if kind == PrecipitationKind::None { 0.0 } else { 4.0 };
+                let f = falling(&Precipitation { hail, ..Precipitation::of(kind, rate) });
+                assert!((f.total_mm_h() - rate).abs() < 1e-12, "{kind:?}");
+                assert_eq!(f.extinction_per_m > 0.0, rate > 0.0, "{kind:?}");
+            }
+        }
+        let sleet = falling(&Precipitation::of(PrecipitationKind::Sleet, 4.0));
+        assert_eq!((sleet.rain_mm_h, sleet.snow_mm_h), (2.0, 2.0));
+        let storm = falling(&Precipitation {
+            hail: true,
+            thunderstorm: true,
+            ..Precipitation::of(PrecipitationKind::Rain, 10.0)
+        });
+        assert_eq!((storm.rain_mm_h, storm.hail_mm_h, storm.thunder, storm.showers), (8.0, 2.0, 1.0, 1.0));
+    }
+}

@@ -1,0 +1,262 @@
+//! What hangs in the air: particles through the mixed layer, droplets in a layer at the ground, and how a reported visibility
+//! is shared out among them.
+
+use super::conditions::{AerosolLayer, Air, FogLayer, LN_20};
+use super::derive::Overrides;
+use super::kinds::{AerosolKind, FogKind, LoftedKind};
+use super::model::Weather;
+
+/// Optical properties of one kind of aerosol at a relative humidity of 0.8.
+struct Properties {
+    single_scattering_albedo: f64,
+    asymmetry: f64,
+    angstrom_exponent: f64,
+    absorption_angstrom_exponent: f64,
+    scale_height_m: f64,
+    /// Exponent of the swelling law; 0 does not take up water.
+    growth_exponent: f64,
+}
+
+/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm), smoke after
+/// Dubovik et al. (2002), ash after Ball et al. (2015); absorption exponents after Russell et al. (2010): soot 1, smoke 1.8,
+/// dust 2.7; growth exponents after Haenel (1976) and Titos et al. (2016); scale heights as typical of a mixed layer.
+fn properties(kind: AerosolKind) -> Properties {
+    let p = |ssa, g, angstrom, absorption, height, growth| Properties {
+        single_scattering_albedo: ssa,
+        asymmetry: g,
+        angstrom_exponent: angstrom,
+        absorption_angstrom_exponent: absorption,
+        scale_height_m: height,
+        growth_exponent: growth,
+    };
+    match kind {
+        AerosolKind::Continental => p(0.925, 0.703, 1.42, 1.0, 1200.0, 0.35),
+        AerosolKind::Clean => p(0.972, 0.709, 1.42, 1.0, 1200.0, 0.40),
+        AerosolKind::Maritime => p(0.997, 0.772, 0.08, 1.0, 1000.0, 0.55),
+        AerosolKind::Urban => p(0.817, 0.689, 1.43, 1.0, 1200.0, 0.25),
+        AerosolKind::Haze => p(0.892, 0.698, 1.45, 1.0, 1200.0, 0.35),
+        AerosolKind::Dust => p(0.888, 0.729, 0.17, 2.7, 1500.0, 0.05),
+        AerosolKind::Sand => p(0.88, 0.77, 0.0, 2.7, 600.0, 0.0),
+        AerosolKind::Smoke => p(0.88, 0.65, 1.8, 1.8, 1500.0, 0.15),
+        AerosolKind::VolcanicAsh => p(0.92, 0.70, 0.3, 1.0, 2000.0, 0.0),
+        AerosolKind::Arctic => p(0.887, 0.721, 0.89, 1.0, 1500.0, 0.40),
+    }
+}
+
+/// Humidity at which the properties' table holds, and beyond which particles are treated as grown enough (they become mist).
+const TABLE_HUMIDITY: f64 = 0.8;
+const MAX_HUMIDITY: f64 = 0.97;
+
+/// Extinction at a humidity over that at 0.8: ((1 - RH) / 0.2)^-gamma (Kasten 1969, Haenel 1976), RH held below 0.97.
+pub fn humidity_growth(kind: AerosolKind, relative_humidity: f64) -> f64 {
+    let dryness = (1.0 - relative_humidity.min(MAX_HUMIDITY)) / (1.0 - TABLE_HUMIDITY);
+    libm::pow(dryness, -properties(kind).growth_exponent)
+}
+
+/// Visibility under clean skies of which a report says only "at least": a background aerosol that lets one see 40 km at
+/// humidity 0.5 grows with humidity ([`humidity_growth`]), and `falling_extinction_per_m` adds to it. Metres.
+pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: f64) -> f64 {
+    let kind = AerosolKind::Continental;
+    let growth = humidity_growth(kind, relative_humidity) / humidity_growth(kind, 0.5);
+    let background = (LN_20 / 40_000.0 - super::air::RAYLEIGH_550_PER_M) * growth;
+    LN_20 / (super::air::RAYLEIGH_550_PER_M + background + falling_extinction_per_m)
+}
+
+/// The kind of aerosol that is there: what the wind lifts replaces a clean background.
+fn effective_kind(w: &Weather) -> AerosolKind {
+    let background = !is_dry_obscuration(w.aerosol.kind);
+    match w.lofted.kind {
+        LoftedKind::BlowingDust if background => AerosolKind::Dust,
+        LoftedKind::BlowingSand if background => AerosolKind::Sand,
+        _ => w.aerosol.kind,
+    }
+}
+
+/// Kinds thick enough to bring visibility down to anything without fog.
+fn is_dry_obscuration(kind: AerosolKind) -> bool {
+    use AerosolKind as A;
+    matches!(kind, A::Haze | A::Dust | A::Sand | A::Smoke | A::VolcanicAsh)
+}
+
+/// Aerosol of the weather, `extinction_per_m` at station height being known: swelling takes absorption's share down (water
+/// does not absorb), and brings asymmetry and spectrum towards a droplet's, by the volume of water taken up.
+pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option<f64>) -> AerosolLayer {
+    let kind = effective_kind(w);
+    let p = properties(kind);
+    let growth = swelling.unwrap_or_else(|| humidity_growth(kind, w.relative_humidity));
+    let water = (1.0 - 1.0 / growth).clamp(0.0, 1.0);
+    let toward = |dry: f64, droplet: f64| dry + (droplet - dry) * water;
+    let albedo = (1.0 - (1.0 - p.single_scattering_albedo) / growth).clamp(0.0, 1.0);
+    AerosolLayer {
+        extinction_per_m,
+        angstrom_exponent: w.aerosol.angstrom_exponent.unwrap_or(toward(p.angstrom_exponent, 0.0)),
+        absorption_angstrom_exponent: p.absorption_angstrom_exponent,
+        single_scattering_albedo: w.aerosol.single_scattering_albedo.unwrap_or(albedo),
+        asymmetry: w.aerosol.asymmetry.unwrap_or(toward(p.asymmetry, 0.82)),
+        scale_height_m: w.aerosol.scale_height_m.unwrap_or(p.scale_height_m),
+        reference_altitude_m: w.station_altitude_m,
+    }
+}
+
+/// What the reported visibility leaves for particles, shared out.
+pub(super) struct Shares {
+    /// To the mixed layer, 1/m.
+    pub aerosol_per_m: f64,
+    /// To the layer at the ground, 1/m, inside it.
+    pub ground_per_m: f64,
+    /// Whether the ground layer is part of the reported visibility.
+    pub ground_counts: bool,
+}
+
+/// Visibility that the air above a fog has, m: what the fog adds below it is the ground layer's.
+fn visibility_above_m(w: &Weather, o: &Overrides) -> f64 {
+    let fog = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing) || w.lofted.kind == LoftedKind::BlowingSnow;
+    o.visibility_above_fog_m.unwrap_or(if fog { 10_000.0 } else { 5_000.0 })
+}
+
+/// How deep the layer lies and how far one sees in it where the report looks over or past it, m; `None` where it is part of
+/// the reported visibility.
+fn visibility_inside_m(w: &Weather) -> Option<f64> {
+    let beside = match (w.fog.kind, w.lofted.kind) {
+        (FogKind::Shallow, _) => true,
+        (FogKind::Patches | FogKind::Partial, _) => w.visibility_m >= 1000.0,
+        (FogKind::None, LoftedKind::DriftingSnow | LoftedKind::DriftingDust) => true,
+        _ => false,
+    };
+    let usual = if w.fog.kind == FogKind::None { 500.0 } else { 200.0 };
+    beside.then(|| w.fog.visibility_inside_m.unwrap_or(usual))
+}
+
+/// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the ground.
+///
+/// Haze, dust, sand, smoke and ash take all of it; other air takes no more than leaves [`visibility_above_m`] and the rest is
+/// mist or fog, named or not, since dry background air never gets thicker than that.
+pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> Shares {
+    let rayleigh = air.rayleigh_extinction_per_m;
+    let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
+    let foggy = !matches!(w.fog.kind, FogKind::None | FogKind::Shallow) || w.lofted.kind == LoftedKind::BlowingSnow;
+    let cap = (LN_20 / visibility_above_m(w, o) - rayleigh).max(0.0);
+    let dry = is_dry_obscuration(effective_kind(w)) && !foggy;
+    let beside = visibility_inside_m(w);
+    let tall = if dry || beside.is_some() { rest } else { rest.min(cap) };
+    let aerosol = o.aerosol_extinction_per_m.unwrap_or(tall);
+    let ground = match beside {
+        Some(inside) => (LN_20 / inside - rayleigh - aerosol - falling_per_m).max(0.0),
+        None => rest - tall,
+    };
+    Shares {
+        aerosol_per_m: aerosol,
+        ground_per_m: o.fog_extinction_per_m.unwrap_or(ground),
+        ground_counts: beside.is_none(),
+    }
+}
+
+/// The lowest cloud base above the station that could cap a mist, m.
+fn lowest_base_m(w: &Weather) -> Option<f64> {
+    w.clouds.iter().filter(|c| c.cover > 0.0).map(|c| c.base_m).fold(None, |a, b| Some(a.map_or(b, |a: f64| a.min(b))))
+}
+
+/// Top of the ground layer above the station, m, where the host does not say.
+///
+/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). An obscured sky says that fog is deeper than one sees upwards:
+/// twice the vertical visibility, 150 m at least. Without it the sky shows through, so the fog is about one visibility deep,
+/// 20 to 150 m. Mist reaches the lowest cloud between 60 and 600 m, else 300 m. Snow blows up to some tens of metres
+/// (Budd, Dingle and Radok 1966) and drifts below eye height; spray keeps to 10 m.
+fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
+    let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
+    match (w.fog.kind, w.lofted.kind) {
+        (FogKind::Shallow, _) => 2.0,
+        (FogKind::Patches | FogKind::Partial, _) => 20.0,
+        (FogKind::Fog | FogKind::Freezing, _) => {
+            w.vertical_visibility_m.map_or(through, |vv| (2.0 * vv).clamp(150.0, 600.0))
+        }
+        (_, LoftedKind::BlowingSnow) => 50.0,
+        (_, LoftedKind::DriftingSnow | LoftedKind::DriftingDust) => 1.5,
+        (_, LoftedKind::BlowingSpray) => 10.0,
+        _ if w.visibility_m < 1000.0 => w.vertical_visibility_m.map_or(through, |vv| (2.0 * vv).clamp(150.0, 600.0)),
+        _ => lowest_base_m(w).filter(|b| (60.0..=600.0).contains(b)).unwrap_or(300.0),
+    }
+}
+
+/// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al. 1998,
+/// fog); lifted snow has asymmetry 0.89 and dust its own properties.
+pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64) -> FogLayer {
+    if extinction_per_m <= 0.0 {
+        return FogLayer::NONE;
+    }
+    let top = w.fog.top_m.or(w.lofted.top_m).unwrap_or_else(|| default_top_m(w, extinction_per_m));
+    let (albedo, asymmetry, angstrom) = match (w.fog.kind, w.lofted.kind) {
+        (FogKind::None, LoftedKind::BlowingSnow | LoftedKind::DriftingSnow) => (1.0, 0.89, 0.0),
+        (FogKind::None, LoftedKind::DriftingDust) => {
+            let p = properties(AerosolKind::Dust);
+            (p.single_scattering_albedo, p.asymmetry, p.angstrom_exponent)
+        }
+        _ => (1.0, 0.85, 0.0),
+    };
+    let (coverage, patch) = match w.fog.kind {
+        FogKind::Patches => (0.4, 150.0),
+        FogKind::Partial => (0.6, 800.0),
+        _ => (1.0, 200.0),
+    };
+    let sheet = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing);
+    FogLayer {
+        extinction_per_m,
+        angstrom_exponent: angstrom,
+        single_scattering_albedo: albedo,
+        asymmetry,
+        base_m: 0.0,
+        top_m: top,
+        softness_m: top * if sheet { 0.3 } else { 0.5 },
+        coverage: w.fog.coverage.unwrap_or(coverage),
+        patch_size_m: patch,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_is_one_at_the_tables_humidity_and_rises() {
+        for &kind in AerosolKind::ALL {
+            assert!((humidity_growth(kind, 0.8) - 1.0).abs() < 1e-12);
+            let steps: Vec<f64> = (0..=20).map(|i| humidity_growth(kind, f64::from(i) / 20.0)).collect();
+            assert!(steps.windows(2).all(|s| s[1] >= s[0]), "{kind:?}: {steps:?}");
+            assert!(steps[20].is_finite());
+        }
+    }
+
+    #[test]
+    fn swelling_whitens_and_washes_out_absorption() {
+        let at = |rh: f64| aerosol_layer(&Weather { relative_humidity: rh, ..Weather::default() }, 1e-4, None);
+        let (dry, table, wet) = (at(0.2), at(0.8), at(0.97));
+        assert!((table.single_scattering_albedo - 0.925).abs() < 1e-12, "OPAC continental average");
+        assert!(dry.single_scattering_albedo < table.single_scattering_albedo);
+        assert!(wet.single_scattering_albedo > table.single_scattering_albedo);
+        assert!(wet.angstrom_exponent < table.angstrom_exponent && wet.asymmetry > table.asymmetry);
+    }
+
+    #[test]
+    fn dust_takes_blue_and_continental_air_scatters_it() {
+        let of = |kind| {
+            aerosol_layer(&Weather { aerosol: super::super::Aerosol::of(kind), ..Weather::default() }, 1e-4, None)
+        };
+        let blue_to_red = |kind| {
+            let s = of(kind).scattering_at([680.0, 550.0, 440.0]);
+            s[2] / s[0]
+        };
+        assert!(blue_to_red(AerosolKind::Dust) < 1.0, "{}", blue_to_red(AerosolKind::Dust));
+        assert!(blue_to_red(AerosolKind::Continental) > 1.5);
+        for &kind in AerosolKind::ALL {
+            let layer = of(kind);
+            let (e, s) = (layer.extinction_at([400.0, 550.0, 900.0]), layer.scattering_at([400.0, 550.0, 900.0]));
+            assert!((0..3).all(|i| s[i] >= 0.0 && s[i] <= e[i]), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn unlimited_means_far_in_dry_air_and_less_in_damp_air() {
+        assert!((unlimited_visibility_m(0.5, 0.0) - 40_000.0).abs() < 1e-6);
+        assert!(unlimited_visibility_m(0.95, 0.0) < 25_000.0 && unlimited_visibility_m(1.0, 0.0) > 10_000.0);
+    }
+}

@@ -1,0 +1,180 @@
+//! Wind near the ground, the sea it raises, and what weather does to the ground.
+
+use super::conditions::{Falling, SeaState, SurfaceCover, WindProfile};
+use super::kinds::SurfaceState;
+use super::model::{Surface, Weather};
+
+/// Roughness of open grassland, m: how wind masts are sited (WMO-No. 8, part I, chapter 5).
+const GRASS_ROUGHNESS_M: f64 = 0.03;
+/// A 3-second gust in 10 minutes lies this many standard deviations above the mean (Harper, Kepert and Ginger 2010).
+const GUST_PEAK_FACTOR: f64 = 2.3;
+const GRAVITY_M_S2: f64 = 9.80665;
+
+/// Roughness length of the sea, m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow limit 0.11 nu / u*, solved with
+/// the log law for a wind at 10 m by repeated substitution.
+pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
+    let mut z0 = 1e-4;
+    // The map contracts by about 0.2 a round; 20 rounds settle it to the last bit that matters.
+    for _ in 0..20 {
+        let friction = 0.4 * speed_10_m_s / libm::log(10.0 / z0);
+        z0 = (0.0144 * friction * friction / GRAVITY_M_S2 + 0.11 * 1.5e-5 / friction.max(1e-3)).clamp(1e-6, 0.1);
+    }
+    z0
+}
+
+/// Significant height of a fully grown sea, m: Pierson and Moskowitz (1964), 0.2092 U^2 / g with U at 19.5 m.
+pub fn fully_developed_wave_height_m(speed_19_5_m_s: f64) -> f64 {
+    0.2092 * speed_19_5_m_s * speed_19_5_m_s / GRAVITY_M_S2
+}
+
+/// Significant height in the middle of a WMO sea state (code 3700), m; state 9 as 16 m.
+pub fn wave_height_of_state_m(state: u8) -> f64 {
+    const BOUNDS: [f64; 9] = [0.0, 0.1, 0.5, 1.25, 2.5, 4.0, 6.0, 9.0, 14.0];
+    match usize::from(state) {
+        0 => 0.0,
+        s @ 1..=8 => 0.5 * (BOUNDS[s - 1] + BOUNDS[s]),
+        _ => 16.0,
+    }
+}
+
+/// Wind profile: turbulence from the log law's sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984), or from a reported gust.
+pub(super) fn wind_profile(w: &Weather) -> WindProfile {
+    let roughness = w.surface.roughness_length_m.unwrap_or(GRASS_ROUGHNESS_M);
+    let neutral = (1.0 / libm::log(10.0 / roughness).max(1.0)).min(1.0);
+    let from_gust = match w.wind.gust_m_s {
+        Some(gust) if w.wind.speed_m_s > 0.0 => (gust / w.wind.speed_m_s - 1.0) / GUST_PEAK_FACTOR,
+        _ => 0.0,
+    };
+    let intensity = w.wind.turbulence_intensity.unwrap_or(neutral.max(from_gust).min(1.0));
+    let gust = w.wind.gust_m_s.unwrap_or(w.wind.speed_m_s * (1.0 + GUST_PEAK_FACTOR * intensity));
+    let (sin, cos) = libm::sincos(w.wind.from_deg.to_radians());
+    let half_range = |(from, to): (f64, f64)| {
+        let span = to - from;
+        0.5 * if span < 0.0 { span + 360.0 } else { span }
+    };
+    WindProfile {
+        east_m_s: -w.wind.speed_m_s * sin,
+        north_m_s: -w.wind.speed_m_s * cos,
+        gust_m_s: gust,
+        turbulence_intensity: intensity,
+        wander_deg: w.wind.variable_deg.map_or(0.0, half_range),
+        roughness_length_m: roughness,
+        sea_roughness_length_m: sea_roughness_length_m(w.wind.speed_m_s),
+    }
+}
+
+/// The sea: height as given, else of the reported state, else fully grown under this wind.
+pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option<f64>) -> SeaState {
+    let z0 = wind.sea_roughness_length_m;
+    let to_19_5 = libm::log(19.5 / z0) / libm::log(10.0 / z0);
+    let from_wind = || fully_developed_wave_height_m(w.wind.speed_m_s * to_19_5);
+    let height = height_override
+        .or(w.sea.significant_wave_height_m)
+        .or(w.sea.state.map(wave_height_of_state_m))
+        .unwrap_or_else(from_wind);
+    let (sin, cos) = libm::sincos(w.sea.swell.map_or(0.0, |s| s.from_deg).to_radians());
+    SeaState {
+        significant_wave_height_m: height,
+        swell_height_m: w.sea.swell.map_or(0.0, |s| s.height_m),
+        swell_period_s: w.sea.swell.map_or(10.0, |s| s.period_s),
+        swell_east: -sin,
+        swell_north: -cos,
+        // Sea water freezes at -1.8 C (salinity 33).
+        temperature_c: w.sea.temperature_c.unwrap_or(w.temperature_c.max(-1.8)),
+    }
+}
+
+/// Wetness that rain keeps up against evaporation: L / (L + E), L the liquid rate and E = 0.5 (1 - RH) + 0.02 mm/h, the
+/// daytime evaporation from a wet surface (order of Penman 1948).
+pub fn wetness_from_rain(liquid_mm_h: f64, relative_humidity: f64) -> f64 {
+    liquid_mm_h / (liquid_mm_h + 0.5 * (1.0 - relative_humidity) + 0.02)
+}
+
+/// Part of the ground under standing water: what rain brings beyond the 2 mm/h that drains off level ground.
+fn puddles_from_rain(liquid_mm_h: f64) -> f64 {
+    let excess = (liquid_mm_h - 2.0).max(0.0);
+    excess / (excess + 20.0)
+}
+
+/// The ground as observed, else as what falls on it keeps it. Rain that freezes makes ice instead of a film.
+pub(super) fn surface_cover(s: &Surface, air_c: f64, humidity: f64, falling: &Falling) -> SurfaceCover {
+    let cover = |wetness, puddles, ice| SurfaceCover { wetness, puddles, ice, snow_depth_m: s.snow_depth_m };
+    if let Some(state) = s.state {
+        return match state {
+            SurfaceState::Dry => cover(0.0, 0.0, 0.0),
+            SurfaceState::Damp => cover(0.3, 0.0, 0.0),
+            SurfaceState::Wet => cover(1.0, 0.0, 0.0),
+            SurfaceState::StandingWater => cover(1.0, 0.3, 0.0),
+            SurfaceState::Frost => cover(0.0, 0.0, 0.5),
+            SurfaceState::Ice => cover(0.0, 0.0, 1.0),
+            SurfaceState::Snow => SurfaceCover { snow_depth_m: s.snow_depth_m.max(0.03), ..cover(0.0, 0.0, 0.0) },
+        };
+    }
+    let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
+    let melting = if air_c > 0.0 { falling.snow_mm_h + falling.ice_pellets_mm_h + falling.hail_mm_h } else { 0.0 };
+    let thaw: f64 = if air_c > 0.0 && s.snow_depth_m > 0.0 { 0.5 } else { 0.0 };
+    let film = wetness_from_rain(liquid + melting, humidity).max(thaw);
+    let frozen = falling.freezing;
+    cover(film * (1.0 - frozen), puddles_from_rain(liquid) * (1.0 - frozen), film * frozen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::model::Wind;
+    use super::*;
+
+    #[test]
+    fn waves_of_published_winds() {
+        assert!((fully_developed_wave_height_m(10.0) - 2.133).abs() < 1e-3);
+        assert!((fully_developed_wave_height_m(20.0) - 8.532).abs() < 2e-3);
+        let states: Vec<f64> = (0..=9).map(wave_height_of_state_m).collect();
+        assert!(states.windows(2).all(|s| s[1] > s[0]));
+        assert_eq!(states[5], 3.25);
+    }
+
+    #[test]
+    fn sea_roughness_solves_its_own_equation() {
+        for u in [0.0, 0.5, 2.0, 10.0, 30.0, 100.0] {
+            let z0 = sea_roughness_length_m(u);
+            let f = 0.4 * u / (10.0f64 / z0).ln();
+            let again = (0.0144 * f * f / GRAVITY_M_S2 + 0.11 * 1.5e-5 / f.max(1e-3)).clamp(1e-6, 0.1);
+            assert!((again / z0 - 1.0).abs() < 1e-6, "{u}: {z0} {again}");
+        }
+        // About 0.1 to 0.3 mm in a fresh breeze.
+        assert!((1e-4..3e-4).contains(&sea_roughness_length_m(10.0)));
+    }
+
+    #[test]
+    fn wind_points_where_the_air_goes_and_follows_the_log_law() {
+        let w = Weather { wind: Wind::of(8.0, 270.0), ..Weather::default() };
+        let p = wind_profile(&w);
+        assert!((p.east_m_s - 8.0).abs() < 1e-12 && p.north_m_s.abs() < 1e-12, "a west wind blows east");
+        assert!((p.from_deg() - 270.0).abs() < 1e-9);
+        assert!((p.speed_at_height_m_s(10.0) - 8.0).abs() < 1e-12);
+        let expected = 8.0 * (2.0f64 / 0.03).ln() / (10.0f64 / 0.03).ln();
+        assert!((p.speed_at_height_m_s(2.0) - expected).abs() < 1e-12);
+        assert_eq!(p.speed_at_height_m_s(0.01), 0.0);
+        assert!(p.gust_m_s > 8.0 && p.gust_m_s < 13.0);
+    }
+
+    #[test]
+    fn reported_gusts_raise_the_turbulence() {
+        let mut w = Weather { wind: Wind { gust_m_s: Some(18.0), ..Wind::of(8.0, 0.0) }, ..Weather::default() };
+        assert!((wind_profile(&w).turbulence_intensity - (18.0 / 8.0 - 1.0) / 2.3).abs() < 1e-12);
+        w.wind = Wind { variable_deg: Some((350.0, 20.0)), ..Wind::of(2.0, 0.0) };
+        assert_eq!(wind_profile(&w).wander_deg, 15.0);
+        w.wind = Wind::default();
+        assert_eq!(wind_profile(&w).gust_m_s, 0.0);
+    }
+
+    #[test]
+    fn observed_ground_wins_over_rain() {
+        let rain = Falling { rain_mm_h: 10.0, ..super::super::hydrometeors::falling(&Default::default()) };
+        let dry = Surface { state: Some(SurfaceState::Dry), ..Surface::default() };
+        assert_eq!(surface_cover(&dry, 10.0, 0.9, &rain).wetness, 0.0);
+        let wet = surface_cover(&Surface::default(), 10.0, 0.9, &rain);
+        assert!(wet.wetness > 0.95 && wet.puddles > 0.2 && wet.ice == 0.0);
+        let freezing = surface_cover(&Surface::default(), -1.0, 0.9, &Falling { freezing: 1.0, ..rain });
+        assert!(freezing.ice > 0.95 && freezing.wetness == 0.0);
+    }
+}
