@@ -1,6 +1,9 @@
 //! The pictures of the gallery: where, when and in what weather.
 
-use welkin::context::{Context, GivenDirection};
+use welkin::{
+    context::{Context, GivenDirection},
+    weather::{Fog, FogKind, Weather},
+};
 
 pub struct Shot {
     pub name: &'static str,
@@ -38,6 +41,26 @@ pub fn shots() -> Vec<Shot> {
         Shot { name: "low_sun", caption: "Low sun", weather: |c| sun(c, 40.0, 10.0), ..GROUND },
         Shot { name: "sunset", caption: "Sunset", weather: |c| sun(c, 15.0, 0.5), ..GROUND },
         Shot { name: "twilight", caption: "Civil twilight", weather: |c| sun(c, 15.0, -5.0), ..GROUND },
+        Shot {
+            name: "fog",
+            caption: "Fog, visibility 150 m",
+            weather: |c| {
+                sun(c, 60.0, 20.0)?;
+                c.set_weather(&Weather { visibility_m: 150.0, fog: Fog::of(FogKind::Fog), ..Weather::default() }, 0.0, 0.0)
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "shallow_fog",
+            caption: "Shallow fog",
+            weather: |c| {
+                sun(c, 60.0, 8.0)?;
+                let fog = Fog { top_m: Some(420.0), visibility_inside_m: Some(200.0), ..Fog::of(FogKind::Shallow) };
+                c.set_weather(&Weather { fog, ..Weather::default() }, 0.0, 0.0)
+            },
+            height_m: 60.0,
+            ..GROUND
+        },
         Shot {
             name: "twelve_km",
             caption: "12 km up",

@@ -35,19 +35,18 @@ fn display(luminance: vec3f) -> vec3f {
     return tone_curve(frame.tone, luminance * frame.exposure);
 }
 
-// `distance` is RANGE_SKY where the host drew nothing.
-fn compose(host: vec4f, distance: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
+// `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host drew nothing.
+fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
     let ray = view_ray(frame.depth, ndc);
-    let sky = distance >= RANGE_SKY;
+    let sky = range >= RANGE_SKY;
     var veil = Veil(vec3f(0.0), vec3f(1.0));
     if BACKGROUND && sky {
         veil = Veil(sky_behind(ray.direction), vec3f(0.0));
     } else if MEDIUM && !sky {
-        veil = air_between(ray.direction, distance);
+        veil = air_between(ray.direction, range);
     }
     if MEDIUM {
-        let fog = fog_veil(ray.direction, distance);
-        veil = Veil(veil.light * fog.transmittance + fog.light, veil.transmittance * fog.transmittance);
+        veil = with_fog(ray, range, plane, veil);
     }
     return vec4f(mix(written(host.rgb, veil, pixel), host.rgb, mask), host.a);
 }

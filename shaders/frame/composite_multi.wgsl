@@ -12,13 +12,16 @@ override HAS_MASK: bool = false;
 fn composite(in: FullscreenVarying, @builtin(sample_index) sample: u32) -> @location(0) vec4f {
     let pixel = vec2i(in.position.xy);
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
-    var distance = RANGE_SKY;
+    var range = RANGE_SKY;
+    var plane = RANGE_SKY;
     if HAS_DEPTH {
-        distance = view_range(frame.depth, textureLoad(host_depth, pixel, i32(sample)).r, ndc);
+        let depth = textureLoad(host_depth, pixel, i32(sample)).r;
+        range = view_range(frame.depth, depth, ndc);
+        plane = view_plane(frame.depth, depth, ndc);
     }
     var mask = 0.0;
     if HAS_MASK {
         mask = textureLoad(host_mask, pixel, 0).r;
     }
-    return compose(textureLoad(host_color, pixel, i32(sample)), distance, mask, ndc, vec2u(pixel));
+    return compose(textureLoad(host_color, pixel, i32(sample)), range, plane, mask, ndc, vec2u(pixel));
 }

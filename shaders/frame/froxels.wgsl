@@ -25,7 +25,9 @@ fn froxels(in: FullscreenVarying) -> Froxel {
     let uv = inside / (FROXEL_TILE - 1.0);
     let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);
     let distance = FROXEL_NEAR * (exp(slice / 31.0 * FROXEL_LOG) - 1.0);
-    let veil = veil_between(view_ray(frame.depth, ndc).direction, distance);
+    let ray = view_ray(frame.depth, ndc);
+    let plane = distance / ray.slant * frame.depth.plane_scale;
+    let veil = veil_between(ray, distance, plane);
     // Exposed light fits fp16, whose numbers end at 65504; scene-linear hosts turn it back by light_scale.
     var light = veil.light * frame.exposure;
     if frame.color_space != 0u {

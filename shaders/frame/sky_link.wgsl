@@ -17,6 +17,3 @@ fn aerial(light: u32, d: vec3f, distance: f32) -> Aerial {
     return Aerial(sky_radiance(light, vec3f(0.0, 0.0, 0.0)) * (1.0 - t), t);
 }
 
-fn fog_veil(d: vec3f, distance: f32) -> Aerial {
-    return Aerial(vec3f(0.0), vec3f(1.0));
-}

@@ -1,9 +1,12 @@
 // What lies between the eye and a point: the light that the air and the fog send, and what they let through.
 //!include "frame/uniform.wgsl"
+//!include "frame/fog_binding.wgsl"
 //!include "frame/sky_link.wgsl"
 
 // Lights that count: 1 the sun, 2 the moon too.
 override LIGHTS: u32 = 1u;
+// Whether there is any fog.
+override FOG: bool = true;
 
 // Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
 struct Veil {
@@ -29,9 +32,22 @@ fn air_between(d: vec3f, distance: f32) -> Veil {
     return veil;
 }
 
-// Air and fog together, for what lies `distance` metres along `d`.
-fn veil_between(d: vec3f, distance: f32) -> Veil {
-    let air = air_between(d, distance);
-    let fog = fog_veil(d, distance);
-    return Veil(air.light * fog.transmittance + fog.light, air.transmittance * fog.transmittance);
+// `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air
+// before it, the fog round the camera lies before the air: fog_compose, written for a veil.
+fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
+    if !FOG {
+        return behind;
+    }
+    let f = fog_along(fog, ray.origin, ray.direction, range, plane);
+    var before = Veil(vec3f(0.0), vec3f(1.0));
+    if f.distance > 50.0 {
+        before = air_between(ray.direction, f.distance);
+    }
+    let light = before.light + before.transmittance * f.radiance + f.transmittance * (behind.light - before.light);
+    return Veil(light, behind.transmittance * f.transmittance);
+}
+
+// Air and fog together, for what lies `range` metres along the ray.
+fn veil_between(ray: ViewRay, range: f32, plane: f32) -> Veil {
+    return with_fog(ray, range, plane, air_between(ray.direction, range));
 }

@@ -4,6 +4,7 @@
 //! answer alike on every machine. The queries need no device and no frame.
 
 mod air;
+mod fog;
 mod lights;
 mod scene;
 mod state;
@@ -17,6 +18,7 @@ pub use scene::{GroundLight, Scene};
 
 use crate::{
     error::{Error, Result, Status, check_range},
+    fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
     scene::WorldFrame,
@@ -90,6 +92,7 @@ pub struct Context {
     timeline: Timeline,
     given_sun: Option<GivenDirection>,
     given_moon: Option<GivenDirection>,
+    fog_law: Option<Law>,
     time_s: f64,
 }
 
@@ -104,7 +107,7 @@ impl Context {
         desc.exposure.validate()?;
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
-        Ok(Self { device, shared, desc, timeline, given_sun: None, given_moon: None, time_s: 0.0 })
+        Ok(Self { device, shared, desc, timeline, given_sun: None, given_moon: None, fog_law: None, time_s: 0.0 })
     }
 
     /// The device it was made on.
@@ -163,6 +166,35 @@ impl Context {
         transition_s: f64,
     ) -> Result<()> {
         self.timeline.change(derive_with(weather, overrides)?, start_s, transition_s)
+    }
+
+    /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the parameter.
+    pub fn set_fog_law(&mut self, law: Option<Law>) -> Result<()> {
+        match &law {
+            Some(Law::Layer(layer)) => layer.validate()?,
+            Some(Law::Compatibility(law)) => law.validate()?,
+            Some(Law::Clear) | None => {}
+        }
+        self.fog_law = law;
+        Ok(())
+    }
+
+    /// The fog law that the host asked for.
+    pub fn fog_law(&self) -> Option<&Law> {
+        self.fog_law.as_ref()
+    }
+
+    /// Seed of everything that chance decides.
+    pub fn seed(&self) -> u64 {
+        self.desc.seed
+    }
+
+    /// Radius of the planet's ground, m.
+    pub fn planet_radius_m(&self) -> f64 {
+        self.desc.planet.bottom_radius_m
     }
 
     /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.

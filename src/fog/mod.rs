@@ -43,7 +43,7 @@ pub use queries::{
     extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between, vertical_visibility_m,
     visibility_between_m,
 };
-pub use reference::{FogModel, FogSample};
+pub use reference::{FogKind, FogModel, FogSample};
 pub use uniforms::FogUniform;
 
 /// Contrast left at the meteorological optical range (WMO-No. 8).

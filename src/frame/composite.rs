@@ -5,6 +5,7 @@ use std::{collections::HashMap, sync::Arc};
 use super::{target::Stages, uniform::FrameUniform};
 use crate::{
     error::Result,
+    fog::FogUniform,
     gpu::{
         Device,
         pass::{self, FullscreenDesc},
@@ -21,6 +22,7 @@ pub(super) struct Variant {
     pub has_mask: bool,
     /// 1 or 2.
     pub lights: u32,
+    pub fog: bool,
 }
 
 /// Pipelines of the composition, shared by the views of a device.
@@ -46,19 +48,25 @@ fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    let uniform = wgpu::BindGroupLayoutEntry {
-        binding: 0,
+    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
+        binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+            min_binding_size: wgpu::BufferSize::new(size as u64),
         },
         count: None,
     };
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("frame"),
-        entries: &[uniform, texture_entry(1, multisampled), texture_entry(2, multisampled), texture_entry(3, false)],
+        entries: &[
+            uniform(0, size_of::<FrameUniform>()),
+            texture_entry(1, multisampled),
+            texture_entry(2, multisampled),
+            texture_entry(3, false),
+            uniform(4, size_of::<FogUniform>()),
+        ],
     })
 }
 
@@ -109,7 +117,7 @@ impl Composite {
     pub fn bind(
         &self,
         device: &Device,
-        uniform: &wgpu::Buffer,
+        [frame, fog]: [&wgpu::Buffer; 2],
         color: &wgpu::Texture,
         depth: Option<&wgpu::Texture>,
         mask: Option<&wgpu::Texture>,
@@ -129,7 +137,8 @@ impl Composite {
             label: Some("frame"),
             layout: self.layout(multi),
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
                 entry(1, &color_view),
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
@@ -168,6 +177,7 @@ impl Composite {
                         ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
                         ("TONE", yes(variant.stages.has(Stages::TONE))),
                         ("LIGHTS", f64::from(variant.lights)),
+                        ("FOG", yes(variant.fog)),
                         ("HAS_DEPTH", yes(variant.has_depth)),
                         ("HAS_MASK", yes(variant.has_mask)),
                     ],

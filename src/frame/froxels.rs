@@ -40,7 +40,7 @@ pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
     views: [wgpu::TextureView; 2],
-    pipelines: [Option<wgpu::RenderPipeline>; 4],
+    pipelines: [Option<wgpu::RenderPipeline>; 8],
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -63,7 +63,7 @@ impl Froxels {
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
-        Self { light, through, views, pipelines: [const { None }; 4] }
+        Self { light, through, views, pipelines: [const { None }; 8] }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -76,20 +76,20 @@ impl Froxels {
         device: &Arc<Device>,
         shared: &Shared,
         encoder: &mut wgpu::CommandEncoder,
-        (multi, lights): (bool, u32),
+        (multi, lights, fog): (bool, u32, bool),
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        let slot = &mut self.pipelines[usize::from(multi) * 2 + lights as usize - 1];
+        let slot = &mut self.pipelines[usize::from(multi) * 4 + usize::from(fog) * 2 + lights as usize - 1];
         if slot.is_none() {
             let composite = shared.composite()?;
-            let [sky, fog] = shared.sky_layouts();
+            let [sky, rest] = shared.sky_layouts();
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
             let desc = FullscreenDesc {
                 shader: "frame/froxels.wgsl",
                 entry: "froxels",
-                layouts: &[composite.layout(multi), sky, fog],
+                layouts: &[composite.layout(multi), sky, rest],
                 targets: &[target.clone(), target],
-                constants: &[("LIGHTS", f64::from(lights))],
+                constants: &[("LIGHTS", f64::from(lights)), ("FOG", f64::from(u8::from(fog)))],
                 samples: 1,
             };
             *slot = Some(pass::fullscreen(device, &desc)?);

@@ -15,6 +15,7 @@ use super::{
 use crate::{
     context::{Context, Light, Scene},
     error::{Error, Result, Status},
+    fog::{FogKind, FogUniform},
     gpu::Device,
     scene::{Camera, ViewRays},
 };
@@ -47,6 +48,7 @@ pub struct View {
     device: Arc<Device>,
     shared: Arc<Shared>,
     uniform: wgpu::Buffer,
+    fog: wgpu::Buffer,
     copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     sky: super::sky_link::ViewSky,
@@ -64,12 +66,15 @@ impl View {
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
-        let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: size_of::<FrameUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = |label, size: usize| {
+            device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
         let shared = context.shared().clone();
         let sky = super::sky_link::ViewSky::new(&device, &shared)?;
         device.check()?;
@@ -78,6 +83,7 @@ impl View {
             device,
             shared,
             uniform,
+            fog,
             copy: None,
             bound: None,
             sky,
@@ -215,6 +221,7 @@ impl View {
         let Some(color) = frame.color else { return Ok(()) };
         let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
+        let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
         let variant = Variant {
             stages: Stages(stages.0 & (Stages::BACKGROUND.0 | Stages::MEDIUM.0 | Stages::TONE.0)),
             format: color.format(),
@@ -222,6 +229,7 @@ impl View {
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
             lights: if scene.moon.matters { 2 } else { 1 },
+            fog: fog.kind != FogKind::Clear,
         };
         if variant.stages == Stages(0) {
             return Ok(());
@@ -231,6 +239,9 @@ impl View {
         self.report.exposure = exposure;
         let block = uniform(frame, scene, rays, color, exposure, context, tone);
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
+        if variant.fog {
+            self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
+        }
         self.sky.write(&self.device, scene);
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
@@ -239,8 +250,8 @@ impl View {
         let layouts = self.shared.sky_layouts();
         let mut composite = self.shared.composite()?;
         let pipeline = composite.pipeline(&self.device, variant, &layouts)?;
-        let [sky, fog] = self.sky.groups();
-        let groups = [group, sky, fog];
+        let [sky, rest] = self.sky.groups();
+        let groups = [group, sky, rest];
         crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
         drop(composite);
@@ -249,7 +260,7 @@ impl View {
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
-            let variant = (variant.samples > 1, variant.lights);
+            let variant = (variant.samples > 1, variant.lights, variant.fog);
             froxels.draw(&self.device, &self.shared, encoder, variant, &groups)?;
             self.report.passes += 1;
         }
@@ -274,7 +285,8 @@ impl View {
             self.report.bytes = self.sky.bytes() + texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
         }
         let Some(copy) = &self.copy else { return Ok(()) };
-        let group = self.shared.composite()?.bind(&self.device, &self.uniform, copy, frame.depth, frame.mask);
+        let group =
+            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], copy, frame.depth, frame.mask);
         let target = color.create_view(&Default::default());
         let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned() };
         self.bound = Some((bound, group, target));

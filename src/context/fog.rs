@@ -1,0 +1,72 @@
+//! The fog of a scene: the weather's low layer, or one of the older laws if the host asked for it.
+
+use super::Scene;
+use crate::{
+    error::Result,
+    fog::{FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint},
+    weather::Conditions,
+};
+
+/// The layer that the weather leaves to the fog; altitudes above the sea.
+pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
+    let f = &c.fog;
+    if f.extinction_per_m <= 0.0 {
+        return None;
+    }
+    let station = c.air.station_altitude_m;
+    // Fog lies on the ground, wherever the terrain takes it: only a lifted layer has a base.
+    let base_m = if f.base_m <= 0.0 { -1e4 } else { station + f.base_m };
+    let softness = f.softness_m.min(f.top_m - f.base_m);
+    let profile = Profile::Slab {
+        base_m,
+        // The weather's top is where nothing is left, the slab's is the middle of its flank.
+        top_m: (station + f.top_m - 0.5 * softness).max(base_m),
+        base_softness_m: 0.0,
+        top_softness_m: softness,
+    };
+    let phase = if f.angstrom_exponent > 0.5 {
+        Phase::HenyeyGreenstein { g: f.asymmetry.clamp(-0.95, 0.95) }
+    } else {
+        Phase::Droplets { diameter_um: 15.0 }
+    };
+    let patches = (f.coverage < 0.999).then_some(Patches {
+        amount: (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0),
+        size_m: f.patch_size_m.clamp(5.0, 1e5),
+        seed,
+        drift_m: [0.0; 2],
+    });
+    Some(FogLayer {
+        extinction_per_m: f.extinction_per_m.min(crate::fog::MAX_EXTINCTION_PER_M),
+        angstrom: f.angstrom_exponent.clamp(-1.0, 4.0),
+        albedo: [f.single_scattering_albedo.clamp(0.0, 1.0); 3],
+        profile,
+        phase,
+        patches,
+    })
+}
+
+impl Scene {
+    /// The fog as the frame draws it, lit by whichever of sun and moon gives more light.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
+        let own = fog_layer(&self.conditions, seed).map_or(Law::Clear, Law::Layer);
+        let sunny = self.ground.sun_lux[1] >= self.ground.moon_lux[1];
+        let (light, lux) = if sunny { (&self.sun, self.ground.sun_lux) } else { (&self.moon, self.ground.moon_lux) };
+        let light = FogLight {
+            to_sun: light.direction,
+            sun_irradiance: lux,
+            sky_irradiance: self.ground.sky_lux,
+            ground_albedo: self.planet.ground_albedo,
+        };
+        let view = Viewpoint {
+            altitude_m: self.place.altitude_m,
+            map_m: self.map_m,
+            planet_radius_m,
+            ground_m: self.conditions.air.station_altitude_m.min(self.place.altitude_m),
+            ..Viewpoint::flat(0.0)
+        };
+        FogModel::new(law.unwrap_or(&own), &light, &view)
+    }
+}
