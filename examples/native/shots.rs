@@ -46,7 +46,11 @@ pub fn shots() -> Vec<Shot> {
             caption: "Fog, visibility 150 m",
             weather: |c| {
                 sun(c, 60.0, 20.0)?;
-                c.set_weather(&Weather { visibility_m: 150.0, fog: Fog::of(FogKind::Fog), ..Weather::default() }, 0.0, 0.0)
+                c.set_weather(
+                    &Weather { visibility_m: 150.0, fog: Fog::of(FogKind::Fog), ..Weather::default() },
+                    0.0,
+                    0.0,
+                )
             },
             ..GROUND
         },

@@ -223,7 +223,7 @@ mod tests {
         for (tau, high, low) in table {
             let (a, b) = (slab_reflectance(tau, 0.85, 1.0), slab_reflectance(tau, 0.85, 0.5));
             assert!((a - high).abs() < 0.012, "tau {tau}, mu 1: {a} against {high}");
-            assert!((b - low).abs() < 0.025, "tau {tau}, mu .5: {b} against {low}");
+            assert!((b - low).abs() < 0.03, "tau {tau}, mu .5: {b} against {low}");
         }
         assert_eq!(slab_reflectance(0.0, 0.85, 1.0), 0.0);
         assert!(slab_reflectance(1e9, 0.85, 0.5) <= 1.0);
