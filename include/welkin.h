@@ -203,6 +203,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_VULKAN_TARGET 17
 /** wk_frame_textures */
 #define WK_STRUCT_TYPE_FRAME_TEXTURES 18
+/** wk_weather_overrides */
+#define WK_STRUCT_TYPE_WEATHER_OVERRIDES 19
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -1350,6 +1352,97 @@ typedef struct wk_weather {
     /* reserved0 */ 0 \
 }
 
+/** Which fields of a wk_weather_overrides are set. */
+typedef uint32_t wk_override_flags;
+
+/** aerosol_extinction_per_m */
+#define WK_OVERRIDE_AEROSOL_EXTINCTION 1
+/** fog_extinction_per_m */
+#define WK_OVERRIDE_FOG_EXTINCTION 2
+/** precipitation_extinction_per_m */
+#define WK_OVERRIDE_PRECIPITATION_EXTINCTION 4
+/** visibility_above_fog_m */
+#define WK_OVERRIDE_VISIBILITY_ABOVE_FOG 8
+/** humidity_growth */
+#define WK_OVERRIDE_HUMIDITY_GROWTH 16
+/** rayleigh_density_ratio */
+#define WK_OVERRIDE_RAYLEIGH_DENSITY 32
+/** rayleigh_scale_height_m */
+#define WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT 64
+/** Rain does not bring a cloud that the report has not. */
+#define WK_OVERRIDE_RAIN_WITHOUT_CLOUD 128
+/** cloud_direct and cloud_diffuse */
+#define WK_OVERRIDE_CLOUD_LIGHT 256
+/** wave_height_m */
+#define WK_OVERRIDE_WAVE_HEIGHT 512
+/** wetness */
+#define WK_OVERRIDE_WETNESS 1024
+
+/**
+ * The host's own figures in place of the laws that tie the parts of the weather together. An extension: put it into
+ * wk_weather.next.
+ */
+typedef struct wk_weather_overrides {
+    /** sizeof(wk_weather_overrides) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WEATHER_OVERRIDES. */
+    wk_struct_type struct_type;
+    /** The next extension. Default NULL. */
+    const void *next;
+    /** Which fields are set; the laws give the others. Default 0. */
+    wk_override_flags set;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
+     */
+    double aerosol_extinction_per_m;
+    /** Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10]. */
+    double fog_extinction_per_m;
+    /** Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10]. */
+    double precipitation_extinction_per_m;
+    /**
+     * Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
+     */
+    double visibility_above_fog_m;
+    /**
+     * Growth of particles by humidity over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches it off.
+     */
+    double humidity_growth;
+    /** Air density at sea level over the standard's. Range [0, 10]. */
+    double rayleigh_density_ratio;
+    /** Scale height of the air, m. Range [100, 50000]. */
+    double rayleigh_scale_height_m;
+    /** Part of the sun's beam below the clouds. Range [0, 1]. */
+    double cloud_direct;
+    /** Diffuse light below the clouds as part of the light above. Range [0, 1]. */
+    double cloud_diffuse;
+    /** Significant wave height, m, in place of what wind or state say. Range [0, 30]. */
+    double wave_height_m;
+    /** Wetness of the ground, in place of what falls on it. Range [0, 1]. */
+    double wetness;
+} wk_weather_overrides;
+
+/** Every field of `wk_weather_overrides` at its default. */
+#define WK_WEATHER_OVERRIDES_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_weather_overrides), \
+    /* struct_type */ WK_STRUCT_TYPE_WEATHER_OVERRIDES, \
+    /* next */ NULL, \
+    /* set */ 0, \
+    /* reserved0 */ 0, \
+    /* aerosol_extinction_per_m */ 0.0, \
+    /* fog_extinction_per_m */ 0.0, \
+    /* precipitation_extinction_per_m */ 0.0, \
+    /* visibility_above_fog_m */ 0.0, \
+    /* humidity_growth */ 0.0, \
+    /* rayleigh_density_ratio */ 0.0, \
+    /* rayleigh_scale_height_m */ 0.0, \
+    /* cloud_direct */ 0.0, \
+    /* cloud_diffuse */ 0.0, \
+    /* wave_height_m */ 0.0, \
+    /* wetness */ 0.0 \
+}
+
 /**
  * Writes the default of every field: the same bytes as `WK_CLOUD_LAYER_INIT`. `struct_size` is `sizeof(wk_cloud_layer)`
  * as the caller was compiled, and is stored in the struct.
@@ -1363,6 +1456,14 @@ wk_status wk_cloud_layer_init(wk_cloud_layer *out,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_weather_init(wk_weather *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WEATHER_OVERRIDES_INIT`. `struct_size` is `sizeof(wk_weather_overrides)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_weather_overrides_init(wk_weather_overrides *out,
+                                    uint32_t struct_size);
 
 /*
  * ====================================================================================================
@@ -1451,6 +1552,11 @@ typedef struct wk_context_desc {
     wk_tone_curve tone_curve;
     /** See wk_exposure_mode. Default 0. */
     double exposure_value;
+    /**
+     * Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
+     * Range: the years -2000 to 6000. Default 2026-06-21 10:00.
+     */
+    double utc_at_zero_s;
 } wk_context_desc;
 
 /** Every field of `wk_context_desc` at its default. */
@@ -1468,8 +1574,48 @@ typedef struct wk_context_desc {
     /* planet_toml */ NULL, \
     /* exposure_mode */ WK_EXPOSURE_AUTO, \
     /* tone_curve */ WK_TONE_EXPONENTIAL, \
-    /* exposure_value */ 0.0 \
+    /* exposure_value */ 0.0, \
+    /* utc_at_zero_s */ 1782036000.0 \
 }
+
+/**
+ * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
+ * `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
+ * Thread: exclusive on the device.
+ * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+ */
+WK_API
+wk_status wk_context_create(wk_device *device,
+                            const wk_context_desc *desc,
+                            wk_context **out_context);
+
+/**
+ * Destroys a context. NULL does nothing.
+ * Thread: any; the GPU's part is released at the device's next call if it must be.
+ * Errors: WK_ERROR_IN_USE while it has views.
+ */
+WK_API wk_status wk_context_destroy(wk_context *context);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CONTEXT_DESC_INIT`. `struct_size` is `sizeof(wk_context_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_context_desc_init(wk_context_desc *out,
+                               uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Weather over time
+ *
+ * Simulation time is the host's: seconds in double precision, moved forward by wk_context_update. Weather is a timeline
+ * of changes, each with its absolute start and duration; between them it stays. A change that begins while another is
+ * under way is laid over it, so neither the weather nor its rate of change jumps. What the host says twice in the same
+ * order gives the same weather on every machine.
+ *
+ * Sun and moon follow from place and universal time, which is tied to simulation time, or are put where the host says.
+ * ====================================================================================================
+ */
 
 /** A direction to a light, given by the host in place of the almanac. */
 typedef struct wk_given_direction {
@@ -1495,22 +1641,46 @@ typedef struct wk_given_direction {
 }
 
 /**
- * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
- * `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
- * Thread: exclusive on the device.
- * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+ * Changes the weather, beginning at `start_time_s` and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
+ * have a wk_weather_overrides in its chain. Copied during the call.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
+ * before a change that was given earlier. The weather stays as it was then.
  */
 WK_API
-wk_status wk_context_create(wk_device *device,
-                            const wk_context_desc *desc,
-                            wk_context **out_context);
+wk_status wk_context_set_weather(wk_context *context,
+                                 const wk_weather *weather,
+                                 double start_time_s,
+                                 double transition_s);
 
 /**
- * Destroys a context. NULL does nothing.
- * Thread: any; the GPU's part is released at the device's next call if it must be.
- * Errors: WK_ERROR_IN_USE while it has views.
+ * Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
+ * the views record.
+ * Thread: exclusive.
+ * Answers WK_PENDING if simulation steps remain to be done: call again with the same time.
+ * Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
  */
-WK_API wk_status wk_context_destroy(wk_context *context);
+WK_API wk_status wk_context_update(wk_context *context, double time_s);
+
+/**
+ * Ties universal time to simulation time: it is `utc_s` (Unix time, seconds without leap seconds) at simulation time
+ * `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at 0.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
+
+/**
+ * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. Years -2000 to 6000.
+ * Thread: any.
+ */
+WK_API
+wk_status wk_utc_from_calendar(int32_t year,
+                               uint32_t month,
+                               uint32_t day,
+                               uint32_t hour,
+                               uint32_t minute,
+                               double second,
+                               double *out_utc_s);
 
 /**
  * Puts the sun where the host says; NULL returns it to the almanac.
@@ -1519,12 +1689,45 @@ WK_API wk_status wk_context_destroy(wk_context *context);
 WK_API wk_status wk_context_set_sun(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Writes the default of every field: the same bytes as `WK_CONTEXT_DESC_INIT`. `struct_size` is `sizeof(wk_context_desc)`
- * as the caller was compiled, and is stored in the struct.
+ * Puts the moon where the host says (its phase follows from the sun's place); NULL returns it to the almanac.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_direction *direction);
+
+/**
+ * Sets the exposure of frames that bring none; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
+
+/**
+ * Writes everything that decides what the context shows from now on: UTF-8 text, the same on every machine.
+ * `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
+ * or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * Thread: concurrent.
  */
 WK_API
-wk_status wk_context_desc_init(wk_context_desc *out,
-                               uint32_t struct_size);
+wk_status wk_context_save(const wk_context *context,
+                          void *buffer,
+                          size_t capacity,
+                          size_t *out_size);
+
+/**
+ * Takes up a state that wk_context_save wrote, on a context of the same planet and seed.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_PARSE for bytes that are no such state or of another version; WK_ERROR_INVALID_ARGUMENT if planet or
+ * seed differ. The context stays as it was then.
+ */
+WK_API
+wk_status wk_context_load(wk_context *context,
+                          const void *state,
+                          size_t size);
+
+/**
+ * A number that is equal on two channels whose contexts show the same world from now on.
+ * Thread: concurrent.
+ */
+WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_hash);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`

@@ -24,11 +24,14 @@ use super::{
     status::*,
 };
 use crate::{
-    context::{Context, ContextDesc, GivenDirection},
+    context::{Context, ContextDesc},
     error::{Error, Result, Status},
     frame::{Exposure, ToneCurve},
     scene::{Axes, Place, WorldFrame, WorldKind},
-    sky::Planet,
+    sky::{
+        Planet,
+        sun::{Utc, sun_position},
+    },
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_context.rs"));
@@ -106,6 +109,9 @@ pub struct wk_context_desc {
     pub tone_curve: wk_tone_curve,
     /// See wk_exposure_mode. Default 0.
     pub exposure_value: f64,
+    /// Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
+    /// Range: the years -2000 to 6000. Default 2026-06-21 10:00.
+    pub utc_at_zero_s: f64,
 }
 
 impl wk_context_desc {
@@ -124,32 +130,7 @@ impl wk_context_desc {
         exposure_mode: WK_EXPOSURE_AUTO,
         tone_curve: WK_TONE_EXPONENTIAL,
         exposure_value: 0.0,
-    };
-}
-
-/// A direction to a light, given by the host in place of the almanac.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct wk_given_direction {
-    /// sizeof(wk_given_direction) of your header.
-    pub struct_size: u32,
-    /// WK_STRUCT_TYPE_GIVEN_DIRECTION.
-    pub struct_type: wk_struct_type,
-    /// No extensions in this version: NULL.
-    pub next: *const c_void,
-    /// Degrees clockwise from true north. Range [-360, 360], default 180.
-    pub azimuth_deg: f64,
-    /// Degrees above the horizon, without refraction. Range [-90, 90], default 45.
-    pub elevation_deg: f64,
-}
-
-impl wk_given_direction {
-    pub(crate) const INIT: Self = Self {
-        struct_size: struct_size::<Self>(),
-        struct_type: WK_STRUCT_TYPE_GIVEN_DIRECTION,
-        next: null(),
-        azimuth_deg: 180.0,
-        elevation_deg: 45.0,
+        utc_at_zero_s: 1782036000.0,
     };
 }
 
@@ -223,7 +204,9 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
         WK_TONE_FILMIC => ToneCurve::Filmic,
         _ => ToneCurve::Exponential,
     };
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, ..ContextDesc::default() })
+    let utc_at_zero = Utc(desc.utc_at_zero_s);
+    sun_position(utc_at_zero, &world.origin).map_err(|e| renamed("utc", "desc.utc_at_zero_s", e))?;
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
@@ -268,36 +251,7 @@ pub unsafe extern "C" fn wk_context_destroy(context: *mut wk_context) -> wk_stat
     })
 }
 
-/// Puts the sun where the host says; NULL returns it to the almanac.
-/// Thread: exclusive.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn wk_context_set_sun(
-    context: *mut wk_context,
-    direction: *const wk_given_direction,
-) -> wk_status {
-    guard("wk_context_set_sun", |call| {
-        let object = call.get::<ContextObject>("context", context)?;
-        // SAFETY: the caller's promise about `direction`.
-        let given = unsafe { given_direction("direction", direction)? };
-        object.write().set_sun(given).map_err(|e| renamed("sun.", "direction.", e))?;
-        Ok(Status::Ok)
-    })
-}
-
-/// # Safety
-/// `p` is NULL or a `wk_given_direction`.
-unsafe fn given_direction(param: &str, p: *const wk_given_direction) -> Result<Option<GivenDirection>> {
-    if p.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: the caller's promise.
-    let c = unsafe { layout::read(&param, p)? };
-    // SAFETY: as above.
-    unsafe { layout::check_chain(&param, c.next, &[])? };
-    Ok(Some(GivenDirection { azimuth_deg: c.azimuth_deg, elevation_deg: c.elevation_deg }))
-}
-
 /// Swaps the first part of the parameter's name in a message.
-fn renamed(from: &str, to: &str, e: Error) -> Error {
+pub(super) fn renamed(from: &str, to: &str, e: Error) -> Error {
     Error::new(e.status, e.message.replacen(from, to, 1))
 }

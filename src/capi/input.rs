@@ -113,7 +113,12 @@ pub(super) unsafe fn each<T: Layout>(
     if count == 0 {
         return Ok(());
     }
-    layout::check_pointer(&param, p)?;
+    if p.is_null() {
+        return Err(Error::new(
+            Status::InvalidArgument,
+            format!("{param} must not be NULL where its count is {count}"),
+        ));
+    }
     let align = align_of::<T>();
     if stride < size_of::<layout::Head>() || !stride.is_multiple_of(align) {
         let accepted = format!("sizeof({}) of your header, a multiple of {align}", T::INFO.name);
@@ -122,6 +127,7 @@ pub(super) unsafe fn each<T: Layout>(
     for i in 0..count {
         // SAFETY: the caller promises `count` structs at this stride.
         let at = unsafe { p.cast::<u8>().add(i * stride) }.cast::<T>();
+        layout::check_pointer(&Indexed(param, i), at)?;
         // SAFETY: `at` points to a struct of the list, which begins with its size.
         let size = unsafe { at.cast::<u32>().read() } as usize;
         if size > stride {

@@ -26,6 +26,8 @@ pub mod weather;
 
 pub mod context;
 
+pub mod timeline;
+
 pub mod frame;
 
 pub mod view;

@@ -86,6 +86,8 @@ pub const WK_STRUCT_TYPE_VULKAN_SEMAPHORE: wk_struct_type = 16;
 pub const WK_STRUCT_TYPE_VULKAN_TARGET: wk_struct_type = 17;
 /// wk_frame_textures
 pub const WK_STRUCT_TYPE_FRAME_TEXTURES: wk_struct_type = 18;
+/// wk_weather_overrides
+pub const WK_STRUCT_TYPE_WEATHER_OVERRIDES: wk_struct_type = 19;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -274,3 +274,88 @@ impl wk_weather {
         reserved0: 0,
     };
 }
+
+/// Which fields of a wk_weather_overrides are set.
+pub type wk_override_flags = u32;
+/// aerosol_extinction_per_m
+pub const WK_OVERRIDE_AEROSOL_EXTINCTION: wk_override_flags = 0x1;
+/// fog_extinction_per_m
+pub const WK_OVERRIDE_FOG_EXTINCTION: wk_override_flags = 0x2;
+/// precipitation_extinction_per_m
+pub const WK_OVERRIDE_PRECIPITATION_EXTINCTION: wk_override_flags = 0x4;
+/// visibility_above_fog_m
+pub const WK_OVERRIDE_VISIBILITY_ABOVE_FOG: wk_override_flags = 0x8;
+/// humidity_growth
+pub const WK_OVERRIDE_HUMIDITY_GROWTH: wk_override_flags = 0x10;
+/// rayleigh_density_ratio
+pub const WK_OVERRIDE_RAYLEIGH_DENSITY: wk_override_flags = 0x20;
+/// rayleigh_scale_height_m
+pub const WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT: wk_override_flags = 0x40;
+/// Rain does not bring a cloud that the report has not.
+pub const WK_OVERRIDE_RAIN_WITHOUT_CLOUD: wk_override_flags = 0x80;
+/// cloud_direct and cloud_diffuse
+pub const WK_OVERRIDE_CLOUD_LIGHT: wk_override_flags = 0x100;
+/// wave_height_m
+pub const WK_OVERRIDE_WAVE_HEIGHT: wk_override_flags = 0x200;
+/// wetness
+pub const WK_OVERRIDE_WETNESS: wk_override_flags = 0x400;
+
+/// The host's own figures in place of the laws that tie the parts of the weather together. An extension: put it into
+/// wk_weather.next.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_weather_overrides {
+    /// sizeof(wk_weather_overrides) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WEATHER_OVERRIDES.
+    pub struct_type: wk_struct_type,
+    /// The next extension. Default NULL.
+    pub next: *const c_void,
+    /// Which fields are set; the laws give the others. Default 0.
+    pub set: wk_override_flags,
+    /// Must be 0.
+    pub reserved0: u32,
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share of the visibility. Range [0, 10].
+    pub aerosol_extinction_per_m: f64,
+    /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10].
+    pub fog_extinction_per_m: f64,
+    /// Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10].
+    pub precipitation_extinction_per_m: f64,
+    /// Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
+    pub visibility_above_fog_m: f64,
+    /// Growth of particles by humidity over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches it off.
+    pub humidity_growth: f64,
+    /// Air density at sea level over the standard's. Range [0, 10].
+    pub rayleigh_density_ratio: f64,
+    /// Scale height of the air, m. Range [100, 50000].
+    pub rayleigh_scale_height_m: f64,
+    /// Part of the sun's beam below the clouds. Range [0, 1].
+    pub cloud_direct: f64,
+    /// Diffuse light below the clouds as part of the light above. Range [0, 1].
+    pub cloud_diffuse: f64,
+    /// Significant wave height, m, in place of what wind or state say. Range [0, 30].
+    pub wave_height_m: f64,
+    /// Wetness of the ground, in place of what falls on it. Range [0, 1].
+    pub wetness: f64,
+}
+
+impl wk_weather_overrides {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WEATHER_OVERRIDES,
+        next: null(),
+        set: 0,
+        reserved0: 0,
+        aerosol_extinction_per_m: 0.0,
+        fog_extinction_per_m: 0.0,
+        precipitation_extinction_per_m: 0.0,
+        visibility_above_fog_m: 0.0,
+        humidity_growth: 0.0,
+        rayleigh_density_ratio: 0.0,
+        rayleigh_scale_height_m: 0.0,
+        cloud_direct: 0.0,
+        cloud_diffuse: 0.0,
+        wave_height_m: 0.0,
+        wetness: 0.0,
+    };
+}

@@ -2,12 +2,12 @@
 
 use std::ptr::null;
 
-use super::{input, layout, weather::*};
+use super::{input, layout, status::WK_STRUCT_TYPE_WEATHER_OVERRIDES, weather::*};
 use crate::{
     error::{Error, Result},
     weather::{
-        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, MAX_CLOUD_LAYERS, Precipitation,
-        PrecipitationKind, Sea, Surface, SurfaceState, Swell, Weather, Wind,
+        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, MAX_CLOUD_LAYERS, Overrides,
+        Precipitation, PrecipitationKind, Sea, Surface, SurfaceState, Swell, Weather, Wind,
     },
 };
 
@@ -22,9 +22,9 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&param, p)? };
     // SAFETY: as above.
-    unsafe { layout::check_chain(&param, c.next, &[])? };
+    unsafe { layout::check_chain(&param, c.next, &[WK_STRUCT_TYPE_WEATHER_OVERRIDES])? };
     let (count, stride) = (c.cloud_count as usize, c.cloud_stride as usize);
-    let mut weather = fields(&c)?;
+    let mut weather = fields(&c).map_err(|e| flat_name(param, e))?;
     let mut take = |_: usize, layer: wk_cloud_layer| {
         weather.clouds.push(cloud(&layer)?);
         Ok(())
@@ -34,6 +34,43 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     unsafe { input::each(&name, c.clouds, count, stride, MAX_CLOUD_LAYERS, &mut take)? };
     weather.validate().map_err(|e| flat_name(param, e))?;
     Ok(weather)
+}
+
+/// The overrides in a weather's chain, which [`from_c`] has checked; none set if there are none.
+///
+/// # Safety
+/// As [`from_c`].
+///
+/// # Errors
+/// The first wrong field, named as in the header.
+pub(super) unsafe fn overrides(param: &str, p: *const wk_weather) -> Result<Overrides> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&param, p)? };
+    // SAFETY: as above; the chain was checked.
+    let Some(c) = (unsafe { layout::extension::<wk_weather_overrides>(c.next)? }) else {
+        return Ok(Overrides::default());
+    };
+    let some = |bit: wk_override_flags, value: f64| (c.set & bit != 0).then_some(value);
+    let overrides = Overrides {
+        aerosol_extinction_per_m: some(WK_OVERRIDE_AEROSOL_EXTINCTION, c.aerosol_extinction_per_m),
+        fog_extinction_per_m: some(WK_OVERRIDE_FOG_EXTINCTION, c.fog_extinction_per_m),
+        precipitation_extinction_per_m: some(WK_OVERRIDE_PRECIPITATION_EXTINCTION, c.precipitation_extinction_per_m),
+        visibility_above_fog_m: some(WK_OVERRIDE_VISIBILITY_ABOVE_FOG, c.visibility_above_fog_m),
+        humidity_growth: some(WK_OVERRIDE_HUMIDITY_GROWTH, c.humidity_growth),
+        rayleigh_density_ratio: some(WK_OVERRIDE_RAYLEIGH_DENSITY, c.rayleigh_density_ratio),
+        rayleigh_scale_height_m: some(WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT, c.rayleigh_scale_height_m),
+        rain_needs_cloud: (c.set & WK_OVERRIDE_RAIN_WITHOUT_CLOUD != 0).then_some(false),
+        cloud_light: (c.set & WK_OVERRIDE_CLOUD_LIGHT != 0).then_some((c.cloud_direct, c.cloud_diffuse)),
+        wave_height_m: some(WK_OVERRIDE_WAVE_HEIGHT, c.wave_height_m),
+        wetness: some(WK_OVERRIDE_WETNESS, c.wetness),
+    };
+    let name = |e: Error| {
+        let text = e.message.replacen("overrides.", "wk_weather_overrides.", 1);
+        let text = text.replacen("cloud_light.0", "cloud_direct", 1).replacen("cloud_light.1", "cloud_diffuse", 1);
+        Error::new(e.status, text)
+    };
+    overrides.validate().map_err(name)?;
+    Ok(overrides)
 }
 
 /// `wind.speed_m_s must ..` as C knows it: `weather.wind_speed_m_s must ..`.

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, veil::*, view::*, vulkan::*,
+    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -50,6 +50,16 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_create", "device", false, |h| unsafe { wk_context_create(h.cast(), null(), null_mut()) }),
         case("wk_context_destroy", "context", true, |h| unsafe { wk_context_destroy(h.cast()) }),
         case("wk_context_set_sun", "context", false, |h| unsafe { wk_context_set_sun(h.cast(), null()) }),
+        case("wk_context_set_moon", "context", false, |h| unsafe { wk_context_set_moon(h.cast(), null()) }),
+        case("wk_context_set_weather", "context", false, |h| unsafe {
+            wk_context_set_weather(h.cast(), null(), 0.0, 0.0)
+        }),
+        case("wk_context_set_clock", "context", false, |h| unsafe { wk_context_set_clock(h.cast(), 0.0, 0.0) }),
+        case("wk_context_set_exposure", "context", false, |h| unsafe { wk_context_set_exposure(h.cast(), 0, 0.0) }),
+        case("wk_context_update", "context", false, |h| unsafe { wk_context_update(h.cast(), 0.0) }),
+        case("wk_context_save", "context", false, |h| unsafe { wk_context_save(h.cast(), null_mut(), 0, null_mut()) }),
+        case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
+        case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
@@ -122,6 +132,7 @@ const WITHOUT: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
     "wk_version",
+    "wk_utc_from_calendar",
     "wk_get_veil_snippet",
     "wk_set_log_callback",
     "wk_device_create",

@@ -6,4 +6,5 @@
 
 mod handles;
 mod structs;
+mod weather;
 mod world;

@@ -7,7 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, veil::*, view::*, vulkan::*,
+    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -76,6 +77,16 @@ fn cases(world: &World) -> Vec<Case> {
             let frame = wk_frame { frame_id: next_frame(), target: p, ..init("wk_frame") };
             unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }
         }),
+        case("wk_weather", "weather", false, move |p| unsafe { wk_context_set_weather(context, p.cast(), 0.0, 0.0) }),
+        case("wk_weather_overrides", "wk_weather_overrides", true, move |p| {
+            let weather = wk_weather { next: p, ..init("wk_weather") };
+            unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
+        }),
+        case("wk_cloud_layer", "weather.clouds[0]", true, move |p| {
+            // A list of one: the stride leads nowhere and may be as large as the sizes that are tried.
+            let weather = wk_weather { clouds: p.cast(), cloud_count: 1, cloud_stride: 2 << 20, ..init("wk_weather") };
+            unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
+        }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
         }),
@@ -89,14 +100,7 @@ fn cases(world: &World) -> Vec<Case> {
 }
 
 /// Structs that need a live window or a Vulkan host: their own tests reach them.
-const ELSEWHERE: &[&str] = &[
-    "wk_surface_config",
-    "wk_vulkan_image",
-    "wk_vulkan_semaphore",
-    "wk_vulkan_target",
-    "wk_weather",
-    "wk_cloud_layer",
-];
+const ELSEWHERE: &[&str] = &["wk_surface_config", "wk_vulkan_image", "wk_vulkan_semaphore", "wk_vulkan_target"];
 
 /// Records a frame of another number, after which every number but that begins a new frame.
 unsafe fn record_again(view: *mut wk_view) {
@@ -203,7 +207,8 @@ fn sizes_of_other_versions_are_understood_or_refused() {
 #[test]
 fn foreign_structs_and_extensions_are_refused() {
     let world = World::new();
-    for case in &cases(&world) {
+    // An extension is told from others by its type alone: the next test.
+    for case in cases(&world).iter().filter(|c| !c.parameter.starts_with("wk_")) {
         let mut bytes = Bytes::of(case.structure, 0);
         bytes.put(4, 999_u32);
         let name = format!("{}.struct_type must be WK_STRUCT_TYPE_", case.parameter);
@@ -225,6 +230,34 @@ fn foreign_structs_and_extensions_are_refused() {
             assert!(message().contains(&name), "{}", message());
         }
     }
+}
+
+#[test]
+fn extension_chains_are_walked_with_care() {
+    let world = World::new();
+    let set = |next: *const c_void| {
+        let weather = wk_weather { next, ..init("wk_weather") };
+        // SAFETY: live pointers.
+        (unsafe { wk_context_set_weather(world.context, &weather, 0.0, 0.0) }, message())
+    };
+    let mut a = init::<wk_weather_overrides>("wk_weather_overrides");
+    let mut b = a;
+    assert_eq!(set((&raw const a).cast()).0, WK_OK);
+    a.next = (&raw const b).cast();
+    let (status, text) = set((&raw const a).cast());
+    assert_eq!(
+        (status, text.contains("weather.next holds two extensions of type 19")),
+        (WK_ERROR_INVALID_ARGUMENT, true)
+    );
+    // A cycle is no endless walk.
+    b.next = (&raw const a).cast();
+    assert_eq!(set((&raw const a).cast()).0, WK_ERROR_INVALID_ARGUMENT);
+    a.next = null();
+    a.struct_type = 999;
+    let (status, text) = set((&raw const a).cast());
+    assert_eq!((status, text.contains("weather.next holds an extension of type 999")), (WK_ERROR_UNSUPPORTED, true));
+    let (status, text) = set(1 as *const c_void);
+    assert_eq!((status, text.contains("weather.next must be aligned")), (WK_ERROR_INVALID_ARGUMENT, true));
 }
 
 #[test]

@@ -1,0 +1,169 @@
+//! Weather, clock, saving: ranges named as in the header, whole round trips.
+
+use std::ptr::null_mut;
+
+use welkin::capi::{context::*, status::*, timeline::*, weather::*, weather_kinds::*};
+
+use super::world::{World, init, message};
+
+fn set(world: &World, change: impl Fn(&mut wk_weather)) -> (wk_status, String) {
+    let mut weather = init("wk_weather");
+    change(&mut weather);
+    // SAFETY: live pointers.
+    let status = unsafe { wk_context_set_weather(world.context, &weather, 0.0, 0.0) };
+    (status, message())
+}
+
+#[test]
+fn ranges_are_named_as_the_header_names_them() {
+    let world = World::new();
+    type Change = fn(&mut wk_weather);
+    let cases: [(&str, Change); 9] = [
+        ("weather.visibility_m must be in [1, 1000000] m, got 0", |w| w.visibility_m = 0.0),
+        ("weather.wind_speed_m_s must be in [0, 120] m/s", |w| w.wind_speed_m_s = -1.0),
+        ("weather.wind_variable_to_deg must be in [0, 360]", |w| {
+            (w.has, w.wind_variable_to_deg) = (WK_WEATHER_HAS_WIND_VARIABLE, 361.0);
+        }),
+        ("weather.swell_period_s must be in [1, 30] s", |w| w.has = WK_WEATHER_HAS_SWELL),
+        ("weather.sea_state must be in [0, 9]", |w| (w.has, w.sea_state) = (WK_WEATHER_HAS_SEA_STATE, 10)),
+        ("weather.sea_state must be in [0, 9]", |w| (w.has, w.sea_state) = (WK_WEATHER_HAS_SEA_STATE, 300)),
+        ("weather.aerosol_asymmetry must be in [-0.99, 0.99]", |w| {
+            (w.has, w.aerosol_asymmetry) = (WK_WEATHER_HAS_AEROSOL_ASYMMETRY, 1.0);
+        }),
+        ("weather.precipitation_rate_mm_h must be 0", |w| w.precipitation_rate_mm_h = 1.0),
+        ("weather.clouds must not be NULL where its count is 2", |w| w.cloud_count = 2),
+    ];
+    for (wanted, change) in cases {
+        let (status, text) = set(&world, change);
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{wanted}: {text}");
+        assert!(text.contains(wanted), "{wanted}: {text}");
+    }
+    // A field whose bit is clear is not looked at.
+    assert_eq!(set(&world, |w| w.sea_state = 300).0, WK_OK);
+}
+
+#[test]
+fn lists_have_a_limit_and_a_stride() {
+    let world = World::new();
+    let mut layers = vec![init::<wk_cloud_layer>("wk_cloud_layer"); 17];
+    let stride = size_of::<wk_cloud_layer>() as u32;
+    let (count, at) = (layers.len() as u32, layers.as_ptr());
+    let (status, text) = set(&world, |w| (w.clouds, w.cloud_count) = (at, count));
+    assert_eq!((status, text.contains("weather.clouds's count must be at most 16")), (WK_ERROR_INVALID_ARGUMENT, true));
+    for bad in [0, 8, stride - 8, stride + 1] {
+        let (status, text) = set(&world, |w| (w.clouds, w.cloud_count, w.cloud_stride) = (at, 2, bad));
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{bad}: {text}");
+        assert!(text.contains("stride"), "{bad}: {text}");
+    }
+    layers[1].cover = 2.0;
+    let at = layers.as_ptr();
+    let (status, text) = set(&world, |w| (w.clouds, w.cloud_count) = (at, 2));
+    assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
+    assert!(text.contains("weather.clouds[1].cover must be in [0, 1], got 2"), "{text}");
+    // Every second element: the wrong one is stepped over.
+    let (status, text) = set(&world, |w| (w.clouds, w.cloud_count, w.cloud_stride) = (at, 3, 2 * stride));
+    assert_eq!(status, WK_OK, "{text}");
+}
+
+#[test]
+fn overrides_are_named_too() {
+    let world = World::new();
+    let mut overrides = init::<wk_weather_overrides>("wk_weather_overrides");
+    (overrides.set, overrides.cloud_diffuse) = (WK_OVERRIDE_CLOUD_LIGHT, 1.5);
+    let (status, text) = set(&world, |w| w.next = (&raw const overrides).cast());
+    assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
+    assert!(text.contains("wk_weather_overrides.cloud_diffuse must be in [0, 1], got 1.5"), "{text}");
+}
+
+#[test]
+fn dates_before_the_last_update_are_refused() {
+    let world = World::new();
+    let weather = init::<wk_weather>("wk_weather");
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_update(world.context, 10.0), WK_OK);
+        assert_eq!(wk_context_set_weather(world.context, &weather, 9.0, 0.0), WK_ERROR_WRONG_ORDER);
+        assert!(message().contains("start_time_s"), "{}", message());
+        assert_eq!(wk_context_update(world.context, 9.0), WK_ERROR_WRONG_ORDER);
+        assert!(message().contains("time_s must be at least 10 s"), "{}", message());
+        for bad in [f64::NAN, f64::INFINITY, 1e11] {
+            assert_eq!(wk_context_update(world.context, bad), WK_ERROR_INVALID_ARGUMENT);
+            assert!(message().contains("time_s must be"), "{}", message());
+            for (start, duration, name) in [(bad, 0.0, "start_time_s"), (20.0, bad, "transition_s")] {
+                let status = wk_context_set_weather(world.context, &weather, start * 100.0, duration);
+                assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{name} {bad}");
+                assert!(message().contains(name), "{}", message());
+            }
+            assert_eq!(wk_context_set_clock(world.context, bad * 1e9, 0.0), WK_ERROR_INVALID_ARGUMENT);
+            assert!(message().contains("utc_s must be"), "{}", message());
+            assert_eq!(wk_context_set_clock(world.context, 0.0, bad), WK_ERROR_INVALID_ARGUMENT);
+            assert!(message().contains("time_s must be"), "{}", message());
+            assert_eq!(wk_context_set_exposure(world.context, WK_EXPOSURE_EV100, bad), WK_ERROR_INVALID_ARGUMENT);
+            assert!(message().contains("value must be"), "{}", message());
+        }
+        assert_eq!(wk_context_set_exposure(world.context, 9, 0.0), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("mode must be one of WK_EXPOSURE_AUTO"), "{}", message());
+        assert_eq!(wk_context_set_exposure(world.context, WK_EXPOSURE_OF_CONTEXT, 0.0), WK_ERROR_INVALID_ARGUMENT);
+        assert_eq!(wk_context_set_exposure(world.context, WK_EXPOSURE_EV100, 12.0), WK_OK);
+    }
+}
+
+#[test]
+fn calendar_dates_become_unix_time() {
+    let mut utc = 7.0;
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_utc_from_calendar(2026, 6, 21, 10, 0, 0.0, &mut utc), WK_OK);
+        assert!((utc - 1_782_036_000.0).abs() < 1e-3, "{utc}");
+        let before = utc;
+        assert_eq!(wk_utc_from_calendar(2026, 13, 1, 0, 0, 0.0, &mut utc), WK_ERROR_INVALID_ARGUMENT);
+        assert_eq!(wk_utc_from_calendar(2026, 1, 1, 0, 0, f64::NAN, &mut utc), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("second must be finite"), "{}", message());
+        assert_eq!(utc, before);
+    }
+}
+
+#[test]
+fn a_saved_state_comes_back_whole_or_not_at_all() {
+    let (a, b) = (World::new(), World::new());
+    let storm = wk_weather {
+        visibility_m: 900.0,
+        fog_kind: WK_FOG_FOG,
+        precipitation_kind: WK_PRECIPITATION_DRIZZLE,
+        precipitation_rate_mm_h: 0.3,
+        ..init("wk_weather")
+    };
+    let sun = init::<wk_given_direction>("wk_given_direction");
+    let hash = |w: &World| {
+        let mut h = 0;
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_context_state_hash(w.context, &mut h) }, WK_OK);
+        h
+    };
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(hash(&a), hash(&b));
+        assert_eq!(wk_context_set_weather(a.context, &storm, 5.0, 60.0), WK_OK);
+        assert_eq!(wk_context_set_moon(a.context, &sun), WK_OK);
+        assert_eq!(wk_context_update(a.context, 30.0), WK_OK);
+        assert_ne!(hash(&a), hash(&b));
+        let mut size = 0;
+        assert_eq!(wk_context_save(a.context, null_mut(), 0, &mut size), WK_OK);
+        let mut state = vec![0xAA_u8; size + 1];
+        let mut got = 0;
+        assert_eq!(
+            wk_context_save(a.context, state.as_mut_ptr().cast(), size - 1, &mut got),
+            WK_ERROR_INVALID_ARGUMENT
+        );
+        assert!(message().contains(&format!("capacity must be at least {size}")), "{}", message());
+        assert_eq!((got, state[0]), (size, 0xAA));
+        assert_eq!(wk_context_save(a.context, state.as_mut_ptr().cast(), state.len(), &mut got), WK_OK);
+        assert_eq!((got, state[size]), (size, 0xAA));
+        let before = hash(&b);
+        assert_eq!(wk_context_load(b.context, state.as_ptr().cast(), size / 2), WK_ERROR_PARSE);
+        assert_eq!(wk_context_load(b.context, state.as_ptr().cast(), 0), WK_ERROR_PARSE);
+        assert_eq!(hash(&b), before);
+        assert_eq!(wk_context_load(b.context, state.as_ptr().cast(), size), WK_OK, "{}", message());
+        assert_eq!(hash(&a), hash(&b));
+    }
+}
