@@ -16,5 +16,6 @@ pub mod surface;
 pub mod vulkan;
 
 mod device;
+mod stand_in;
 mod x11;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use raw_window_handle as rwh;
 
-use super::{Device, DeviceOptions};
+use super::{Device, DeviceOptions, stand_in::StandIn};
 use crate::error::{Error, Result, Status};
 
 /// A native window. Pointers and numbers are the host's and outlive the device and surface made from them.
@@ -238,10 +238,15 @@ pub struct SurfaceOptions {
     pub pacing: Pacing,
 }
 
+/// What effects do with the image that they draw into.
+const IMAGE_USAGE: wgpu::TextureUsages =
+    wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::COPY_SRC).union(wgpu::TextureUsages::COPY_DST);
+
 /// A window to present to. One thread at a time; on macOS the main thread.
 pub struct Surface {
     // Dropped in this order: an image before its surface, the surface before the device's instance.
     current: Option<wgpu::SurfaceTexture>,
+    stand_in: Option<StandIn>,
     surface: wgpu::Surface<'static>,
     device: Arc<Device>,
     window: NativeWindow,
@@ -284,6 +289,7 @@ impl Surface {
         }
         Ok(Self {
             current: None,
+            stand_in: None,
             surface,
             device: device.clone(),
             window: *window,
@@ -321,7 +327,7 @@ impl Surface {
         }
         let device = self.device.clone();
         let _entered = device.enter()?;
-        self.current = None;
+        (self.current, self.stand_in) = (None, None);
         self.ready = false;
         self.options = Some(*options);
         if options.width == 0 || options.height == 0 {
@@ -341,12 +347,9 @@ impl Surface {
         }
         let format = choose_format(&caps.formats, options.encoding)?;
         self.format = Some(format);
-        let wanted = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST
-            | wgpu::TextureUsages::TEXTURE_BINDING;
+        let direct = caps.usages.contains(IMAGE_USAGE);
         let config = wgpu::SurfaceConfiguration {
-            usage: caps.usages & wanted,
+            usage: if direct { IMAGE_USAGE } else { wgpu::TextureUsages::RENDER_ATTACHMENT },
             format,
             color_space: wgpu::SurfaceColorSpace::Auto,
             width: options.width,
@@ -363,6 +366,10 @@ impl Surface {
         if let Some(fault) = device.take_fault() {
             self.lost = true;
             return Err(outdated(&fault.message));
+        }
+        if !direct {
+            self.stand_in = Some(StandIn::new(&device, (options.width, options.height), format, IMAGE_USAGE)?);
+            device.check()?;
         }
         self.ready = true;
         Ok(())
@@ -382,7 +389,7 @@ impl Surface {
             return Err(Error::new(Status::WrongOrder, "the surface must be configured before it gives images"));
         };
         if let Some(image) = &self.current {
-            return Ok(image.texture.clone());
+            return Ok(self.picture(image));
         }
         if !self.ready {
             let (w, h) = (options.width, options.height);
@@ -418,9 +425,14 @@ impl Surface {
                 return Err(device.take_fault().unwrap_or_else(|| outdated("the surface gave no image")));
             }
         };
-        let texture = image.texture.clone();
+        let picture = self.picture(&image);
         self.current = Some(image);
-        Ok(texture)
+        Ok(picture)
+    }
+
+    /// What the host draws into for an image in hand.
+    fn picture(&self, image: &wgpu::SurfaceTexture) -> wgpu::Texture {
+        self.stand_in.as_ref().map_or_else(|| image.texture.clone(), |s| s.texture.clone())
     }
 
     /// Shows the image in hand, after the work submitted for it.
@@ -434,6 +446,9 @@ impl Surface {
         let Some(image) = self.current.take() else {
             return Err(Error::new(Status::WrongOrder, "there is no image to present: acquire one first"));
         };
+        if let Some(stand_in) = &self.stand_in {
+            stand_in.copy_to(&device, &image.texture);
+        }
         device.queue.present(image);
         if let Some(fault) = device.take_fault() {
             self.ready = false;

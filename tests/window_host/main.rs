@@ -29,6 +29,7 @@ fn size(width: u32, height: u32) -> SurfaceOptions {
 /// Clears the next image to a colour and presents it.
 fn show(device: &Device, surface: &mut Surface, colour: [f64; 3]) -> welkin::Result<()> {
     let texture = surface.acquire()?;
+    assert!(texture.usage().contains(wgpu::TextureUsages::COPY_SRC), "effects read what is drawn so far");
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let [r, g, b] = colour;

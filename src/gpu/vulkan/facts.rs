@@ -329,7 +329,8 @@ const DEVICE_EXTENSIONS: &[(&CStr, u32)] = &[
     (ash::khr::multiview::NAME, vk::API_VERSION_1_1),
     (ash::khr::_16bit_storage::NAME, vk::API_VERSION_1_1),
     (ash::khr::image_format_list::NAME, vk::API_VERSION_1_2),
-    (ash::khr::driver_properties::NAME, vk::API_VERSION_1_2),
+    // Only queried of the physical device, for which it need not be enabled.
+    (ash::khr::driver_properties::NAME, 0),
     (ash::khr::timeline_semaphore::NAME, vk::API_VERSION_1_2),
     (ash::khr::shader_float16_int8::NAME, vk::API_VERSION_1_2),
     (ash::khr::maintenance4::NAME, vk::API_VERSION_1_3),

@@ -1,0 +1,297 @@
+/* A host without graphics of its own: a plain X11 window, named to Welkin by its handle, that shows the sky.
+ *
+ *     window_host [--gl]                    until the window is closed; the sun goes round, the left button looks about
+ *     window_host [--gl] --check [OUT.ppm]  draws, resizes, hides and shows itself, and looks at its pixels in X
+ *
+ * --gl has Welkin draw with OpenGL instead of the best interface there is.
+ *
+ * The host owns the window, its events and its size. What happens to the window comes back as a status. */
+#define _DEFAULT_SOURCE /* usleep */
+#include "welkin.h"
+
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define WK_CHECK(call)                                                                                 \
+    do {                                                                                               \
+        wk_status status_ = (call);                                                                    \
+        if (status_ < 0) {                                                                             \
+            fprintf(stderr, "%s: %s: %s\n", #call, wk_status_name(status_), wk_last_error_message()); \
+            exit(1);                                                                                   \
+        }                                                                                              \
+    } while (0)
+
+#define EXPECT(condition, ...)                                              \
+    do {                                                                    \
+        if (!(condition)) {                                                 \
+            fprintf(stderr, "%s:%d: %s: ", __FILE__, __LINE__, #condition); \
+            fprintf(stderr, __VA_ARGS__);                                   \
+            fputc('\n', stderr);                                            \
+            exit(1);                                                        \
+        }                                                                   \
+    } while (0)
+
+typedef struct app {
+    Display *display;
+    Window window;
+    Atom close;
+    uint32_t width, height;
+    bool open, outdated;
+    double azimuth, pitch; /* where the camera looks, rad */
+    wk_device *device;
+    wk_surface *surface;
+    wk_context *context;
+    wk_view *view;
+    uint64_t frame_id;
+} app;
+
+/* ---- the host's window ---- */
+
+static void open_window(app *a)
+{
+    XInitThreads(); /* the driver's threads use the connection too */
+    a->display = XOpenDisplay(NULL);
+    EXPECT(a->display, "no X display; is DISPLAY set?");
+    a->window = XCreateSimpleWindow(a->display, DefaultRootWindow(a->display), 0, 0, a->width, a->height, 0, 0, 0);
+    XStoreName(a->display, a->window, "Welkin");
+    XSelectInput(a->display, a->window, StructureNotifyMask | Button1MotionMask);
+    a->close = XInternAtom(a->display, "WM_DELETE_WINDOW", False);
+    XSetWMProtocols(a->display, a->window, &a->close, 1);
+    XMapWindow(a->display, a->window);
+    a->open = true;
+}
+
+static void take_events(app *a)
+{
+    XSync(a->display, False);
+    while (XPending(a->display)) {
+        XEvent event;
+        XNextEvent(a->display, &event);
+        if (event.type == ConfigureNotify) {
+            a->outdated |= a->width != (uint32_t)event.xconfigure.width || a->height != (uint32_t)event.xconfigure.height;
+            a->width = (uint32_t)event.xconfigure.width;
+            a->height = (uint32_t)event.xconfigure.height;
+        } else if (event.type == MotionNotify) {
+            a->azimuth = 6.2831853 * event.xmotion.x / a->width;
+            a->pitch = 1.5 * (0.5 - (double)event.xmotion.y / a->height);
+        } else if (event.type == ClientMessage && (Atom)event.xclient.data.l[0] == a->close) {
+            a->open = false;
+        }
+    }
+}
+
+/* ---- Welkin ---- */
+
+static void open_welkin(app *a, wk_backend_flags backends)
+{
+    wk_device_desc desc = WK_DEVICE_DESC_INIT;
+    desc.backends = backends;
+    wk_window window = WK_WINDOW_INIT;
+    window.kind = WK_WINDOW_XLIB;
+    window.display = a->display;
+    window.screen = DefaultScreen(a->display);
+    window.id = a->window;
+    WK_CHECK(wk_device_create_for_window(&desc, &window, &a->device));
+    WK_CHECK(wk_surface_create(a->device, &window, &a->surface));
+    WK_CHECK(wk_context_create(a->device, NULL, &a->context));
+    WK_CHECK(wk_view_create(a->context, NULL, &a->view));
+    wk_caps caps = WK_CAPS_INIT;
+    WK_CHECK(wk_device_get_caps(a->device, &caps));
+    printf("%s (%s), tier %u\n", caps.adapter_name, caps.driver, caps.tier);
+}
+
+static void close_welkin(app *a)
+{
+    WK_CHECK(wk_view_destroy(a->view));
+    WK_CHECK(wk_context_destroy(a->context));
+    WK_CHECK(wk_surface_destroy(a->surface));
+    WK_CHECK(wk_device_destroy(a->device));
+}
+
+static void configure(app *a)
+{
+    wk_surface_config config = WK_SURFACE_CONFIG_INIT;
+    config.width = a->width;
+    config.height = a->height;
+    WK_CHECK(wk_surface_configure(a->surface, &config));
+    a->outdated = false;
+}
+
+/* World (east, north, up) to eye (right, up, back), column by column. */
+static void look(double m[16], double azimuth, double pitch)
+{
+    const double sa = sin(azimuth), ca = cos(azimuth), sp = sin(pitch), cp = cos(pitch);
+    const double right[3] = {ca, -sa, 0.0}, up[3] = {-sa * sp, -ca * sp, cp}, back[3] = {-sa * cp, -ca * cp, -sp};
+    memset(m, 0, 16 * sizeof *m);
+    for (int c = 0; c < 3; c++) {
+        m[4 * c] = right[c];
+        m[4 * c + 1] = up[c];
+        m[4 * c + 2] = back[c];
+    }
+    m[15] = 1.0;
+}
+
+static void record(app *a)
+{
+    wk_own_target target = WK_OWN_TARGET_INIT;
+    target.surface = a->surface;
+    wk_frame frame = WK_FRAME_INIT;
+    frame.frame_id = a->frame_id++;
+    frame.target = &target;
+    frame.position_m[2] = 2.0;
+    frame.flags = WK_FRAME_DEPTH_REVERSED;
+    look(frame.view, a->azimuth, a->pitch);
+    /* 60 degrees from top to bottom, reversed infinite depth, near plane at 0.1 m. */
+    const double focal = 1.7320508;
+    const double projection[16] = {focal * a->height / a->width, 0, 0, 0, 0, focal, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
+    memcpy(frame.projection, projection, sizeof projection);
+    WK_CHECK(wk_view_record(a->view, &frame, WK_STAGE_ALL));
+}
+
+/* Draws and shows one frame if the window can show one now. */
+static bool draw(app *a)
+{
+    take_events(a);
+    if (a->outdated) configure(a);
+    const wk_status got = wk_surface_acquire(a->surface);
+    if (got == WK_PENDING) return false; /* hidden: nothing to draw for */
+    if (got == WK_ERROR_SURFACE_OUTDATED) {
+        a->outdated = true; /* the size is in the events, before the next frame */
+        return false;
+    }
+    WK_CHECK(got);
+    record(a);
+    const wk_status shown = wk_surface_present(a->surface);
+    if (shown == WK_ERROR_SURFACE_OUTDATED) {
+        a->outdated = true;
+        return false;
+    }
+    WK_CHECK(shown);
+    return true;
+}
+
+static void set_sun(app *a, double azimuth_deg, double elevation_deg)
+{
+    wk_given_direction sun = WK_GIVEN_DIRECTION_INIT;
+    sun.azimuth_deg = azimuth_deg;
+    sun.elevation_deg = elevation_deg;
+    WK_CHECK(wk_context_set_sun(a->context, &sun));
+}
+
+/* ---- looking at the pixels, from X's side ---- */
+
+typedef struct rgb {
+    int r, g, b;
+} rgb;
+
+static rgb pixel(XImage *image, int x, int y)
+{
+    const unsigned long p = XGetPixel(image, x, y);
+    return (rgb){(int)(p >> 16 & 255), (int)(p >> 8 & 255), (int)(p & 255)};
+}
+
+static XImage *grab(app *a)
+{
+    XSync(a->display, False);
+    XImage *image = XGetImage(a->display, a->window, 0, 0, a->width, a->height, AllPlanes, ZPixmap);
+    EXPECT(image, "the window has no pixels");
+    return image;
+}
+
+static bool is_sky(rgb p) { return p.b > p.r && p.b > 40; }
+
+/* Frames until one has come to the screen and the corners show sky: presenting is not synchronous. */
+static XImage *draw_until_sky(app *a)
+{
+    for (int attempt = 0; attempt < 50; attempt++) {
+        if (!draw(a)) continue;
+        usleep(20000);
+        XImage *image = grab(a);
+        const int right = (int)a->width - 1, bottom = (int)a->height - 1;
+        if (is_sky(pixel(image, 0, 0)) && is_sky(pixel(image, right, 0)) && is_sky(pixel(image, right, bottom)) &&
+            is_sky(pixel(image, 0, bottom))) {
+            return image;
+        }
+        XDestroyImage(image);
+    }
+    EXPECT(false, "the sky never filled the window's %u x %u pixels", a->width, a->height);
+    return NULL;
+}
+
+static void write_picture(const char *path, XImage *image)
+{
+    FILE *f = fopen(path, "wb");
+    EXPECT(f, "cannot write %s", path);
+    fprintf(f, "P6\n%d %d\n255\n", image->width, image->height);
+    for (int y = 0; y < image->height; y++) {
+        for (int x = 0; x < image->width; x++) {
+            const rgb p = pixel(image, x, y);
+            fputc(p.r, f);
+            fputc(p.g, f);
+            fputc(p.b, f);
+        }
+    }
+    EXPECT(fclose(f) == 0, "cannot write %s", path);
+}
+
+static void check(app *a, const char *picture)
+{
+    a->pitch = 0.6; /* the horizon lies just below the picture */
+    set_sun(a, 200.0, 35.0);
+    configure(a);
+    XImage *image = draw_until_sky(a);
+    const rgb top = pixel(image, 160, 4), bottom = pixel(image, 160, (int)a->height - 5);
+    EXPECT(bottom.r + bottom.g > top.r + top.g, "the sky is brighter and paler near the horizon");
+    if (picture) write_picture(picture, image);
+    XDestroyImage(image);
+
+    XResizeWindow(a->display, a->window, 480, 300);
+    image = draw_until_sky(a);
+    EXPECT(a->width == 480 && a->height == 300, "the window is %u x %u now", a->width, a->height);
+    XDestroyImage(image);
+
+    XUnmapWindow(a->display, a->window);
+    for (int i = 0; i < 3; i++) draw(a); /* whatever it answers, it answers */
+    XMapWindow(a->display, a->window);
+    a->outdated = true;
+    XDestroyImage(draw_until_sky(a));
+
+    wk_surface_config minimised = WK_SURFACE_CONFIG_INIT;
+    WK_CHECK(wk_surface_configure(a->surface, &minimised));
+    EXPECT(wk_surface_acquire(a->surface) == WK_ERROR_SURFACE_OUTDATED, "no area, no image");
+    EXPECT(wk_surface_present(a->surface) == WK_ERROR_WRONG_ORDER, "nothing was acquired");
+    a->outdated = true;
+    XDestroyImage(draw_until_sky(a));
+    printf("ok\n");
+}
+
+int main(int argc, char **argv)
+{
+    wk_backend_flags backends = WK_BACKEND_ANY;
+    if (argc > 1 && strcmp(argv[1], "--gl") == 0) {
+        backends = WK_BACKEND_GL;
+        argc--, argv++;
+    }
+    const bool checking = argc > 1 && strcmp(argv[1], "--check") == 0;
+    app a = {.width = 320, .height = 200, .outdated = true, .pitch = 0.3};
+    open_window(&a);
+    open_welkin(&a, backends);
+    if (checking) {
+        check(&a, argc > 2 ? argv[2] : NULL);
+    } else {
+        for (double degrees = 0.0; a.open; degrees += 0.2) {
+            set_sun(&a, degrees, 40.0 * sin(degrees / 57.29578));
+            if (!draw(&a)) usleep(10000);
+        }
+    }
+    close_welkin(&a);
+    XDestroyWindow(a.display, a.window);
+    XCloseDisplay(a.display);
+    return 0;
+}

@@ -1,0 +1,75 @@
+//! A picture that stands in for a window's image where that can only be drawn to (OpenGL): the effects read and copy
+//! what is drawn so far, and only the finished picture goes to the window.
+
+use super::{Device, pass};
+use crate::error::Result;
+
+/// A texture like the window's image, and its way there.
+pub(super) struct StandIn {
+    pub(super) texture: wgpu::Texture,
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+}
+
+impl StandIn {
+    /// One for images of `format` and size.
+    ///
+    /// # Errors
+    /// GPU faults come through [`Device::check`].
+    pub(super) fn new(
+        device: &Device,
+        (width, height): (u32, u32),
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> Result<Self> {
+        let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("window stand-in"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("window stand-in"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
+        });
+        let view = texture.create_view(&Default::default());
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("window stand-in"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
+        });
+        let pipeline = pass::fullscreen(
+            device,
+            &pass::FullscreenDesc {
+                shader: "surface/copy.wgsl",
+                entry: "copy_texels",
+                layouts: &[&layout],
+                targets: &[format.into()],
+                constants: &[],
+                samples: 1,
+            },
+        )?;
+        Ok(Self { texture, pipeline, group })
+    }
+
+    /// Copies the picture onto the window's image and submits that.
+    pub(super) fn copy_to(&self, device: &Device, image: &wgpu::Texture) {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let view = image.create_view(&Default::default());
+        pass::draw(&mut encoder, "window", &self.pipeline, &[&self.group], &view);
+        device.queue.submit([encoder.finish()]);
+    }
+}

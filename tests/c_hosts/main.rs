@@ -1,0 +1,128 @@
+//! The C examples of hosts that draw with Vulkan or that only have a window: compiled as a C programmer would, and run;
+//! each looks at its own pixels. `WELKIN_LIB` names a ready library; without it the tests build one.
+#![cfg(target_os = "linux")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::{fs, io::BufRead, io::BufReader};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs a command to its end; its output if it succeeds.
+fn run(command: &mut Command) -> String {
+    let shown = format!("{command:?}");
+    let output = command.output().unwrap_or_else(|e| panic!("{shown}: {e}"));
+    let (out, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{shown}: {}\n{out}\n{errors}", output.status);
+    out.into_owned()
+}
+
+/// The shared library, built in the tests' own profile if none is named.
+fn library() -> PathBuf {
+    if let Some(named) = std::env::var_os("WELKIN_LIB") {
+        return named.into();
+    }
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    run(Command::new(cargo).current_dir(root()).args(["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]));
+    // The tests' temporary directory lies in the target directory.
+    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
+}
+
+/// An example's program in a folder of its own, removed with the value.
+struct Program {
+    folder: PathBuf,
+    path: PathBuf,
+}
+
+impl Program {
+    fn build(name: &str, libraries: &[&str]) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("the target directory is writable");
+        let library = library();
+        // A library with a SONAME is looked for under that name, which only an installed one has.
+        for link in ["libwelkin.so", "libwelkin.so.1"] {
+            std::os::unix::fs::symlink(&library, folder.join(link)).expect("the folder is writable");
+        }
+        let path = folder.join(name);
+        let sources = fs::read_dir(root().join("examples").join(name)).expect("the example is there");
+        let sources = sources.map(|e| e.expect("a file").path()).filter(|p| p.extension().is_some_and(|e| e == "c"));
+        let mut cc = Command::new("gcc");
+        cc.args(["-std=c11", "-g", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]).arg(root().join("include"));
+        cc.args(sources).arg("-o").arg(&path).arg("-L").arg(&folder).arg("-lwelkin").args(libraries).arg("-lm");
+        run(cc.arg(format!("-Wl,-rpath,{}", folder.display())));
+        Self { folder, path }
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// An X server without a screen, ended with the value.
+struct Server {
+    child: Child,
+    display: String,
+}
+
+impl Server {
+    fn start() -> Self {
+        let mut child = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb is installed");
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().expect("piped")).read_line(&mut line).expect("Xvfb names its display");
+        Self { child, display: format!(":{}", line.trim()) }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = (self.child.kill(), self.child.wait());
+    }
+}
+
+/// The picture's size and pixels, from a binary PPM.
+fn picture(path: &Path) -> (usize, usize, Vec<u8>) {
+    let bytes = fs::read(path).expect("the example wrote a picture");
+    let header: Vec<&[u8]> = bytes.splitn(4, |&b| b == b'\n').collect();
+    let size = String::from_utf8_lossy(header[1]).into_owned();
+    let (width, height) = size.split_once(' ').expect("width and height");
+    (width.parse().unwrap(), height.parse().unwrap(), header[3].to_vec())
+}
+
+#[test]
+fn the_vulkan_host_draws_and_checks_its_picture() {
+    let program = Program::build("vulkan_host", &["-lvulkan"]);
+    let out = program.folder.join("picture.ppm");
+    let said = run(Command::new(&program.path).arg(&out));
+    assert!(said.ends_with("ok\n"), "{said}");
+    let (width, height, pixels) = picture(&out);
+    assert_eq!((width, height, pixels.len()), (640, 360, 640 * 360 * 3));
+}
+
+#[test]
+fn the_window_host_draws_resizes_and_hides() {
+    let program = Program::build("window_host", &["-lX11"]);
+    let server = Server::start();
+    for backend in [&[][..], &["--gl"]] {
+        let out = program.folder.join("picture.ppm");
+        let mut host = Command::new(&program.path);
+        let said = run(host.args(backend).arg("--check").arg(&out).env("DISPLAY", &server.display));
+        assert!(said.ends_with("ok\n"), "{said}");
+        let (width, height, pixels) = picture(&out);
+        // The screenshot is the window's own: a sky that pales towards the horizon, in every column.
+        assert_eq!((width, height), (320, 200));
+        for x in [0, 100, 319] {
+            let at = |y: usize| &pixels[3 * (y * width + x)..][..3];
+            assert!(at(2)[2] > at(2)[0] && at(197)[0] > at(2)[0], "column {x}: {:?} above {:?}", at(2), at(197));
+        }
+    }
+}
