@@ -205,6 +205,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FRAME_TEXTURES 18
 /** wk_weather_overrides */
 #define WK_STRUCT_TYPE_WEATHER_OVERRIDES 19
+/** wk_opengl_host_desc */
+#define WK_STRUCT_TYPE_OPENGL_HOST_DESC 20
+/** wk_opengl_target */
+#define WK_STRUCT_TYPE_OPENGL_TARGET 21
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -352,7 +356,8 @@ wk_status wk_device_create(const wk_device_desc *desc,
 
 /**
  * Destroys a device. NULL does nothing.
- * Thread: for a device round an OpenGL context, the thread on which it was created; else any.
+ * Thread: for a device round an OpenGL context, one on which that is (or can be made) current: elsewhere, or when the
+ * context is gone already, its objects are given up. For others any.
  * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
@@ -663,6 +668,216 @@ WK_API wk_status wk_window_init(wk_window *out, uint32_t struct_size);
 WK_API
 wk_status wk_surface_config_init(wk_surface_config *out,
                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * OpenGL hosts
+ *
+ * Welkin draws into the host's own textures, renderbuffers or framebuffers, in one of two ways.
+ *
+ * SHARED (the default): the host makes a second context that shares objects with its own, and a callback that makes one
+ * or the other current. Welkin draws in the second one, so none of the host's state can change. Fences order the two.
+ * Framebuffers are not shared, so targets are textures and renderbuffers; bind a texture again before sampling what was
+ * drawn into it, as OpenGL asks between contexts.
+ *
+ * HOST_CONTEXT: Welkin draws in the host's own context; every piece of state it touches is saved, set, and put back.
+ * Any framebuffer can be a target, the window's (0) too, by copies in and out.
+ *
+ * When a call begins the host's context is current on the calling thread, and so it is when it returns. Needed: OpenGL
+ * 3.3 or OpenGL ES 3.0, core or compatibility; compute shaders are used from 4.3 (ES 3.1) on.
+ * ====================================================================================================
+ */
+
+/**
+ * Answers the address of an OpenGL function, or NULL: what glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
+ * or glXGetProcAddress answer. Called with the host's or Welkin's context current.
+ */
+typedef const void *(*wk_opengl_get_proc_fn)(void *user, const char *name);
+
+/**
+ * Makes a context current on the calling thread: `which` is WK_OPENGL_CONTEXT_HOST or WK_OPENGL_CONTEXT_WELKIN. Answers
+ * 0 when it is, anything else when it cannot be.
+ */
+typedef int32_t (*wk_opengl_make_current_fn)(void *user, uint32_t which);
+
+/** How Welkin lives beside the host's OpenGL. */
+typedef uint32_t wk_opengl_mode;
+
+/** In a context of its own that shares objects with the host's. */
+#define WK_OPENGL_SHARED 0
+/** In the host's context, whose state is put back. */
+#define WK_OPENGL_HOST_CONTEXT 1
+
+/** How one context's commands are ordered after the other's in shared mode. */
+typedef uint32_t wk_opengl_handover;
+
+/** By fences, as the standard asks. */
+#define WK_OPENGL_FENCE 0
+/**
+ * By a flush alone: enough where one queue serves both contexts, and cheaper there. Measure before you rely on it.
+ */
+#define WK_OPENGL_FLUSH 1
+
+/** The host's OpenGL. */
+typedef struct wk_opengl_host_desc {
+    /** sizeof(wk_opengl_host_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_OPENGL_HOST_DESC. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Finds functions. Default NULL; must be given. */
+    wk_opengl_get_proc_fn get_proc;
+    /**
+     * Makes contexts current. Must be given in shared mode; in the host's context it may be NULL (the default), then
+     * the host's context is taken as it is.
+     */
+    wk_opengl_make_current_fn make_current;
+    /** Handed to both. They are called on whatever thread calls Welkin, one at a time. Default NULL. */
+    void *user;
+    /** Default WK_OPENGL_SHARED. */
+    wk_opengl_mode mode;
+    /** Default WK_OPENGL_FENCE. */
+    wk_opengl_handover handover;
+    /** WK_DEVICE_FORCE_TIER0 or 0, the default; WK_DEVICE_FORCE_SOFTWARE has no meaning here. */
+    wk_device_flags flags;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_opengl_host_desc;
+
+/** Every field of `wk_opengl_host_desc` at its default. */
+#define WK_OPENGL_HOST_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_opengl_host_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_OPENGL_HOST_DESC, \
+    /* next */ NULL, \
+    /* get_proc */ NULL, \
+    /* make_current */ NULL, \
+    /* user */ NULL, \
+    /* mode */ WK_OPENGL_SHARED, \
+    /* handover */ WK_OPENGL_FENCE, \
+    /* flags */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** What an OpenGL name is a name of. */
+typedef uint32_t wk_opengl_image_kind;
+
+/** No image. */
+#define WK_OPENGL_NONE 0
+/** A texture; its level 0 is used. */
+#define WK_OPENGL_TEXTURE 1
+/** A renderbuffer. */
+#define WK_OPENGL_RENDERBUFFER 2
+/** What a framebuffer draws to, 0 being the window's; only in the host's own context. */
+#define WK_OPENGL_FRAMEBUFFER 3
+
+/** A host's image, embedded in wk_opengl_target. */
+typedef struct wk_opengl_image {
+    /** Default WK_OPENGL_NONE. */
+    wk_opengl_image_kind kind;
+    /** Its OpenGL name. Default 0. */
+    uint32_t name;
+    /** Of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100). */
+    uint32_t target;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_opengl_image;
+
+/** Every field of `wk_opengl_image` at its default. */
+#define WK_OPENGL_IMAGE_INIT { \
+    /* kind */ WK_OPENGL_NONE, \
+    /* name */ 0, \
+    /* target */ 3553, \
+    /* reserved0 */ 0 \
+}
+
+/** What is done about multisampled images. */
+typedef uint32_t wk_opengl_multisample;
+
+/** Depth is read and weather drawn per sample. From OpenGL 4.0 on; not on OpenGL ES nor on a forced tier 0. */
+#define WK_OPENGL_MULTISAMPLE_EACH 0
+/** Colour comes in averaged and goes back to every sample alike; depth is that of one sample. Not on OpenGL ES. */
+#define WK_OPENGL_MULTISAMPLE_RESOLVE 1
+
+/** The images of a frame of an OpenGL host. */
+typedef struct wk_opengl_target {
+    /** sizeof(wk_opengl_target) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_OPENGL_TARGET. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** What is drawn into. Default none. */
+    wk_opengl_image color;
+    /**
+     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+     */
+    wk_opengl_image depth;
+    /**
+     * A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
+     */
+    wk_opengl_image mask;
+    /** Pixels; must be the images' own. Default 0; must be given. */
+    uint32_t width;
+    /** Pixels; must be the images' own. Default 0; must be given. */
+    uint32_t height;
+    /** A number that the host raises when it makes an object anew under an old name. Default 0. */
+    uint64_t generation;
+    /** Default WK_OPENGL_MULTISAMPLE_EACH. */
+    wk_opengl_multisample multisample;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_opengl_target;
+
+/** Every field of `wk_opengl_target` at its default. */
+#define WK_OPENGL_TARGET_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_opengl_target), \
+    /* struct_type */ WK_STRUCT_TYPE_OPENGL_TARGET, \
+    /* next */ NULL, \
+    /* color */ WK_OPENGL_IMAGE_INIT, \
+    /* depth */ WK_OPENGL_IMAGE_INIT, \
+    /* mask */ WK_OPENGL_IMAGE_INIT, \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* generation */ UINT64_C(0), \
+    /* multisample */ WK_OPENGL_MULTISAMPLE_EACH, \
+    /* reserved0 */ 0 \
+}
+
+/** Which context is asked for. */
+typedef uint32_t wk_opengl_context;
+
+/** The one the host draws in. */
+#define WK_OPENGL_CONTEXT_HOST 0
+/** The one the host made for Welkin, sharing objects with its own. */
+#define WK_OPENGL_CONTEXT_WELKIN 1
+
+/**
+ * Wraps the host's OpenGL context, which is current on this thread. On success `*out_device` is a new handle for
+ * `wk_device_destroy`, to be called while the contexts live; nothing of the host's is ever deleted.
+ * Thread: the one on which the host's context is current.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or answer NULL; WK_ERROR_WRONG_ORDER if no context is
+ * current, or the wrong one; WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device.
+ */
+WK_API
+wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc,
+                                  wk_device **out_device);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_OPENGL_HOST_DESC_INIT`. `struct_size` is `sizeof(wk_opengl_host_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_opengl_host_desc_init(wk_opengl_host_desc *out,
+                                   uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_OPENGL_TARGET_INIT`. `struct_size` is `sizeof(wk_opengl_target)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_opengl_target_init(wk_opengl_target *out,
+                                uint32_t struct_size);
 
 /*
  * ====================================================================================================

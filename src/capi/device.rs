@@ -189,15 +189,14 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 }
 
 /// Destroys a device. NULL does nothing.
-/// Thread: for a device round an OpenGL context, the thread on which it was created; else any.
+/// Thread: for a device round an OpenGL context, one on which that is (or can be made) current: elsewhere, or when the
+/// context is gone already, its objects are given up. For others any.
 /// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {
     guard("wk_device_destroy", |_| {
         if !device.is_null() {
-            let object = handles::get::<DeviceObject>("device", device)?;
-            object.cell.check_home()?;
-            drop(handles::remove::<DeviceObject>("device", device)?);
+            let object = handles::remove::<DeviceObject>("device", device)?;
             let host = object.cell.close();
             drop(object);
             host.close()?;

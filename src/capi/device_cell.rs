@@ -7,7 +7,6 @@ use std::{
         Arc, Mutex, PoisonError, RwLock, RwLockReadGuard,
         atomic::{AtomicBool, Ordering},
     },
-    thread::{self, ThreadId},
 };
 
 use super::host::Host;
@@ -22,8 +21,6 @@ pub(super) struct DeviceCell {
     gpu: Arc<Device>,
     host: RwLock<Host>,
     poisoned: AtomicBool,
-    /// The thread on which the host's context is current, for devices that have one.
-    home: Option<ThreadId>,
     retired: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     /// What all contexts of the device share; made with the first of them.
     shared: Mutex<Option<Arc<Shared>>>,
@@ -32,13 +29,11 @@ pub(super) struct DeviceCell {
 impl DeviceCell {
     /// A device with its owner.
     pub(super) fn new(gpu: Arc<Device>, host: Host) -> Arc<Self> {
-        let home = host.is_bound_to_thread().then(|| thread::current().id());
         let host = RwLock::new(host);
         Arc::new(Self {
             gpu,
             host,
             poisoned: AtomicBool::new(false),
-            home,
             retired: Mutex::default(),
             shared: Mutex::default(),
         })
@@ -93,36 +88,39 @@ impl DeviceCell {
         Ok(())
     }
 
-    /// # Errors
-    /// [`Status::WrongOrder`] on another thread than the one that a host's context is bound to.
-    pub(super) fn check_home(&self) -> Result<()> {
-        if self.home.is_none_or(|home| home == thread::current().id()) {
-            return Ok(());
-        }
-        let text = "this device draws in the host's OpenGL context: call it on the thread that created it";
-        Err(Error::new(Status::WrongOrder, text))
-    }
-
-    /// Releases what waited for the host's context.
-    fn release_retired(&self) {
-        let waiting = std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner));
-        let _entered = self.gpu.enter().ok();
-        drop(waiting);
-    }
-
     /// Releases everything that it holds, at the end of the device, and gives the owner back.
     pub(super) fn close(&self) -> Host {
-        self.release_retired();
+        let waiting = self.take_retired();
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let _entered = self.gpu.enter().ok();
-        drop(shared);
+        self.release((waiting, shared));
         std::mem::replace(&mut *self.host.write().unwrap_or_else(PoisonError::into_inner), Host::Own)
+    }
+
+    /// Drops GPU objects. Where the host's context can no longer be entered they are given up: its objects went with it,
+    /// and a driver need not survive a call without a context.
+    fn release<T>(&self, objects: T) {
+        match self.gpu.enter() {
+            Ok(entered) => {
+                drop(objects);
+                drop(entered);
+            }
+            Err(_) if !self.host().needs_context() => drop(objects),
+            Err(e) => {
+                log::warn!("objects of a device are given up: {e}");
+                std::mem::forget(objects);
+            }
+        }
+    }
+
+    fn take_retired(&self) -> Vec<Arc<dyn Any + Send + Sync>> {
+        std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Releases what waited for the host's context, before a call that enters it by itself.
     pub(super) fn drain(&self) {
-        if self.home.is_some() && !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty() {
-            self.release_retired();
+        let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
+        if waits && let Ok(_entered) = self.gpu.enter() {
+            drop(self.take_retired());
         }
     }
 
@@ -132,19 +130,19 @@ impl DeviceCell {
     /// As [`Device::enter`].
     pub(super) fn enter(&self) -> Result<Entered<'_>> {
         let entered = self.gpu.enter()?;
-        drop(std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner)));
+        drop(self.take_retired());
         Ok(entered)
     }
 
-    /// Releases an object now if this thread may, else at the next GPU call.
+    /// Releases an object now if the host's context can be entered from here, else at the next GPU call.
     pub(super) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
-        let may = self.home.is_none_or(|home| home == thread::current().id());
-        if may {
-            // A lost device has no context to enter; wgpu releases its objects without one.
-            let _entered = self.gpu.enter().ok();
-            drop(object);
-            return;
+        match self.gpu.enter() {
+            Ok(entered) => {
+                drop(object);
+                drop(entered);
+            }
+            Err(_) if !self.host().needs_context() => drop(object),
+            Err(_) => self.retired.lock().unwrap_or_else(PoisonError::into_inner).push(object),
         }
-        self.retired.lock().unwrap_or_else(PoisonError::into_inner).push(object);
     }
 }

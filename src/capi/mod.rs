@@ -18,6 +18,8 @@ pub mod texture;
 
 pub mod surface;
 
+pub mod opengl;
+
 pub mod vulkan;
 
 pub mod weather_kinds;

@@ -88,6 +88,10 @@ pub const WK_STRUCT_TYPE_VULKAN_TARGET: wk_struct_type = 17;
 pub const WK_STRUCT_TYPE_FRAME_TEXTURES: wk_struct_type = 18;
 /// wk_weather_overrides
 pub const WK_STRUCT_TYPE_WEATHER_OVERRIDES: wk_struct_type = 19;
+/// wk_opengl_host_desc
+pub const WK_STRUCT_TYPE_OPENGL_HOST_DESC: wk_struct_type = 20;
+/// wk_opengl_target
+pub const WK_STRUCT_TYPE_OPENGL_TARGET: wk_struct_type = 21;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -138,6 +138,7 @@ const WITHOUT: &[&str] = &[
     "wk_device_create",
     "wk_device_create_for_window",
     "wk_device_create_vulkan",
+    "wk_device_create_opengl",
 ];
 
 #[test]

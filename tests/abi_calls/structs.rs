@@ -7,8 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    weather::*,
+    abi, context::*, device::*, frame::*, opengl::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
+    vulkan::*, weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -95,12 +95,20 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_window", "window", false, |p| unsafe {
             wk_device_create_for_window(null(), p.cast(), &mut null_mut())
         }),
+        case("wk_opengl_host_desc", "desc", false, |p| unsafe { wk_device_create_opengl(p.cast(), &mut null_mut()) }),
         case("wk_vulkan_host_desc", "desc", false, |p| unsafe { wk_device_create_vulkan(p.cast(), &mut null_mut()) }),
     ]
 }
 
 /// Structs that need a live window or a Vulkan host: their own tests reach them.
-const ELSEWHERE: &[&str] = &["wk_surface_config", "wk_vulkan_image", "wk_vulkan_semaphore", "wk_vulkan_target"];
+const ELSEWHERE: &[&str] = &[
+    "wk_surface_config",
+    "wk_opengl_image",
+    "wk_opengl_target",
+    "wk_vulkan_image",
+    "wk_vulkan_semaphore",
+    "wk_vulkan_target",
+];
 
 /// Records a frame of another number, after which every number but that begins a new frame.
 unsafe fn record_again(view: *mut wk_view) {
@@ -241,23 +249,26 @@ fn extension_chains_are_walked_with_care() {
         (unsafe { wk_context_set_weather(world.context, &weather, 0.0, 0.0) }, message())
     };
     let mut a = init::<wk_weather_overrides>("wk_weather_overrides");
-    let mut b = a;
+    let b = Box::into_raw(Box::new(a));
     assert_eq!(set((&raw const a).cast()).0, WK_OK);
-    a.next = (&raw const b).cast();
+    a.next = b.cast();
     let (status, text) = set((&raw const a).cast());
     assert_eq!(
         (status, text.contains("weather.next holds two extensions of type 19")),
         (WK_ERROR_INVALID_ARGUMENT, true)
     );
     // A cycle is no endless walk.
-    b.next = (&raw const a).cast();
+    // SAFETY: `b` is ours.
+    unsafe { (*b).next = (&raw const a).cast() };
     assert_eq!(set((&raw const a).cast()).0, WK_ERROR_INVALID_ARGUMENT);
     a.next = null();
     a.struct_type = 999;
     let (status, text) = set((&raw const a).cast());
     assert_eq!((status, text.contains("weather.next holds an extension of type 999")), (WK_ERROR_UNSUPPORTED, true));
-    let (status, text) = set(1 as *const c_void);
+    let (status, text) = set(std::ptr::dangling::<u8>().cast());
     assert_eq!((status, text.contains("weather.next must be aligned")), (WK_ERROR_INVALID_ARGUMENT, true));
+    // SAFETY: made above.
+    drop(unsafe { Box::from_raw(b) });
 }
 
 #[test]
@@ -269,6 +280,7 @@ fn missing_places_for_answers_are_named() {
         [
             ("out_device", wk_device_create(null(), null_mut()), message()),
             ("out_device", wk_device_create_for_window(null(), null(), null_mut()), message()),
+            ("out_device", wk_device_create_opengl(null(), null_mut()), message()),
             ("out_device", wk_device_create_vulkan(null(), null_mut()), message()),
             ("out_texture", wk_texture_create(world.device, &t, null_mut()), message()),
             ("out_surface", wk_surface_create(world.device, null(), null_mut()), message()),

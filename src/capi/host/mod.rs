@@ -1,5 +1,7 @@
 //! Whose device it is, and how a frame's images come in and go back: one file a kind of host.
 
+#[cfg_attr(any(target_os = "macos", target_os = "ios"), path = "opengl_absent.rs")]
+pub(super) mod opengl;
 pub(super) mod own;
 #[cfg_attr(any(target_os = "macos", target_os = "ios"), path = "vulkan_absent.rs")]
 pub(super) mod vulkan;
@@ -18,15 +20,24 @@ use crate::{
 pub(super) enum Host {
     /// Welkin's own device.
     Own,
+    /// The host's OpenGL context, or one that shares its objects.
+    #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+    OpenGl(std::sync::Arc<crate::gpu::gl::GlHost>),
     /// The host's Vulkan device.
     #[cfg(not(any(target_os = "macos", target_os = "ios")))]
     Vulkan(Box<crate::gpu::vulkan::VulkanHost>),
 }
 
 impl Host {
-    /// Whether GPU objects may only be released on one thread: where a host's context is current.
-    pub(super) fn is_bound_to_thread(&self) -> bool {
-        false
+    /// Whether GPU objects may only be released where the host's context can be entered.
+    pub(super) fn needs_context(&self) -> bool {
+        match self {
+            Self::Own => false,
+            #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+            Self::OpenGl(_) => true,
+            #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+            Self::Vulkan(_) => false,
+        }
     }
 
     /// # Errors
@@ -38,7 +49,7 @@ impl Host {
                 Err(Error::unsupported(text))
             }
             #[cfg(not(any(target_os = "macos", target_os = "ios")))]
-            Self::Vulkan(_) => Ok(()),
+            Self::OpenGl(_) | Self::Vulkan(_) => Ok(()),
         }
     }
 
@@ -49,6 +60,8 @@ impl Host {
     pub(super) fn close(self) -> Result<()> {
         match self {
             Self::Own => Ok(()),
+            #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+            Self::OpenGl(_) => Ok(()),
             #[cfg(not(any(target_os = "macos", target_os = "ios")))]
             Self::Vulkan(host) => host.close(),
         }
@@ -68,6 +81,9 @@ pub(super) unsafe fn record(call: &mut Call, object: &ViewObject, frame: &wk_fra
         Host::Own => unsafe { own::record(call, object, frame, stages) },
         #[cfg(not(any(target_os = "macos", target_os = "ios")))]
         // SAFETY: the caller's promise.
+        Host::OpenGl(host) => unsafe { opengl::record(host, object, frame, stages) },
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        // SAFETY: the caller's promise.
         Host::Vulkan(host) => unsafe { vulkan::record(host, object, frame, stages) },
     }
 }
@@ -79,6 +95,8 @@ pub(super) unsafe fn record(call: &mut Call, object: &ViewObject, frame: &wk_fra
 pub(super) fn native_texture(cell: &DeviceCell, texture: &wgpu::Texture) -> Result<u64> {
     match &*cell.host() {
         Host::Own => Err(Error::unsupported("native textures of an own device")),
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        Host::OpenGl(_) => opengl::native_texture(texture),
         #[cfg(not(any(target_os = "macos", target_os = "ios")))]
         Host::Vulkan(_) => vulkan::native_texture(texture),
     }

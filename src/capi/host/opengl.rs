@@ -1,0 +1,98 @@
+//! Frames of an OpenGL host: its context entered, its images as textures, everything given back.
+
+use wgpu::hal::{api::Gles, gles::TextureInner};
+
+use super::{Host, in_frame, target};
+use crate::{
+    capi::{
+        device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
+        frame::{self, Images, wk_frame},
+        opengl::*,
+        view::ViewObject,
+    },
+    error::{Error, Result, Status},
+    frame::Stages,
+    gpu::gl::{GlHost, GlHostDesc, GlImage, GlMode, GlTargetDesc, Handover, Multisample, adopt},
+};
+
+/// # Safety
+/// The header's promises about `wk_opengl_host_desc`.
+pub(in crate::capi) unsafe fn open(c: &wk_opengl_host_desc) -> Result<*mut wk_device> {
+    let desc = GlHostDesc {
+        get_proc: c.get_proc,
+        make_current: c.make_current,
+        user: c.user,
+        mode: if c.mode == WK_OPENGL_HOST_CONTEXT { GlMode::HostContext } else { GlMode::Shared },
+        handover: if c.handover == WK_OPENGL_FLUSH { Handover::Flush } else { Handover::Fence },
+        force_tier0: c.flags & WK_DEVICE_FORCE_TIER0 != 0,
+    };
+    // SAFETY: the caller's promise about callbacks and contexts.
+    let opened = unsafe { adopt(&desc) }.map_err(|e| match e.status {
+        Status::InvalidArgument => e.within("desc."),
+        _ => e,
+    })?;
+    device::issue(opened.device, Host::OpenGl(opened.host))
+}
+
+/// # Safety
+/// `c.target` is NULL or a live target struct with live names.
+pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let desc = description(&unsafe { target::<wk_opengl_target>(c.target)? })?;
+    // Before the host's images are touched.
+    let mut frame = frame::from_c(c, Images::default(), true)?;
+    let gpu = object.cell.gpu();
+    let _entered = gpu.enter()?;
+    let images = desc.map(|desc| host.target(&gpu.device, &desc)).transpose().map_err(|e| e.within("frame."))?;
+    if let Some(images) = &images {
+        frame.color = Some(&images.color);
+        frame.depth = images.depth_read.as_ref();
+        frame.mask = images.mask.as_ref();
+    }
+    object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+/// The target as the Rust side takes it; `None` without a colour image.
+fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
+    let (color, depth, mask) = (image(&c.color), image(&c.depth), image(&c.mask));
+    let Some(color) = color else {
+        if depth.is_some() || mask.is_some() {
+            let text = "frame.target.color must be given where depth or mask are";
+            return Err(Error::new(Status::InvalidArgument, text));
+        }
+        return Ok(None);
+    };
+    Ok(Some(GlTargetDesc {
+        color,
+        depth,
+        mask,
+        width: c.width,
+        height: c.height,
+        generation: c.generation,
+        multisample: match c.multisample {
+            WK_OPENGL_MULTISAMPLE_RESOLVE => Multisample::Resolve,
+            _ => Multisample::Each,
+        },
+        write_depth: false,
+    }))
+}
+
+fn image(c: &wk_opengl_image) -> Option<GlImage> {
+    match c.kind {
+        WK_OPENGL_TEXTURE => Some(GlImage::Texture { name: c.name, target: c.target }),
+        WK_OPENGL_RENDERBUFFER => Some(GlImage::Renderbuffer { name: c.name }),
+        WK_OPENGL_FRAMEBUFFER => Some(GlImage::Framebuffer { name: c.name }),
+        _ => None,
+    }
+}
+
+/// The OpenGL name of a texture.
+pub(super) fn native_texture(texture: &wgpu::Texture) -> Result<u64> {
+    // SAFETY: the name is only read.
+    let hal = unsafe { texture.as_hal::<Gles>() };
+    let lost = || Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one");
+    match hal.ok_or_else(lost)?.inner {
+        TextureInner::Texture { raw, .. } => Ok(u64::from(raw.0.get())),
+        _ => Err(Error::new(Status::Internal, "a texture of Welkin's that is none in OpenGL")),
+    }
+}
