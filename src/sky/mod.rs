@@ -31,6 +31,7 @@ pub mod planet;
 mod planet_file;
 pub mod probe;
 mod recipe;
+pub mod reference;
 pub mod settings;
 pub mod spectral;
 pub mod sun;

@@ -1,0 +1,158 @@
+//! Where the source of multiple scattering is tabulated: altitudes, sun angles and directions.
+//!
+//! Altitudes crowd where the scatterers are, sun angles crowd about the terminator. Both are uniform in a coordinate
+//! that has a closed form, so that look-ups need no search.
+
+use std::f64::consts::PI;
+
+use super::medium::Medium;
+use super::quadrature::Gauss;
+use super::ray::horizon_mu;
+
+/// Altitude nodes.
+#[derive(Clone, Debug)]
+pub struct Altitudes {
+    top_m: f64,
+    /// Heights and shares of the crowding terms 1 - exp(-h / height), the shares over their value at the top.
+    terms: Vec<(f64, f64)>,
+    linear_share: f64,
+    /// The nodes, from 0 to the top.
+    pub nodes_m: Vec<f64>,
+}
+
+impl Altitudes {
+    /// `n` nodes (at least 4).
+    pub fn new(medium: &Medium, n: usize) -> Self {
+        let present: Vec<f64> = (0..2)
+            .filter(|i| medium.scattering[*i].iter().any(|b| *b > 0.0) && medium.scale_height_m[*i] > 0.0)
+            .map(|i| 2.0 * medium.scale_height_m[i])
+            .collect();
+        let linear_share = if present.is_empty() { 1.0 } else { 0.3 };
+        let terms = present
+            .iter()
+            .map(|h| (*h, (1.0 - linear_share) / present.len() as f64 / -(-medium.top_m / h).exp_m1()))
+            .collect();
+        let mut this = Self { top_m: medium.top_m, terms, linear_share, nodes_m: Vec::new() };
+        this.nodes_m =
+            (0..n).map(|i| invert(i as f64 / (n - 1) as f64, 0.0, medium.top_m, |h| this.share(h))).collect();
+        (this.nodes_m[0], this.nodes_m[n - 1]) = (0.0, medium.top_m);
+        this
+    }
+
+    fn share(&self, h: f64) -> f64 {
+        self.terms.iter().map(|(height, share)| -share * (-h / height).exp_m1()).sum::<f64>()
+            + self.linear_share * h / self.top_m
+    }
+
+    /// Coordinate in units of the node spacing.
+    pub fn coordinate(&self, altitude_m: f64) -> f64 {
+        self.share(altitude_m.clamp(0.0, self.top_m)) * (self.nodes_m.len() - 1) as f64
+    }
+}
+
+/// Nodes of the sun's zenith angle.
+#[derive(Clone, Debug)]
+pub struct SunAngles {
+    center: f64,
+    width: f64,
+    /// Share of the crowding, and the values of its arc tangent at 0 and pi.
+    crowd: f64,
+    ends: (f64, f64),
+    /// The nodes, from 0 to pi, radians.
+    pub nodes: Vec<f64>,
+}
+
+impl SunAngles {
+    /// `n` nodes (at least 4). The crowd stands about the sun angles at which the air's height falls into shadow.
+    pub fn new(medium: &Medium, n: usize) -> Self {
+        let dip = (-horizon_mu(medium, medium.top_m)).clamp(0.0, 1.0).asin();
+        let (center, width) = (0.5 * PI + 0.3 * dip, (0.7 * dip).max(0.06));
+        let ends = (((0.0 - center) / width).atan(), ((PI - center) / width).atan());
+        let mut this = Self { center, width, crowd: 0.6, ends, nodes: Vec::new() };
+        this.nodes = (0..n).map(|i| invert(i as f64 / (n - 1) as f64, 0.0, PI, |a| this.share(a))).collect();
+        (this.nodes[0], this.nodes[n - 1]) = (0.0, PI);
+        this
+    }
+
+    fn share(&self, angle: f64) -> f64 {
+        let crowded = (((angle - self.center) / self.width).atan() - self.ends.0) / (self.ends.1 - self.ends.0);
+        self.crowd * crowded + (1.0 - self.crowd) * angle / PI
+    }
+
+    /// Coordinate in units of the node spacing.
+    pub fn coordinate(&self, angle: f64) -> f64 {
+        self.share(angle) * (self.nodes.len() - 1) as f64
+    }
+}
+
+/// Bisection for the place in [lo, hi] where the rising function `f` takes `value`.
+fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (lo + hi);
+        if f(middle) < value {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
+    }
+    0.5 * (lo + hi)
+}
+
+/// Directions over which radiance is integrated at one altitude: cosines of the zenith angle with weights, Gauss in
+/// sqrt of the distance to the horizon on both of its sides, where radiance has its steep gradient and its step.
+pub fn zenith_rule(medium: &Medium, altitude_m: f64, below: &Gauss, above: &Gauss) -> Vec<(f64, f64)> {
+    let horizon = horizon_mu(medium, altitude_m);
+    let side = |rule: &Gauss, far: f64| -> Vec<(f64, f64)> {
+        let range = far - horizon;
+        let node = |(x, w): (&f64, &f64)| {
+            let x = 0.5 + 0.5 * x;
+            (horizon + range * x * x, range.abs() * x * w)
+        };
+        rule.nodes.iter().zip(&rule.weights).map(node).collect()
+    };
+    let mut nodes = side(below, -1.0);
+    nodes.extend(side(above, 1.0));
+    nodes
+}
+
+/// Midpoints of `n` equal parts of half a turn. The sky is the same on both sides of the sun's vertical plane.
+pub fn azimuths(n: usize) -> Vec<f64> {
+    (0..n).map(|i| PI * (i as f64 + 0.5) / n as f64).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::planet::Planet;
+
+    #[test]
+    fn coordinates_and_nodes_are_inverse() {
+        let mut small = Planet::earth();
+        (small.bottom_radius_m, small.top_radius_m, small.mie.scale_height_m) = (1e4, 3e4, 0.0);
+        for planet in [Planet::earth(), small] {
+            let medium = Medium::of(&planet);
+            let (altitudes, suns) = (Altitudes::new(&medium, 17), SunAngles::new(&medium, 33));
+            for (i, h) in altitudes.nodes_m.iter().enumerate() {
+                assert!((altitudes.coordinate(*h) - i as f64).abs() < 1e-6, "{i} {h}");
+            }
+            for (i, a) in suns.nodes.iter().enumerate() {
+                assert!((suns.coordinate(*a) - i as f64).abs() < 1e-6, "{i} {a}");
+            }
+            assert!(altitudes.nodes_m.windows(2).all(|w| w[1] > w[0]) && suns.nodes.windows(2).all(|w| w[1] > w[0]));
+        }
+    }
+
+    #[test]
+    fn zenith_rule_integrates_each_side_of_the_horizon() {
+        let medium = Medium::of(&Planet::earth());
+        let (below, above) = (Gauss::new(6), Gauss::new(9));
+        for h in [0.0, 10.0, 12_000.0, 100_000.0] {
+            let rule = zenith_rule(&medium, h, &below, &above);
+            let horizon = horizon_mu(&medium, h);
+            let sum = |f: &dyn Fn(f64) -> f64| rule.iter().map(|(mu, w)| w * f(*mu)).sum::<f64>();
+            assert!((sum(&|_| 1.0) - 2.0).abs() < 1e-12 && sum(&|mu| mu).abs() < 1e-12);
+            let step = sum(&|mu| if mu > horizon { 1.0 } else { 0.0 });
+            assert!((step - (1.0 - horizon)).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Sample points along a ray, placed where the air is, with the transmittance back to the ray's start.
+
+use super::medium::{MEDIA, Medium};
+use super::quadrature::Gauss;
+use super::ray::Ray;
+
+/// A point of a ray with what every integral along it needs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Distance from the ray's origin, m.
+    pub distance_m: f64,
+    /// Altitude, m.
+    pub altitude_m: f64,
+    /// Cosine of the ray's zenith angle here.
+    pub mu: f64,
+    /// Per wavelength: path length x gas scattering x transmittance back to the start, 1.
+    pub gas: [f64; 3],
+    /// The same for haze.
+    pub haze: [f64; 3],
+}
+
+/// How finely a ray is cut.
+#[derive(Clone, Copy)]
+pub struct Cutting<'a> {
+    /// Altitudes at which panels end, ascending, the first 0 and the last the top.
+    pub altitudes_m: &'a [f64],
+    /// Rule inside a panel.
+    pub rule: &'a Gauss,
+    /// Panels are halved until their optical depth is below this.
+    pub panel_depth: f64,
+}
+
+/// Optical depth beyond which what lies farther is not seen (e^-46 = 1e-20).
+const BLACK: f64 = 46.0;
+/// Halvings of a panel: 2^24 parts of the longest panel are below a metre on any planet that is accepted.
+const MAX_HALVINGS: u32 = 24;
+
+/// Samples of `ray` between two distances into `out` (cleared first), and the columns of the whole piece. `cuts` are
+/// further distances at which panels end (edges of the shadow). Samples stop where nothing can be seen any more.
+pub fn march(
+    ray: &Ray,
+    medium: &Medium,
+    cutting: &Cutting<'_>,
+    span: (f64, f64),
+    cuts: &[f64],
+    out: &mut Vec<Sample>,
+) -> [f64; MEDIA] {
+    out.clear();
+    let mut walk = Walk { ray, medium, cutting, columns: [0.0; MEDIA], out };
+    let mut marks = vec![span.0, span.1];
+    marks.extend_from_slice(cuts);
+    let to_perigee = -ray.radius_m() * ray.mu;
+    marks.push(to_perigee);
+    for h in cutting.altitudes_m {
+        let u = ray.u_of_altitude(*h);
+        if u > 0.0 {
+            marks.extend([ray.distance_of(u, -1.0), ray.distance_of(u, 1.0)]);
+        }
+    }
+    marks.retain(|s| (span.0..=span.1).contains(s));
+    marks.sort_by(f64::total_cmp);
+    for pair in marks.windows(2) {
+        // Rounding leaves slivers where two marks mean the same point.
+        if pair[1] - pair[0] > 1e-12 * (pair[1].abs() + 1.0) {
+            let side = if 0.5 * (pair[0] + pair[1]) < to_perigee { -1.0 } else { 1.0 };
+            walk.panel(side, ray.u_at(pair[0]).0, ray.u_at(pair[1]).0, 0);
+        }
+    }
+    walk.columns
+}
+
+struct Walk<'a> {
+    ray: &'a Ray,
+    medium: &'a Medium,
+    cutting: &'a Cutting<'a>,
+    columns: [f64; MEDIA],
+    out: &'a mut Vec<Sample>,
+}
+
+impl Walk<'_> {
+    /// One panel from u = `a` to u = `b` (descending before the perigee), halved while it is optically thick.
+    fn panel(&mut self, side: f64, a: f64, b: f64, halvings: u32) {
+        let rule = self.cutting.rule;
+        let n = rule.len();
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        let mut points = [[0.0; MEDIA + 2]; 32];
+        let points = &mut points[..n.min(32)];
+        let mut total = [0.0; MEDIA];
+        for (i, point) in points.iter_mut().enumerate() {
+            let u = middle + half * rule.nodes[i];
+            // Never above the top by rounding, where the density ends at once.
+            let altitude = (self.ray.perigee_altitude_m() + u * u).min(self.medium.top_m);
+            let density = self.medium.density(altitude);
+            // du < 0 before the perigee, where distance grows as u falls.
+            let ds = half * side * self.ray.stretch(u);
+            *point = [density[0] * ds, density[1] * ds, density[2] * ds, ds, u];
+            (0..MEDIA).for_each(|k| total[k] += rule.weights[i] * point[k]);
+        }
+        let thickest = self.medium.optical_depth(&total).into_iter().fold(0.0, f64::max);
+        let before = self.medium.optical_depth(&self.columns).into_iter().fold(f64::INFINITY, f64::min);
+        if thickest > self.cutting.panel_depth && halvings < MAX_HALVINGS && before < BLACK {
+            self.panel(side, a, middle, halvings + 1);
+            self.panel(side, middle, b, halvings + 1);
+            return;
+        }
+        if before < BLACK {
+            self.emit(side, points);
+        }
+        (0..MEDIA).for_each(|k| self.columns[k] += total[k]);
+    }
+
+    /// Samples of one panel.
+    fn emit(&mut self, side: f64, points: &[[f64; MEDIA + 2]]) {
+        let rule = self.cutting.rule;
+        let n = points.len();
+        for (i, point) in points.iter().enumerate() {
+            let mut columns = self.columns;
+            for (j, other) in points.iter().enumerate() {
+                let w = rule.running[i * n + j];
+                (0..MEDIA).for_each(|k| columns[k] += w * other[k]);
+            }
+            let t = self.medium.transmittance(&columns.map(|c| c.max(0.0)));
+            let [gas, haze, _, ds, u] = *point;
+            let w = rule.weights[i];
+            let altitude_m = self.ray.perigee_altitude_m() + u * u;
+            let distance_m = self.ray.distance_of(u, side);
+            let mu = (self.ray.radius_m() * self.ray.mu + distance_m) / (self.ray.bottom_m + altitude_m);
+            debug_assert!(ds >= 0.0);
+            let [beta_gas, beta_haze] = &self.medium.scattering;
+            self.out.push(Sample {
+                distance_m,
+                altitude_m,
+                mu: mu.clamp(-1.0, 1.0),
+                gas: std::array::from_fn(|c| w * gas * beta_gas[c] * t[c]),
+                haze: std::array::from_fn(|c| w * haze * beta_haze[c] * t[c]),
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::planet::Planet;
+
+    /// For gas alone the in-scattered share is 1 - T exactly.
+    #[test]
+    fn weights_of_a_gas_sum_to_what_is_not_transmitted() {
+        for thickness in [1e-3, 1.0, 30.0, 1e4] {
+            let mut planet = Planet::earth().with_air_scaled(thickness);
+            planet.mie.scattering_per_m = [0.0; 3];
+            planet.mie.extinction_per_m = [0.0; 3];
+            planet.absorption.extinction_per_m = [0.0; 3];
+            let medium = Medium::of(&planet);
+            let marks = medium.panel_altitudes();
+            let rule = Gauss::new(8);
+            let cutting = Cutting { altitudes_m: &marks, rule: &rule, panel_depth: 1.0 };
+            let mut samples = Vec::new();
+            for (altitude, mu) in [(1.0, 1.0), (1.0, 0.0), (3000.0, -0.01), (90_000.0, -0.16), (2e4, -1.0)] {
+                let ray = Ray::new(&medium, altitude, mu);
+                let (start, end, _) = ray.in_air(&medium).unwrap();
+                let columns = march(&ray, &medium, &cutting, (start, end), &[0.3 * end], &mut samples);
+                let t = medium.transmittance(&columns);
+                let exact = ray.columns(&medium, start, end);
+                for (c, t) in t.iter().enumerate() {
+                    let sum: f64 = samples.iter().map(|s| s.gas[c]).sum();
+                    assert!((sum + t - 1.0).abs() < 1e-7, "x{thickness} {altitude} {mu}: {sum} + {t}");
+                }
+                assert!((columns[0] / exact[0] - 1.0).abs() < 1e-7, "{altitude} {mu}");
+            }
+        }
+    }
+}
