@@ -47,7 +47,7 @@ pub fn shots() -> Vec<Shot> {
             weather: |c| {
                 sun(c, 60.0, 20.0)?;
                 c.set_weather(
-                    &Weather { visibility_m: 150.0, fog: Fog::of(FogKind::Fog), ..Weather::default() },
+                    &Weather { visibility_m: 150.0, station_altitude_m: 360.0, fog: Fog::of(FogKind::Fog), ..Weather::default() },
                     0.0,
                     0.0,
                 )
@@ -59,8 +59,8 @@ pub fn shots() -> Vec<Shot> {
             caption: "Shallow fog",
             weather: |c| {
                 sun(c, 60.0, 8.0)?;
-                let fog = Fog { top_m: Some(420.0), visibility_inside_m: Some(200.0), ..Fog::of(FogKind::Shallow) };
-                c.set_weather(&Weather { fog, ..Weather::default() }, 0.0, 0.0)
+                let fog = Fog { top_m: Some(40.0), visibility_inside_m: Some(200.0), ..Fog::of(FogKind::Shallow) };
+                c.set_weather(&Weather { fog, station_altitude_m: 360.0, ..Weather::default() }, 0.0, 0.0)
             },
             height_m: 60.0,
             ..GROUND

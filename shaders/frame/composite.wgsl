@@ -2,7 +2,7 @@
 //!include "common/fullscreen.wgsl"
 //!include "frame/tone.wgsl"
 //!include "frame/veil.wgsl"
-//!include "frame/discs.wgsl"
+//!include "sky/disc.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
@@ -17,16 +17,11 @@ fn overcast_gradation(sin_elevation: f32) -> f32 {
 }
 
 fn sky_behind(d: vec3f) -> vec3f {
-    var clear = frame.night_floor;
-    let through = view_transmittance(d);
-    for (var i = 0u; i < LIGHTS; i++) {
-        let light = frame.lights[i];
-        clear += light.irradiance * sky_radiance(i, local_to(light, d));
-        clear += light.irradiance * light.direct_share * through * disc_radiance(light, d);
+    var clear = sky_radiance(d) + frame.night_floor;
+    if d.z < 0.0 {
+        return (clear + ground_radiance(d)) * frame.medium_share;
     }
-    if frame.deck_cover == 0.0 || d.z <= 0.0 {
-        return clear;
-    }
+    clear += disc_radiance(d, frame.pixel_angle) * frame.direct_share;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 

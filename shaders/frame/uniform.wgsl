@@ -1,29 +1,9 @@
-// What a frame knows: the camera's rays, the lights above it, and how the host's numbers are to be read.
+// What a frame knows: the camera's rays, the light that no lamp of the sky sends, and how the host's numbers are read.
 //!include "common/depth.wgsl"
-
-struct FrameLight {
-    // Towards the light, camera-local east-north-up; geometric (scattering) direction.
-    direction: vec3f,
-    // Angular radius of the disc, rad; 0 draws no disc.
-    radius: f32,
-    // Towards the disc as seen, lifted by refraction.
-    apparent: vec3f,
-    // Part of the disc's face that is lit (moon), 1 for the sun.
-    lit: f32,
-    // Illuminance at the top of the air, lux a channel of linear Rec. 709.
-    irradiance: vec3f,
-    // Vertical over horizontal diameter of the disc, flattened by refraction.
-    flattening: f32,
-    // Towards where the disc's bright limb points (moon), camera-local east-north-up, in the disc's plane.
-    bright_limb: vec3f,
-    // Share of direct light that the clouds above let through.
-    direct_share: f32,
-}
 
 struct FrameUniform {
     // Axes: camera-local east-north-up.
     depth: DepthUniform,
-    lights: array<FrameLight, 2>,
     // Luminance of a moonless, airglow and starlit sky near the zenith, cd/m^2 a channel.
     night_floor: vec3f,
     // Display units per cd/m^2.
@@ -44,11 +24,14 @@ struct FrameUniform {
     y_sign: f32,
     // Quantisation step of the target for the dither, 0 for float targets.
     dither_step: f32,
-    inverse_size: vec2f,
-    // Share of the clear sky's light that scatters towards the camera below a deck.
-    medium_share: f32,
+    // Angle of a pixel in the picture's middle, rad.
+    pixel_angle: f32,
     // 1 encodes the result by the sRGB curve: a plain 8- or 10-bit target that holds display values.
     encode: u32,
+    // Share of the clear sky's light that scatters towards the camera below clouds.
+    medium_share: f32,
+    // Share of the sun's or moon's direct light that clouds let through.
+    direct_share: f32,
     pad0: f32,
     pad1: f32,
 }

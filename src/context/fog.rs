@@ -52,8 +52,8 @@ impl Scene {
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
         let own = fog_layer(&self.conditions, seed).map_or(Law::Clear, Law::Layer);
-        let sunny = self.ground.sun_lux[1] >= self.ground.moon_lux[1];
-        let (light, lux) = if sunny { (&self.sun, self.ground.sun_lux) } else { (&self.moon, self.ground.moon_lux) };
+        let light = self.brighter();
+        let lux = if light == &self.sun { self.ground.sun_lux } else { self.ground.moon_lux };
         let light = FogLight {
             to_sun: light.direction,
             sun_irradiance: lux,

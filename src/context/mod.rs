@@ -7,14 +7,16 @@ mod air;
 mod fog;
 mod lights;
 mod scene;
+mod sky;
 mod state;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 
 pub use lights::Light;
 pub use scene::{GroundLight, Scene};
+use sky::FollowedSky;
 
 use crate::{
     error::{Error, Result, Status, check_range},
@@ -23,7 +25,7 @@ use crate::{
     gpu::Device,
     scene::WorldFrame,
     sky::{
-        Planet,
+        Planet, SkySettings,
         sun::{Utc, direction},
     },
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
@@ -44,6 +46,8 @@ pub struct ContextDesc {
     pub tone: ToneCurve,
     /// Universal time at simulation time 0. Default 2026-06-21 10:00 UTC.
     pub utc_at_zero: Utc,
+    /// How the sky is drawn. Default the directional tables.
+    pub sky: SkySettings,
 }
 
 impl Default for ContextDesc {
@@ -55,6 +59,7 @@ impl Default for ContextDesc {
             exposure: Exposure::default(),
             tone: ToneCurve::default(),
             utc_at_zero: Utc(1_782_036_000.0),
+            sky: SkySettings::default(),
         }
     }
 }
@@ -88,6 +93,7 @@ const MAX_TIME_S: f64 = 1e10;
 pub struct Context {
     device: Arc<Device>,
     shared: Arc<Shared>,
+    sky: Mutex<FollowedSky>,
     desc: ContextDesc,
     timeline: Timeline,
     given_sun: Option<GivenDirection>,
@@ -107,7 +113,8 @@ impl Context {
         desc.exposure.validate()?;
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
-        Ok(Self { device, shared, desc, timeline, given_sun: None, given_moon: None, fog_law: None, time_s: 0.0 })
+        let sky = Mutex::new(FollowedSky::new(&device, &desc.sky)?);
+        Ok(Self { device, shared, sky, desc, timeline, given_sun: None, given_moon: None, fog_law: None, time_s: 0.0 })
     }
 
     /// The device it was made on.

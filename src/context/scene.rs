@@ -8,7 +8,7 @@ use super::{Context, Light, air::planet_under};
 use crate::{
     error::Result,
     scene::Place,
-    sky::Planet,
+    sky::{Disc, Lamp, Observer, Planet},
     weather::{Conditions, slab_reflectance},
 };
 
@@ -118,6 +118,37 @@ fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, lux: [f64; 
     let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * whole);
     let t = smooth(-0.8, 5.0, elevation_deg);
     (direct, map(dusk, day, |n, d| n + (d - n) * t))
+}
+
+impl Scene {
+    /// Whichever of sun and moon gives more light here.
+    pub fn brighter(&self) -> &Light {
+        if self.ground.sun_lux[1] >= self.ground.moon_lux[1] { &self.sun } else { &self.moon }
+    }
+
+    /// The sky's own view of this scene.
+    pub(crate) fn observer(&self, exact: bool) -> Observer {
+        let lamp = |light: &Light, disc| Lamp {
+            toward: light.direction.to_array(),
+            irradiance: light.illuminance_lux,
+            angular_radius: light.angular_radius,
+            disc,
+        };
+        let moon = lamp(&self.moon, Disc::Moon { lit_from: self.moon_lit_from().to_array() });
+        Observer {
+            altitude_m: self.place.altitude_m.clamp(-1e4, 1e8),
+            lamps: [Some(lamp(&self.sun, Disc::Sun)), self.moon.matters.then_some(moon)],
+            refraction: 1.0,
+            exact,
+        }
+    }
+
+    /// The sun's direction as the moon's face sees it: in the plane of moon and bright limb, at the phase's angle.
+    fn moon_lit_from(&self) -> DVec3 {
+        let cos_phase = (2.0 * self.moon.lit - 1.0).clamp(-1.0, 1.0);
+        let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();
+        (self.moon.bright_limb * sin_phase - self.moon.direction * cos_phase).normalize()
+    }
 }
 
 impl Context {

@@ -10,6 +10,7 @@ use crate::{
         Device,
         pass::{self, FullscreenDesc},
     },
+    sky::SkyVolume,
 };
 
 /// What distinguishes one compiled variant from another.
@@ -20,15 +21,16 @@ pub(super) struct Variant {
     pub samples: u32,
     pub has_depth: bool,
     pub has_mask: bool,
-    /// 1 or 2.
-    pub lights: u32,
     pub fog: bool,
+    /// The sky is marched per pixel instead of looked up.
+    pub march: bool,
 }
 
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
     layout_single: wgpu::BindGroupLayout,
     layout_multi: wgpu::BindGroupLayout,
+    layout_sky: wgpu::BindGroupLayout,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     none: wgpu::TextureView,
     none_multi: Option<wgpu::TextureView>,
@@ -97,6 +99,7 @@ impl Composite {
         Self {
             layout_single: layout(&device.device, false),
             layout_multi: layout(&device.device, true),
+            layout_sky: SkyVolume::view_layout(device),
             pipelines: HashMap::new(),
             none: none(&device.device, 1),
             none_multi: multi.then(|| none(&device.device, 4)),
@@ -109,8 +112,13 @@ impl Composite {
     }
 
     /// Layout of group 0 for targets with one or several samples.
-    pub fn layout(&self, multi: bool) -> &wgpu::BindGroupLayout {
+    fn layout(&self, multi: bool) -> &wgpu::BindGroupLayout {
         if multi { &self.layout_multi } else { &self.layout_single }
+    }
+
+    /// Layouts of the groups of every shader that composes: the frame's, the sky's.
+    pub fn layouts(&self, multi: bool) -> [&wgpu::BindGroupLayout; 2] {
+        [self.layout(multi), &self.layout_sky]
     }
 
     /// The bind group of one view's uniform and one set of host textures.
@@ -150,16 +158,10 @@ impl Composite {
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn pipeline(
-        &mut self,
-        device: &Arc<Device>,
-        variant: Variant,
-        groups: &[&wgpu::BindGroupLayout],
-    ) -> Result<&wgpu::RenderPipeline> {
+    pub fn pipeline(&mut self, device: &Arc<Device>, variant: Variant) -> Result<&wgpu::RenderPipeline> {
         if !self.pipelines.contains_key(&variant) {
             let multi = variant.samples > 1;
-            let mut layouts = vec![self.layout(multi)];
-            layouts.extend_from_slice(groups);
+            let layouts = self.layouts(multi);
             let yes = |b: bool| f64::from(u8::from(b));
             let pipeline = pass::fullscreen(
                 device,
@@ -176,7 +178,7 @@ impl Composite {
                         ("BACKGROUND", yes(variant.stages.has(Stages::BACKGROUND))),
                         ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
                         ("TONE", yes(variant.stages.has(Stages::TONE))),
-                        ("LIGHTS", f64::from(variant.lights)),
+                        ("SKY_MARCH", yes(variant.march)),
                         ("FOG", yes(variant.fog)),
                         ("HAS_DEPTH", yes(variant.has_depth)),
                         ("HAS_MASK", yes(variant.has_mask)),

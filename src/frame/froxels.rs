@@ -76,20 +76,19 @@ impl Froxels {
         device: &Arc<Device>,
         shared: &Shared,
         encoder: &mut wgpu::CommandEncoder,
-        (multi, lights, fog): (bool, u32, bool),
+        (multi, fog, march): (bool, bool, bool),
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        let slot = &mut self.pipelines[usize::from(multi) * 4 + usize::from(fog) * 2 + lights as usize - 1];
+        let slot = &mut self.pipelines[usize::from(multi) * 4 + usize::from(fog) * 2 + usize::from(march)];
         if slot.is_none() {
             let composite = shared.composite()?;
-            let [sky, rest] = shared.sky_layouts();
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
             let desc = FullscreenDesc {
                 shader: "frame/froxels.wgsl",
                 entry: "froxels",
-                layouts: &[composite.layout(multi), sky, rest],
+                layouts: &composite.layouts(multi),
                 targets: &[target.clone(), target],
-                constants: &[("LIGHTS", f64::from(lights)), ("FOG", f64::from(u8::from(fog)))],
+                constants: &[("FOG", f64::from(u8::from(fog))), ("SKY_MARCH", f64::from(u8::from(march)))],
                 samples: 1,
             };
             *slot = Some(pass::fullscreen(device, &desc)?);

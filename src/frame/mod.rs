@@ -6,7 +6,6 @@
 mod composite;
 mod froxels;
 mod shared;
-mod sky_link;
 mod target;
 pub mod tone;
 mod uniform;

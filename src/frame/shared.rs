@@ -1,4 +1,4 @@
-//! What the views of a device share: the composition's pipelines and the tables of the sky.
+//! What the contexts and views of a device share: the composition's pipelines.
 
 use std::sync::{Mutex, MutexGuard};
 
@@ -8,30 +8,23 @@ use crate::{
     gpu::Device,
 };
 
-/// Pipelines and tables of one device, made once and used by all its contexts and views. Any thread.
+/// Pipelines of one device, made once and used by all its contexts and views. Any thread.
 pub struct Shared {
     composite: Mutex<Composite>,
-    sky: super::sky_link::SharedSky,
 }
 
 impl Shared {
     /// Makes what every view needs.
     ///
     /// # Errors
-    /// A missing shader file or a GPU fault.
+    /// A GPU fault.
     pub fn new(device: &Device) -> Result<Self> {
-        Ok(Self { composite: Mutex::new(Composite::new(device)), sky: super::sky_link::SharedSky::new(device)? })
+        let shared = Self { composite: Mutex::new(Composite::new(device)) };
+        device.check()?;
+        Ok(shared)
     }
 
     pub(super) fn composite(&self) -> Result<MutexGuard<'_, Composite>> {
         self.composite.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked while composing"))
-    }
-
-    pub(super) fn sky_layouts(&self) -> [&wgpu::BindGroupLayout; 2] {
-        self.sky.layouts()
-    }
-
-    pub(super) fn sky(&self) -> &super::sky_link::SharedSky {
-        &self.sky
     }
 }

@@ -10,14 +10,15 @@ use super::{
     froxels::{FrameTextures, Froxels},
     shared::Shared,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
-    uniform::{FrameUniform, LightUniform},
+    uniform::FrameUniform,
 };
 use crate::{
-    context::{Context, Light, Scene},
+    context::{Context, Scene},
     error::{Error, Result, Status},
     fog::{FogKind, FogUniform},
     gpu::Device,
     scene::{Camera, ViewRays},
+    sky::SkyVolume,
 };
 
 /// What the last frame of a view took and showed.
@@ -51,7 +52,7 @@ pub struct View {
     fog: wgpu::Buffer,
     copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
-    sky: super::sky_link::ViewSky,
+    sky: SkyVolume,
     froxels: Option<Froxels>,
     light_scale: f32,
     recorded: Stages,
@@ -76,7 +77,7 @@ impl View {
         };
         let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
         let shared = context.shared().clone();
-        let sky = super::sky_link::ViewSky::new(&device, &shared)?;
+        let sky = SkyVolume::new(&*context.sky()?)?;
         device.check()?;
         drop(_entered);
         Ok(Self {
@@ -151,14 +152,29 @@ impl View {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
         }
-        if stages.has(Stages::PREPARE) || self.recorded == Stages(0) {
-            let cut = frame.flags.has(FrameFlags::CUT) || frame.flags.has(FrameFlags::NO_HISTORY);
-            self.report.tables_rebuilt += self.sky.prepare(&self.device, &self.shared, encoder, &scene, cut)?;
+        if self.recorded == Stages(0) {
+            self.prepare(context, frame, &scene, encoder)?;
         }
         if let Some(rays) = rays {
             self.draw(context, frame, stages, &scene, &rays, encoder)?;
         }
         self.recorded = self.recorded.with(stages);
+        Ok(())
+    }
+
+    /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
+    fn prepare(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        scene: &Scene,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        let mut tables = context.sky()?;
+        let pure = frame.flags.has(FrameFlags::NO_HISTORY);
+        let work = tables.follow(&self.device, encoder, &scene.planet, frame.frame_id, pure)?;
+        let drawn = self.sky.prepare(encoder, &tables, &scene.observer(pure))?;
+        self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
         Ok(())
     }
 
@@ -228,8 +244,8 @@ impl View {
             samples: color.sample_count(),
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
-            lights: if scene.moon.matters { 2 } else { 1 },
             fog: fog.kind != FogKind::Clear,
+            march: context.marches_sky(),
         };
         if variant.stages == Stages(0) {
             return Ok(());
@@ -242,16 +258,13 @@ impl View {
         if variant.fog {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
         }
-        self.sky.write(&self.device, scene);
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
             encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
         }
-        let layouts = self.shared.sky_layouts();
         let mut composite = self.shared.composite()?;
-        let pipeline = composite.pipeline(&self.device, variant, &layouts)?;
-        let [sky, rest] = self.sky.groups();
-        let groups = [group, sky, rest];
+        let pipeline = composite.pipeline(&self.device, variant)?;
+        let groups = [group, self.sky.bind_group()];
         crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
         drop(composite);
@@ -260,7 +273,7 @@ impl View {
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
-            let variant = (variant.samples > 1, variant.lights, variant.fog);
+            let variant = (variant.samples > 1, variant.fog, variant.march);
             froxels.draw(&self.device, &self.shared, encoder, variant, &groups)?;
             self.report.passes += 1;
         }
@@ -282,7 +295,7 @@ impl View {
             self.copy = Some(color_copy(&self.device.device, color));
             let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
             let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
-            self.report.bytes = self.sky.bytes() + texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
+            self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
         }
         let Some(copy) = &self.copy else { return Ok(()) };
         let group =
@@ -312,19 +325,6 @@ fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
     })
 }
 
-fn light(l: &Light) -> LightUniform {
-    LightUniform {
-        direction: l.direction.as_vec3().to_array(),
-        radius: l.angular_radius as f32,
-        apparent: l.apparent.as_vec3().to_array(),
-        lit: l.lit as f32,
-        irradiance: l.illuminance_lux.map(|v| v as f32),
-        flattening: l.flattening as f32,
-        bright_limb: l.bright_limb.as_vec3().to_array(),
-        direct_share: l.direct_share as f32,
-    }
-}
-
 fn uniform(
     frame: &Frame<'_>,
     scene: &Scene,
@@ -346,7 +346,6 @@ fn uniform(
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
     FrameUniform {
         depth: rays.uniform(),
-        lights: [light(&scene.sun), light(&scene.moon)],
         night_floor: scene.night_floor_cd_m2.map(|v| v as f32),
         exposure: exposure as f32,
         deck: scene.deck_cd_m2.map(|v| v as f32),
@@ -362,8 +361,9 @@ fn uniform(
         seed: frame.frame_id as u32,
         y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
         dither_step: if plain_display { step } else { 0.0 },
-        inverse_size: [1.0 / color.width() as f32, 1.0 / color.height() as f32],
+        pixel_angle: rays.pixel_angle(color.height()) as f32,
         medium_share: scene.medium_share as f32,
+        direct_share: scene.brighter().direct_share as f32,
         encode: u32::from(encode),
         pad: [0.0; 2],
     }

@@ -303,6 +303,12 @@ impl ViewRays {
         format.step(depth) / slope.abs()
     }
 
+    /// Angle between the rays of two neighbouring pixels in the picture's middle, `height` pixels high; 0 for parallel
+    /// rays.
+    pub fn pixel_angle(&self, height: u32) -> f64 {
+        2.0 * self.direction[2].length() / (self.direction[0].length() * f64::from(height.max(1)))
+    }
+
     /// The form the shaders read (`DepthUniform` of `common/depth.wgsl`).
     pub fn uniform(&self) -> DepthUniform {
         let [o, ox, oy] = self.origin.map(|v| v.as_vec3().to_array());

@@ -40,7 +40,7 @@ pub fn texture(device: &Device, format: wgpu::TextureFormat, samples: u32) -> wg
 }
 
 pub fn camera() -> Camera {
-    Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 1.0, 160.0 / 90.0, 0.1)
+    Camera::look_to(DVec3::new(0.0, 0.0, 2500.0), DVec3::Y, DVec3::Z, 1.0, 160.0 / 90.0, 0.1)
 }
 
 impl Host {
