@@ -171,8 +171,8 @@ impl Host {
 /// One picture: the host's world with the weather drawn into it.
 fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
-    (shot.weather)(&mut context)?;
     let ground = f64::from(host.terrain.height(glam::Vec2::from_array(shot.at)));
+    (shot.weather)(&mut context, ground)?;
     let eye = DVec3::new(
         f64::from(shot.at[0]),
         f64::from(shot.at[1]),

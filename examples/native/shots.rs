@@ -16,7 +16,8 @@ pub struct Shot {
     pub azimuth_deg: f64,
     pub elevation_deg: f64,
     pub fov_y_deg: f64,
-    pub weather: fn(&mut Context) -> welkin::Result<()>,
+    /// Sets sun and weather; the second argument is the ground's altitude below the camera, m.
+    pub weather: fn(&mut Context, f64) -> welkin::Result<()>,
 }
 
 fn sun(context: &mut Context, azimuth_deg: f64, elevation_deg: f64) -> welkin::Result<()> {
@@ -32,22 +33,27 @@ const GROUND: Shot = Shot {
     azimuth_deg: 8.0,
     elevation_deg: 4.0,
     fov_y_deg: 50.0,
-    weather: |_| Ok(()),
+    weather: |_, _| Ok(()),
 };
 
 pub fn shots() -> Vec<Shot> {
     vec![
-        Shot { name: "noon", caption: "Noon, clear", weather: |c| sun(c, 160.0, 55.0), ..GROUND },
-        Shot { name: "low_sun", caption: "Low sun", weather: |c| sun(c, 40.0, 10.0), ..GROUND },
-        Shot { name: "sunset", caption: "Sunset", weather: |c| sun(c, 15.0, 0.5), ..GROUND },
-        Shot { name: "twilight", caption: "Civil twilight", weather: |c| sun(c, 15.0, -5.0), ..GROUND },
+        Shot { name: "noon", caption: "Noon, clear", weather: |c, _| sun(c, 160.0, 55.0), ..GROUND },
+        Shot { name: "low_sun", caption: "Low sun", weather: |c, _| sun(c, 40.0, 10.0), ..GROUND },
+        Shot { name: "sunset", caption: "Sunset", weather: |c, _| sun(c, 15.0, 0.5), ..GROUND },
+        Shot { name: "twilight", caption: "Civil twilight", weather: |c, _| sun(c, 15.0, -5.0), ..GROUND },
         Shot {
             name: "fog",
             caption: "Fog, visibility 150 m",
-            weather: |c| {
+            weather: |c, ground| {
                 sun(c, 60.0, 20.0)?;
                 c.set_weather(
-                    &Weather { visibility_m: 150.0, station_altitude_m: 360.0, fog: Fog::of(FogKind::Fog), ..Weather::default() },
+                    &Weather {
+                        visibility_m: 150.0,
+                        station_altitude_m: ground - 60.0,
+                        fog: Fog::of(FogKind::Fog),
+                        ..Weather::default()
+                    },
                     0.0,
                     0.0,
                 )
@@ -57,12 +63,12 @@ pub fn shots() -> Vec<Shot> {
         Shot {
             name: "shallow_fog",
             caption: "Shallow fog",
-            weather: |c| {
+            weather: |c, ground| {
                 sun(c, 60.0, 8.0)?;
-                let fog = Fog { top_m: Some(40.0), visibility_inside_m: Some(200.0), ..Fog::of(FogKind::Shallow) };
-                c.set_weather(&Weather { fog, station_altitude_m: 360.0, ..Weather::default() }, 0.0, 0.0)
+                let fog = Fog { top_m: Some(30.0), visibility_inside_m: Some(150.0), ..Fog::of(FogKind::Shallow) };
+                c.set_weather(&Weather { fog, station_altitude_m: ground - 60.0, ..Weather::default() }, 0.0, 0.0)
             },
-            height_m: 60.0,
+            height_m: 12.0,
             ..GROUND
         },
         Shot {
@@ -71,7 +77,7 @@ pub fn shots() -> Vec<Shot> {
             height_m: 12e3,
             above_ground: false,
             elevation_deg: -2.0,
-            weather: |c| sun(c, 60.0, 25.0),
+            weather: |c, _| sun(c, 60.0, 25.0),
             ..GROUND
         },
         Shot {
@@ -80,7 +86,7 @@ pub fn shots() -> Vec<Shot> {
             height_m: 200e3,
             above_ground: false,
             elevation_deg: -14.0,
-            weather: |c| sun(c, 30.0, 5.0),
+            weather: |c, _| sun(c, 30.0, 5.0),
             ..GROUND
         },
     ]

@@ -23,6 +23,8 @@ pub struct GroundLight {
     pub sky_lux: [f64; 3],
     /// Everything on level ground as a luminance-weighted sum, lux.
     pub total_lux: f64,
+    /// Luminance that an eye or a camera adapts to, cd/m^2: a grey ground and the sky above it.
+    pub adaptation_cd_m2: f64,
 }
 
 /// Everything a view draws from, at one camera position and time.
@@ -118,6 +120,17 @@ fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, lux: [f64; 
     let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * whole);
     let t = smooth(-0.8, 5.0, elevation_deg);
     (direct, map(dusk, day, |n, d| n + (d - n) * t))
+}
+
+/// What is looked at: grey ground under `total` lux and a share of the sky. With the sun near the horizon the part of
+/// the sky round it is many times brighter than the mean, and it is what pictures then show; above the air it is the
+/// sunlit planet, whatever the sun's height over the place.
+fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
+    let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+    let low = (1.0 - smooth(0.0, 30.0, elevation)) * smooth(-12.0, -4.0, elevation);
+    let dusk = 1.0 - smooth(-5.0, 1.0, elevation);
+    let ground = 0.18 * total / PI + (0.35 + low * (2.0 + 4.0 * dusk)) * sky / PI;
+    ground + (0.15 * direct / PI - ground).max(0.0) * smooth(10e3, 80e3, altitude_m)
 }
 
 impl Scene {
@@ -235,7 +248,8 @@ impl Context {
         let total_lux = luminance(sky_lux)
             + luminance(sun_lux) * sun.direction.z.max(0.0)
             + luminance(moon_lux) * moon.direction.z.max(0.0);
-        GroundLight { sun_lux, moon_lux, sky_lux, total_lux }
+        let adaptation_cd_m2 = adaptation(total_lux, luminance(sky_lux), luminance(sun_lux), sun, place.altitude_m);
+        GroundLight { sun_lux, moon_lux, sky_lux, total_lux, adaptation_cd_m2 }
     }
 }
 

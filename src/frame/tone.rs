@@ -38,7 +38,7 @@ impl ToneCurve {
 /// How bright the picture is taken: one value for all channels of a simulator, never measured per view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
-    /// From the light that falls on level ground, by the closed-form queries: equal on every channel and machine.
+    /// From the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel and machine.
     /// `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
     Auto {
         /// Stops added.
@@ -72,10 +72,10 @@ impl Exposure {
         }
     }
 
-    /// Display units per cd/m^2, given the illuminance on level ground in lux.
-    pub fn factor(&self, ground_illuminance_lux: f64) -> f64 {
+    /// Display units per cd/m^2, given the luminance that an eye would adapt to, cd/m^2.
+    pub fn factor(&self, adaptation_cd_m2: f64) -> f64 {
         match *self {
-            Self::Auto { compensation_ev } => auto_factor(ground_illuminance_lux) * compensation_ev.exp2(),
+            Self::Auto { compensation_ev } => auto_factor(adaptation_cd_m2) * compensation_ev.exp2(),
             Self::Ev100(ev) => ev100_factor(ev),
             Self::Factor(f) => f,
         }
@@ -87,10 +87,10 @@ fn ev100_factor(ev: f64) -> f64 {
     1.0 / (1.2 * ev.exp2())
 }
 
-/// Maps the mean luminance of an 18 % grey, level scene to a key that falls with adaptation (Krawczyk, Myszkowski &
+/// Maps the luminance adapted to to a key that falls with adaptation (Krawczyk, Myszkowski &
 /// Seidel 2005, eq. 11), so that a night looks like one and yet is not black.
-fn auto_factor(ground_illuminance_lux: f64) -> f64 {
-    let luminance = (0.18 * ground_illuminance_lux / std::f64::consts::PI).max(1e-5);
+fn auto_factor(adaptation_cd_m2: f64) -> f64 {
+    let luminance = adaptation_cd_m2.max(1e-5);
     let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());
     key.max(0.03) / luminance
 }
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn exposure_is_monotone_in_light_and_checked() {
         // More light on the ground must never make a grey card darker on the display.
-        let shown = |lux: f64| Exposure::default().factor(lux) * 0.18 * lux / std::f64::consts::PI;
+        let shown = |cd_m2: f64| Exposure::default().factor(cd_m2) * cd_m2;
         let mut last = 0.0;
         for i in -20..=20 {
             let y = shown(10f64.powf(f64::from(i) / 4.0));

@@ -251,7 +251,7 @@ impl View {
             return Ok(());
         }
         self.bind(frame, color)?;
-        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.total_lux);
+        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
         let block = uniform(frame, scene, rays, color, exposure, context, tone);
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
