@@ -206,7 +206,7 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     };
     let utc_at_zero = Utc(desc.utc_at_zero_s);
     sun_position(utc_at_zero, &world.origin).map_err(|e| renamed("utc", "desc.utc_at_zero_s", e))?;
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero })
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, ..ContextDesc::default() })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
