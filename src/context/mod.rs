@@ -6,6 +6,7 @@
 mod air;
 mod fog;
 mod lights;
+mod queries;
 mod scene;
 mod sky;
 mod state;
@@ -15,6 +16,7 @@ use std::sync::{Arc, Mutex};
 use glam::DVec3;
 
 pub use lights::Light;
+pub use queries::{Between, LightAt};
 pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;
 

@@ -2,6 +2,7 @@
 
 mod froxels;
 mod host;
+mod queries;
 mod spaces;
 mod stages;
 mod threads;

@@ -1,0 +1,138 @@
+//! What a host may ask: light, transmittance and visibility at any place, at the context's time.
+//!
+//! Closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
+//! tables. Positions are in the host's world.
+
+use glam::DVec3;
+
+use super::{Context, GroundLight, Light, fog::fog_layer};
+use crate::{
+    error::{Error, Result},
+    fog::{Viewpoint, koschmieder_visibility_m, transmittance_between},
+    sky::{
+        LightTable, Sh9,
+        reference::{medium::Medium, ray::Ray},
+    },
+};
+
+/// Light at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightAt {
+    /// The sun, in (east, north, up) of the place.
+    pub sun: Light,
+    /// The moon.
+    pub moon: Light,
+    /// What arrives, after air and clouds.
+    pub arriving: GroundLight,
+}
+
+/// What lies between two points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// Share of light that gets through, per channel (680, 550, 440 nm of the default planet).
+    pub transmittance: [f64; 3],
+    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way were
+    /// like this part of it; infinite where nothing stops light.
+    pub visibility_m: f64,
+}
+
+impl Context {
+    /// Sun, moon and sky at `position` and the context's time, with the clouds' and the air's share taken off.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    pub fn light_at(&self, position: DVec3) -> Result<LightAt> {
+        let scene = self.scene_at(position)?;
+        Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
+    }
+
+    /// What air, fog, rain and snow between `from` and `to` leave of the light.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same.
+    pub fn between(&self, from: DVec3, to: DVec3) -> Result<Between> {
+        let scene = self.scene_at(from)?;
+        self.scene_at(to)?;
+        let offset = scene.world_to_enu * (to - from);
+        let distance = offset.length();
+        if distance < 1e-3 {
+            return Err(Error::range("to", "at least a millimetre from `from`", to));
+        }
+        let medium = Medium::of(&scene.planet);
+        let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
+        let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
+        if let Some(layer) = fog_layer(&scene.conditions, self.desc.seed) {
+            let view = Viewpoint {
+                altitude_m: scene.place.altitude_m,
+                map_m: scene.map_m,
+                planet_radius_m: scene.planet.bottom_radius_m,
+                ..Viewpoint::flat(0.0)
+            };
+            let fog = transmittance_between(&layer, &view, offset)?;
+            through = [0, 1, 2].map(|i| through[i] * fog[i]);
+        }
+        let falling = (-scene.conditions.precipitation.extinction_per_m * distance).exp();
+        through = through.map(|t| t * falling);
+        let mean = -through[1].max(f64::MIN_POSITIVE).ln() / distance;
+        Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
+    }
+
+    /// The sky's light on surfaces of any slope at `position`: nine spherical harmonics of radiance, cd/m^2 a channel, in
+    /// (east, north, up) of the place, the lit ground as the lower half. Clouds dim and whiten it.
+    ///
+    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the air.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place; [`crate::Status::DeviceLost`] or a GPU fault.
+    pub fn ambient_at(&self, position: DVec3) -> Result<Sh9> {
+        let scene = self.scene_at(position)?;
+        let table = self.light_table(&scene.planet)?;
+        let clear = |light: &Light| -> (Sh9, f32) {
+            let sh = table.sh9(scene.place.altitude_m, light.direction.to_array());
+            let colored = sh.map(|c| [0, 1, 2].map(|i| c[i] * light.illuminance_lux[i] as f32));
+            (colored, table.irradiance(scene.place.altitude_m, light.direction.z)[1] * light.illuminance_lux[1] as f32)
+        };
+        let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
+        // Clouds turn the clear sky's pattern into an even one of the light that they let through.
+        let cover = scene.deck_cover as f32;
+        let even = scene.ground.sky_lux.map(|e| (e / std::f64::consts::PI) as f32);
+        let clear_e = (sun_e + moon_e).max(1e-9);
+        let keep = (1.0 - cover) * (scene.ground.sky_lux[1] as f32 / clear_e).min(1.0);
+        let mut sh: Sh9 = std::array::from_fn(|k| [0, 1, 2].map(|i| (sun[k][i] + moon[k][i]) * keep));
+        let kept = keep * clear_e / scene.ground.sky_lux[1].max(1e-9) as f32;
+        add_even_sky(&mut sh, even.map(|u| u * (1.0 - kept).max(0.0)), scene.planet.ground_albedo);
+        Ok(sh)
+    }
+
+    fn light_table(&self, planet: &crate::sky::Planet) -> Result<std::sync::Arc<LightTable>> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        self.sky()?.light_table(&device, planet)
+    }
+}
+
+/// Adds a sky of the same radiance `u` everywhere above the horizon and a ground of albedo `a` that it lights.
+fn add_even_sky(sh: &mut Sh9, u: [f32; 3], albedo: [f64; 3]) {
+    // Integrals of the basis over the upper half: Y00 sqrt(pi), Y10 sqrt(3 pi)/2, the zonal Y20 vanishes.
+    let (y00, y10) = (std::f32::consts::PI.sqrt(), (3.0 * std::f32::consts::PI).sqrt() / 2.0);
+    for i in 0..3 {
+        let below = u[i] * albedo[i] as f32;
+        sh[0][i] += (u[i] + below) * y00;
+        sh[2][i] += (u[i] - below) * y10;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_even_sky_lights_a_level_surface_by_pi_times_its_radiance() {
+        let mut sh: Sh9 = [[0.0; 3]; 9];
+        add_even_sky(&mut sh, [1.0; 3], [0.0; 3]);
+        // Irradiance from the harmonics, Ramamoorthi & Hanrahan 2001: A0 = pi, A1 = 2 pi/3; facing up Y10 = sqrt(3/(4 pi)).
+        let pi = std::f32::consts::PI;
+        let up = pi * sh[0][0] * 0.5 / pi.sqrt() + 2.0 * pi / 3.0 * sh[2][0] * (3.0 / (4.0 * pi)).sqrt();
+        assert!((up - pi).abs() < 1e-4, "{up}");
+    }
+}
