@@ -65,6 +65,15 @@ uninstall: ## remove what `make install` put there
 stage: lib
 	@scripts/install.sh "$(OUT_DIR)" "" "$(STAGE)" "$(VERSION)" "$(ABI_MAJOR)" >/dev/null
 
+# Built as its users would: by CMake against an installed tree.
+host: setup stage
+	cmake -S examples/glfw_host -B "$(STAGE)/glfw_host" -DCMAKE_PREFIX_PATH="$(STAGE)" >/dev/null
+	cmake --build "$(STAGE)/glfw_host"
+
+demo: host ## a C simulator with weather in it: a window, or pictures in out/ where there is no display
+	@mkdir -p out
+	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out out $(DEMO_ARGS)
+
 fmt: ## format the sources
 	cargo fmt
 

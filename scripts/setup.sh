@@ -40,8 +40,8 @@ as_root() {
 missing_packages() {
     local package
     for package in "$@"; do
-        case "$(dpkg-query -W -f='${db:Status-Status} ' "$package" 2>/dev/null)" in
-        *installed*) ;;
+        case " $(dpkg-query -W -f='${db:Status-Status} ' "$package" 2>/dev/null)" in
+        *" installed "*) ;; # and not "not-installed"
         *) echo "$package" ;;
         esac
     done
@@ -77,7 +77,7 @@ check_without_apt() {
 }
 
 rust_version() {
-    rustc --version 2>/dev/null | sed -n 's/^rustc \([0-9]*\.[0-9]*\).*/\1/p'
+    { rustc --version 2>/dev/null || true; } | sed -n 's/^rustc \([0-9]*\.[0-9]*\).*/\1/p'
 }
 
 new_enough() {
@@ -90,7 +90,8 @@ check_rust() {
     have="$(rust_version)"
     new_enough "$have" && command -v cargo >/dev/null && return 0
     # Newer Debian and Ubuntu carry rustup; older ones carry a Rust that is too old.
-    if ! command -v rustup >/dev/null && command -v apt-cache >/dev/null && apt-cache show rustup >/dev/null 2>&1; then
+    if ! command -v rustup >/dev/null && command -v apt-cache >/dev/null &&
+        apt-cache policy rustup | grep -q 'Candidate: [0-9]'; then
         as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq rustup >/dev/null || true
     fi
     if command -v rustup >/dev/null; then
