@@ -1,6 +1,9 @@
 //! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
 
-use std::{collections::HashMap, sync::Arc};
+use std::{
+    collections::HashMap,
+    sync::{Arc, OnceLock},
+};
 
 use super::{target::Stages, uniform::FrameUniform};
 use crate::{
@@ -33,7 +36,9 @@ pub(super) struct Composite {
     layout_sky: wgpu::BindGroupLayout,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     none: wgpu::TextureView,
-    none_multi: Option<wgpu::TextureView>,
+    reads_samples: bool,
+    /// Made when first needed: wgpu's OpenGL backend can adopt multisampled textures but not make them.
+    none_multi: OnceLock<wgpu::TextureView>,
 }
 
 fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry {
@@ -102,13 +107,14 @@ impl Composite {
             layout_sky: SkyVolume::view_layout(device),
             pipelines: HashMap::new(),
             none: none(&device.device, 1),
-            none_multi: multi.then(|| none(&device.device, 4)),
+            reads_samples: multi,
+            none_multi: OnceLock::new(),
         }
     }
 
     /// Whether multisampled targets can be composed, sample by sample.
     pub fn reads_samples(&self) -> bool {
-        self.none_multi.is_some()
+        self.reads_samples
     }
 
     /// Layout of group 0 for targets with one or several samples.
@@ -138,7 +144,7 @@ impl Composite {
             t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
         });
         let mask_view = mask.map(|t| t.create_view(&Default::default()));
-        let no_depth = if multi { self.none_multi.as_ref().unwrap_or(&self.none) } else { &self.none };
+        let no_depth = if multi { self.none_multi.get_or_init(|| none(&device.device, 4)) } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
