@@ -17,17 +17,19 @@ fn overcast_gradation(sin_elevation: f32) -> f32 {
 }
 
 fn sky_behind(d: vec3f) -> vec3f {
-    var clear = sky_radiance(d) + frame.night_floor;
+    var spectrum = sky_radiance(d);
     if d.z < 0.0 {
-        return (clear + ground_radiance(d)) * frame.medium_share;
+        return color_of(spectrum + ground_radiance(d)) * frame.medium_share + frame.night_floor;
     }
-    clear += disc_radiance(d, frame.pixel_angle) * frame.direct_share;
+    spectrum += disc_radiance(d, frame.pixel_angle) * frame.direct_share;
+    let clear = color_of(spectrum) + frame.night_floor;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 
 // Display-linear value of scene luminance.
 fn display(luminance: vec3f) -> vec3f {
-    return tone_curve(frame.tone, luminance * frame.exposure);
+    // Saturated spectra lie outside of Rec. 709 and have negative parts there.
+    return tone_curve(frame.tone, max(luminance, vec3f(0.0)) * frame.exposure);
 }
 
 // `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host drew nothing.

@@ -4,6 +4,8 @@
 struct FrameUniform {
     // Axes: camera-local east-north-up.
     depth: DepthUniform,
+    // Columns: linear Rec. 709 colour, cd/m^2, of what the sky passes on at each of the planet's three wavelengths.
+    color: array<vec4f, 3>,
     // Luminance of a moonless, airglow and starlit sky near the zenith, cd/m^2 a channel.
     night_floor: vec3f,
     // Display units per cd/m^2.
@@ -34,6 +36,11 @@ struct FrameUniform {
     direct_share: f32,
     pad0: f32,
     pad1: f32,
+}
+
+// Colour of light at the planet's three wavelengths.
+fn color_of(spectrum: vec3f) -> vec3f {
+    return frame.color[0].xyz * spectrum.x + frame.color[1].xyz * spectrum.y + frame.color[2].xyz * spectrum.z;
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;

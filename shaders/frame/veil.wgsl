@@ -15,7 +15,7 @@ struct Veil {
 fn air_between(d: vec3f, distance: f32) -> Veil {
     let air = aerial(d, distance);
     let night = frame.night_floor * (1.0 - air.transmittance);
-    return Veil(air.radiance * frame.medium_share + night, air.transmittance);
+    return Veil(color_of(air.radiance) * frame.medium_share + night, air.transmittance);
 }
 
 // `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air

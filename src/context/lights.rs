@@ -6,7 +6,7 @@ use super::Context;
 use crate::{
     error::Result,
     scene::Place,
-    sky::{moon, sun},
+    sky::{Planet, moon, sun},
     weather::Conditions,
 };
 
@@ -23,6 +23,8 @@ pub struct Light {
     pub angular_radius: f64,
     /// Lit part of the face, 0 to 1.
     pub lit: f64,
+    /// Strength above the air at the planet's three wavelengths, relative to the sun at 1 au.
+    pub spectrum: [f64; 3],
     /// Illuminance above the air on a surface facing it, lux in linear Rec. 709: their luminance-weighted sum is the
     /// illuminance.
     pub illuminance_lux: [f64; 3],
@@ -41,6 +43,18 @@ const SUN_LUX: f64 = 133_334.0;
 pub(super) const SUN_COLOR: [f64; 3] = [1.0937, 0.9784, 0.9390];
 /// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
+/// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer of
+/// light at these wavelengths looks like is their sum weighted by it.
+pub(super) fn color_columns(_planet: &Planet) -> [[f64; 3]; 3] {
+    let lux = SUN_COLOR.map(|v| v * SUN_LUX);
+    [[lux[0], 0.0, 0.0], [0.0, lux[1], 0.0], [0.0, 0.0, lux[2]]]
+}
+
+/// Colour of a transfer at the planet's wavelengths.
+pub(super) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
+}
+
 /// The moon adds less than a hundredth to a twilight whose sun stands above this elevation, degrees.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
@@ -53,14 +67,16 @@ impl Context {
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
         let (apparent, flattening) = see(to_sun);
         let clouds = c.cloud_light(to_sun.z, 0.2);
-        let lux = SUN_LUX / (almanac.distance_au * almanac.distance_au);
+        let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
+        let color = color_columns(&self.desc.planet);
         let sun = Light {
             direction: to_sun,
             apparent,
             bright_limb: DVec3::Z,
             angular_radius: (self.desc.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
             lit: 1.0,
-            illuminance_lux: SUN_COLOR.map(|v| v * lux),
+            spectrum: [strength; 3],
+            illuminance_lux: color_of(&color, [strength; 3]),
             flattening,
             direct_share: clouds.direct,
             matters: true,
@@ -89,6 +105,7 @@ impl Context {
             at.illuminance_lux = moon::moon_illuminance_lux(at.phase_angle, at.distance_m);
         }
         let (apparent, flattening) = see(at.direction);
+        let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
         let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
         let above = apparent.z > -0.02;
         Ok(Light {
@@ -97,7 +114,8 @@ impl Context {
             bright_limb: at.bright_limb,
             angular_radius: at.angular_radius,
             lit: at.illuminated,
-            illuminance_lux: [0, 1, 2].map(|i| SUN_COLOR[i] * MOON_TINT[i] * at.illuminance_lux),
+            spectrum,
+            illuminance_lux: color_of(&color_columns(&self.desc.planet), spectrum),
             flattening,
             direct_share: c.cloud_light(at.direction.z, 0.2).direct,
             matters: dark && above,

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{Context, GroundLight, Light, fog::fog_layer};
+use super::{Context, GroundLight, Light, fog::fog_layer, lights::color_of};
 use crate::{
     error::{Error, Result},
     fog::{Viewpoint, koschmieder_visibility_m, transmittance_between},
@@ -89,8 +89,11 @@ impl Context {
         let table = self.light_table(&scene.planet)?;
         let clear = |light: &Light| -> (Sh9, f32) {
             let sh = table.sh9(scene.place.altitude_m, light.direction.to_array());
-            let colored = sh.map(|c| [0, 1, 2].map(|i| c[i] * light.illuminance_lux[i] as f32));
-            (colored, table.irradiance(scene.place.altitude_m, light.direction.z)[1] * light.illuminance_lux[1] as f32)
+            let colored = |c: [f32; 3]| {
+                let lit = [0, 1, 2].map(|i| f64::from(c[i]) * light.spectrum[i]);
+                color_of(&scene.color, lit).map(|v| v as f32)
+            };
+            (sh.map(colored), colored(table.irradiance(scene.place.altitude_m, light.direction.z))[1])
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
         // Clouds turn the clear sky's pattern into an even one of the light that they let through.

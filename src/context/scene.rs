@@ -4,7 +4,11 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::{Context, Light, air::planet_under};
+use super::{
+    Context, Light,
+    air::planet_under,
+    lights::{color_columns, color_of},
+};
 use crate::{
     error::Result,
     scene::Place,
@@ -44,6 +48,8 @@ pub struct Scene {
     pub sun: Light,
     /// The moon.
     pub moon: Light,
+    /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under the sun of 1 au.
+    pub color: [[f64; 3]; 3],
     /// Light on the ground.
     pub ground: GroundLight,
     /// Airglow and starlight, cd/m^2 a channel.
@@ -99,16 +105,16 @@ fn air_mass(elevation_deg: f64) -> f64 {
     1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364)).max(0.02)
 }
 
-/// Light of a source of `lux` above clear air: (direct on a surface facing it, sky on level ground).
+/// Light of a source of `spectrum` above clear air: (direct on a surface facing it, sky on level ground).
 ///
 /// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, within 10 % of the
 /// scattering tables' irradiance; below 5 degrees it is led over to measured twilight.
-fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, lux: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, spectrum: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let (depth, ozone) = zenith_depths(planet, altitude_m);
     let mass = air_mass(elevation_deg);
     let up = smooth(-0.9, -0.25, elevation_deg);
-    let whole = luminance(lux) / luminance(super::lights::SUN_COLOR) / 133_334.0;
-    let lux = map(lux, ozone, |l, t| l * (-t * mass).exp());
+    let color = color_columns(planet);
+    let lux = map(spectrum, ozone, |l, t| l * (-t * mass).exp());
     let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
     let mu = elevation_deg.to_radians().sin().max(0.08);
     let day = map(lux, depth, |l, t| l * mu * (1.0 - slab_reflectance(t, 0.0, mu) - (-t / mu).exp()).max(0.0));
@@ -117,9 +123,9 @@ fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, lux: [f64; 
     let i = TWILIGHT_LN_LUX.iter().rposition(|p| p.0 <= h).unwrap_or(0).min(4);
     let (a, b) = (TWILIGHT_LN_LUX[i], TWILIGHT_LN_LUX[i + 1]);
     let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
-    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * whole);
+    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * spectrum[1]);
     let t = smooth(-0.8, 5.0, elevation_deg);
-    (direct, map(dusk, day, |n, d| n + (d - n) * t))
+    (color_of(&color, direct).map(|v| v.max(0.0)), map(dusk, color_of(&color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
 /// What is looked at: grey ground under `total` lux and a share of the sky. With the sun near the horizon the part of
@@ -143,7 +149,7 @@ impl Scene {
     pub(crate) fn observer(&self, exact: bool) -> Observer {
         let lamp = |light: &Light, disc| Lamp {
             toward: light.direction.to_array(),
-            irradiance: light.illuminance_lux,
+            irradiance: light.spectrum,
             angular_radius: light.angular_radius,
             disc,
         };
@@ -185,6 +191,7 @@ impl Context {
             place: local.place,
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position),
+            color: color_columns(&planet),
             planet,
             sun,
             moon,
@@ -231,7 +238,7 @@ impl Context {
     ) -> GroundLight {
         let one = |light: &Light| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
-            let (direct, sky) = clear_light(planet, place.altitude_m, elevation.to_degrees(), light.illuminance_lux);
+            let (direct, sky) = clear_light(planet, place.altitude_m, elevation.to_degrees(), light.spectrum);
             let clouds = c.cloud_light(light.direction.z, 0.2);
             let share = |v: f64| 1.0 + (v - 1.0) * below;
             let level = light.direction.z.max(0.0);
@@ -258,8 +265,7 @@ mod tests {
     use super::*;
 
     fn lux(elevation_deg: f64) -> f64 {
-        let (direct, sky) =
-            clear_light(&Planet::earth(), 0.0, elevation_deg, super::super::lights::SUN_COLOR.map(|c| c * 133_334.0));
+        let (direct, sky) = clear_light(&Planet::earth(), 0.0, elevation_deg, [1.0; 3]);
         luminance(direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(sky)
     }
 

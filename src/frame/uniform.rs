@@ -7,6 +7,7 @@ use crate::scene::DepthUniform;
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FrameUniform {
     pub depth: DepthUniform,
+    pub color: [[f32; 4]; 3],
     pub night_floor: [f32; 3],
     pub exposure: f32,
     pub deck: [f32; 3],
@@ -46,6 +47,7 @@ mod tests {
         }
         same!(
             depth,
+            color,
             night_floor,
             exposure,
             deck,

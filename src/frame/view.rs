@@ -346,6 +346,7 @@ fn uniform(
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
     FrameUniform {
         depth: rays.uniform(),
+        color: scene.color.map(|c| [c[0] as f32, c[1] as f32, c[2] as f32, 0.0]),
         night_floor: scene.night_floor_cd_m2.map(|v| v as f32),
         exposure: exposure as f32,
         deck: scene.deck_cd_m2.map(|v| v as f32),
