@@ -4,5 +4,6 @@ mod froxels;
 mod host;
 mod queries;
 mod spaces;
+mod stability;
 mod stages;
 mod threads;
