@@ -94,7 +94,7 @@ fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let nu = cosine_between(d.x, here.mu_s, cos(d.z));
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_cells, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
     var radiance = light.more;
     if (job.order == 1u) {
         let peak = max(textureLoad(norms, here.at, 0).r, 1e-6);
@@ -102,7 +102,7 @@ fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     if (below) {
         let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
-        radiance += exp(-light.depth) * ground_light(mu_s_ground);
+        radiance += exp(-air_optical_depth(air, columns_along(air, ray, ray.length))) * ground_light(mu_s_ground);
     }
     return sky_encode(radiance);
 }
@@ -127,8 +127,8 @@ fn tail(before: vec3f, term: vec3f) -> vec3f {
 fn scatter(@builtin(position) position: vec4f) -> Sums {
     let here = place_of(position);
     let steps = vec2f(f32(dims.azimuths - 1u), f32(dims.zeniths - 1u));
-    let angle = vec2f(here.tile) / steps * SKY_PI;
-    let mu = cos(angle.y);
+    let angle = source_direction(vec2f(here.tile) / steps);
+    let mu = sin(angle.y);
     var gas = vec3f(0.0);
     var haze = vec3f(0.0);
     var peak = 0.0;
@@ -209,11 +209,11 @@ fn isotropic_gather(@builtin(position) position: vec4f) -> Sums {
     let nu = cosine_between(d.x, here.mu_s, cos(d.z));
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_cells, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
     var radiance = (light.gas + light.haze) / (4.0 * SKY_PI);
     if (below) {
         let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
-        radiance += exp(-light.depth) * ground_light(mu_s_ground);
+        radiance += exp(-air_optical_depth(air, columns_along(air, ray, ray.length))) * ground_light(mu_s_ground);
     }
     return Sums(sky_encode(radiance), sky_encode(light.transfer));
 }
@@ -251,6 +251,6 @@ fn once(@builtin(position) position: vec4f) -> Once {
     let mu = once_mu(air, here.altitude, row);
     let nu = cosine_between(mu, here.mu_s, 1.0);
     let ray = sky_ray(air, here.altitude, mu, row >= ONCE_ROWS);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_cells, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_panels, here.mu_s, nu);
     return Once(sky_encode(light.gas), sky_encode(light.haze));
 }

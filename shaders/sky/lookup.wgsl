@@ -34,8 +34,8 @@ struct SkyView {
     lamp_count: u32,
     // 0: no refraction; 1: the Earth's standard air.
     refraction: f32,
-    // 0: tables; else the cells of a march per pixel.
-    march_cells: u32,
+    // Panels of a march per pixel.
+    march_panels: u32,
     lamps: array<SkyLamp, 2>,
 }
 
@@ -83,7 +83,7 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
     let mu_s = clamp((r * lamp.toward.z + ray.before * nu) / ray.radius, -1.0, 1.0);
-    let light = sky_march(sky_view.air, sky_view.dims, sky_sources, sky_sampler, ray, 0.0, end, sky_view.march_cells, mu_s, nu);
+    let light = sky_march(sky_view.air, sky_view.dims, sky_sources, sky_sampler, ray, 0.0, end, sky_view.march_panels, mu_s, nu);
     let once = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, sky_view.air.asymmetry_g);
     return lamp.irradiance * (once + light.more);
 }

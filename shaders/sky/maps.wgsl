@@ -10,14 +10,14 @@ struct SkyDims {
     // Directions of the quadrature over the sphere: zenith angles on each side of the horizon, azimuths on [0, pi].
     rule_zeniths: u32,
     rule_azimuths: u32,
-    // Cells of a march.
-    build_cells: u32,
-    sky_cells: u32,
+    // Panels of 4 nodes of a march.
+    build_panels: u32,
+    sky_panels: u32,
     // Texels of an observer's tables: the sky above and below the horizon, and the volume likewise, with its slices.
     sky_azimuths: u32,
     sky_above: u32,
     sky_below: u32,
-    air_cells: u32,
+    air_panels: u32,
     air_azimuths: u32,
     air_above: u32,
     air_below: u32,
@@ -59,6 +59,25 @@ fn altitude_from_coordinate(air: SkyAir, coordinate: f32) -> Length {
 fn planet_texel(air: SkyAir, dims: SkyDims, altitude: Length, mu_s: Cosine) -> vec2f {
     let at = vec2f(sun_coordinate(air, mu_s), altitude_coordinate(air, altitude));
     return 0.5 + at * vec2f(f32(dims.suns - 1u), f32(dims.altitudes - 1u));
+}
+
+// Directions of a source: azimuth and elevation as shares of half and of a quarter of a turn, y = (1 + a) x/(a + x), so that
+// nodes are dense towards the light's azimuth and at the horizon, where the glow round a low sun is. Coordinates in
+// [0, 1]: x azimuth, y from nadir to zenith.
+const SOURCE_SPREAD: vec2f = vec2f(3.0, 1.0);
+
+fn source_coordinate(mu: Cosine, cos_azimuth: f32) -> vec2f {
+    let azimuth = sky_acos(cos_azimuth) / SKY_PI;
+    let elevation = 1.0 - sky_acos(abs(mu)) * (2.0 / SKY_PI);
+    let y = (1.0 + SOURCE_SPREAD) * vec2f(azimuth, elevation) / (SOURCE_SPREAD + vec2f(azimuth, elevation));
+    return vec2f(y.x, 0.5 + 0.5 * select(y.y, -y.y, mu < 0.0));
+}
+
+// Azimuth and elevation, rad, at a coordinate.
+fn source_direction(coordinate: vec2f) -> vec2f {
+    let y = vec2f(coordinate.x, abs(2.0 * coordinate.y - 1.0));
+    let x = SOURCE_SPREAD * y / (1.0 + SOURCE_SPREAD - y);
+    return vec2f(x.x * SKY_PI, select(0.5, -0.5, coordinate.y < 0.5) * SKY_PI * x.y);
 }
 
 // A direction of the quadrature: zenith cosine and weight, so that sum of weight f = integral of f over mu. Nodes are

@@ -1,6 +1,5 @@
 //!include "sky/maps.wgsl"
-// Light along a piece of a ray, marched with few cells: columns of air in each cell by Simpson's rule, light that
-// leaves the cell by (1 - e^-tau)/tau, so that thick air is as right as thin air.
+// Light along a piece of a ray, by a Gauss rule on nodes that are spread as the air is.
 
 override DIRECTIONAL: bool = true;
 
@@ -11,8 +10,6 @@ struct SkyLight {
     more: Radiance,
     // What would be scattered into the ray in a field of radiance 1.
     transfer: vec3f,
-    // Optical depth of the piece.
-    depth: vec3f,
 }
 
 // Light scattered more than once into a direction, per unit of scattering coefficient and of sun: 1/sr.
@@ -28,7 +25,7 @@ fn more_scattered(
     let sines = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1e-9));
     let cos_azimuth = clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
     let steps = vec2f(f32(dims.azimuths - 1u), f32(dims.zeniths - 1u));
-    let d = vec2f(sky_acos(cos_azimuth), sky_acos(mu)) * (steps / SKY_PI);
+    let d = source_coordinate(mu, cos_azimuth) * steps;
     let i = min(floor(d), steps - 1.0);
     let f = d - i;
     let scale = 1.0 / (tile * (steps + 1.0));
@@ -41,66 +38,96 @@ fn more_scattered(
     return sky_decode(mix(mix(a, b, f.x), mix(c, e, f.x), f.y));
 }
 
+// How the nodes of a march are spread over a stretch of a ray: s = spread (e^(k x) - 1) from its origin, so that they
+// are even in length within `spread` of it and in its logarithm beyond.
+struct Stretch {
+    origin: Length,
+    // 1: away from the ray's start, -1: towards it.
+    sense: f32,
+    spread: Length,
+    k: f32,
+}
+
+// The origin is the low end, where the air is dense; or the near end, if the air there hides the rest.
+fn stretch_of(air: SkyAir, ray: SkyRay, a: Length, b: Length, mu_s: Cosine) -> Stretch {
+    let near = altitude_along(ray.radius, ray.altitude, ray.mu, a);
+    let far = altitude_along(ray.radius, ray.altitude, ray.mu, b);
+    let density_near = air_density(air, near);
+    let reds = air.rayleigh_scattering * density_near.x + air.mie_extinction * density_near.y;
+    let sigma_near = max(reds.x, max(reds.y, reds.z));
+    let is_near = near <= far || sigma_near * (b - a) > 2.0;
+    let origin = select(b, a, is_near);
+    let altitude = max(select(far, near, is_near), 0.0);
+    let density = air_density(air, altitude);
+    let gas = dot(air.rayleigh_scattering, vec3f(1.0)) * density.x + 1e-20;
+    let haze = dot(air.mie_extinction, vec3f(1.0)) * density.y;
+    let per_height = (gas / air.rayleigh_scale_height_m + haze / air.mie_scale_height_m) / (gas + haze);
+    let mu = abs(ray.radius * ray.mu + origin) / (air.bottom_m + altitude);
+    let sigma = select(0.0, sigma_near, is_near);
+    let per_length = per_height * mu + sqrt(0.5 * per_height / air.bottom_m) + sigma * (1.0 + mu / (max(mu_s, 0.0) + 0.1));
+    let spread = 1.0 / (per_length + 0.5 / max(b - a, 1e-3));
+    return Stretch(origin, select(-1.0, 1.0, is_near), spread, log(1.0 + (b - a) / spread));
+}
+
+// Gauss and Legendre's rule of 4 nodes on (0, 1): node and weight.
+fn gauss_4(i: u32) -> vec2f {
+    let outer = i == 0u || i == 3u;
+    let x = select(0.16999052, 0.43056816, outer);
+    return vec2f(0.5 + select(x, -x, i < 2u), select(0.32607258, 0.17392742, outer));
+}
+
 // Marches from `start` to `end` metres along the ray. mu_s: the light's zenith cosine at the ray's start, nu: cosine of
-// the angle between ray and light. The ray is cut at its perigee; cells are even in the square root of the altitude
-// over each part's low end, which is even in length for a grazing part.
+// the angle between ray and light. The ray is cut at its perigee and at the edges of the planet's shadow; each stretch
+// takes `panels` panels of 4 nodes, fewer if there are several.
 fn sky_march(
     air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, smp: sampler,
-    ray: SkyRay, start: Length, end: Length, cells: u32, mu_s: Cosine, nu: Cosine,
+    ray: SkyRay, start: Length, end: Length, panels: u32, mu_s: Cosine, nu: Cosine,
 ) -> SkyLight {
     let t_ray = ray.radius * ray.mu;
-    let t_start = t_ray + start;
-    let t_end = t_ray + end;
-    let two_parts = t_start < 0.0 && t_end > 0.0;
-    let per_part = select(cells, (2u * cells + 2u) / 3u, two_parts);
-    let count = select(per_part, 2u * per_part, two_parts);
-    var out = SkyLight(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
-    var passed = vec3f(1.0);
-    var s1 = 0.0;
-    var density1 = vec3f(0.0);
-    for (var k = 0u; k < count; k++) {
-        let down = t_start < 0.0 && k < per_part;
-        let index = select(k, k - per_part, two_parts && !down);
-        // Low end of this part: signed distance from the perigee, altitude and radius; and the part's length.
-        let t_low = max(select(t_start, -t_end, down), 0.0);
-        let part = select(end - start, select(t_end, -t_start, down), two_parts);
-        let low = altitude_along(ray.radius, ray.altitude, ray.mu, select(max(start, -t_ray), min(end, -t_ray), down));
-        let h_low = max(select(low, ray.perigee, two_parts), 0.0);
-        let r_low = air.bottom_m + h_low;
-        let q_part = part * (part + 2.0 * t_low);
-        let rise = q_part / (r_low + sqrt(r_low * r_low + q_part));
-        let x = select(f32(index + 1u), f32(per_part - index - 1u), down) / f32(per_part);
+    let shadow = shadow_stretch(air, ray, mu_s, nu);
+    // Cuts inside the ray in order; those outside are put at its end.
+    var cuts = vec3f(-t_ray, shadow);
+    let margin = 1e-3 * (end - start);
+    let known = vec3<bool>(true, vec2<bool>(shadow.y > shadow.x));
+    let inside = (cuts > vec3f(start + margin)) & (cuts < vec3f(end - margin)) & known;
+    cuts = select(vec3f(end), cuts, inside);
+    cuts = vec3f(min(cuts.x, cuts.y), max(cuts.x, cuts.y), cuts.z);
+    cuts = vec3f(cuts.x, min(cuts.y, cuts.z), max(cuts.y, cuts.z));
+    cuts = vec3f(min(cuts.x, cuts.y), max(cuts.x, cuts.y), cuts.z);
+    let stretches = 1u + u32(inside.x) + u32(inside.y) + u32(inside.z);
+    let per_stretch = 4u * select((3u * panels + 4u) / 5u, panels, stretches == 1u);
+    let columns_start = sky_columns(air, ray);
+    var out = SkyLight(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
+    var stretch: Stretch;
+    for (var k = 0u; k < stretches * per_stretch; k++) {
+        let part = k / per_stretch;
+        let index = k - part * per_stretch;
         if (index == 0u) {
-            s1 = select(0.0, part, down);
-            density1 = air_density(air, h_low + select(0.0, rise, down));
+            let a = select(select(select(cuts.z, cuts.y, part == 2u), cuts.x, part == 1u), start, part == 0u);
+            let b = select(select(select(end, cuts.z, part == 2u), cuts.y, part == 1u), cuts.x, part == 0u);
+            stretch = stretch_of(air, ray, a, b, mu_s);
         }
-        let dh = rise * x * x;
-        let q = dh * (2.0 * r_low + dh);
-        let s2 = select(q / max(t_low + sqrt(t_low * t_low + q), 1e-6), part, x >= 1.0);
-        let sm = 0.5 * (s1 + s2);
-        let qm = sm * (sm + 2.0 * t_low);
-        let rm = sqrt(r_low * r_low + qm);
-        let hm = h_low + qm / (r_low + rm);
-        let density2 = air_density(air, h_low + dh);
-        let columns = abs(s2 - s1) / 6.0 * (density1 + 4.0 * air_density(air, hm) + density2);
-        let depth = air_optical_depth(air, columns);
-        // Where the middle is, seen from the ray's start.
-        let before = select(select(start, -t_ray, two_parts), start + part, down);
-        let distance = before + select(sm, -sm, down);
-        let mu_s_here = clamp((ray.radius * mu_s + distance * nu) / rm, -1.0, 1.0);
-        let mu_here = clamp(select(t_low + sm, -(t_low + sm), down) / rm, -1.0, 1.0);
-        let weight = passed * air_escape(depth);
-        let gas = weight * air.rayleigh_scattering * columns.x;
-        let haze = weight * air.mie_scattering * columns.y;
-        let sun = sun_transmittance(air, hm, mu_s_here);
+        let panel = index / 4u;
+        let node = gauss_4(index - 4u * panel);
+        let share = 4.0 / f32(per_stretch);
+        let grown = stretch.spread * exp(stretch.k * (f32(panel) + node.x) * share);
+        let s = grown - stretch.spread;
+        let distance = stretch.origin + stretch.sense * s;
+        let ds = node.y * share * stretch.k * grown;
+        let altitude = clamp(altitude_along(ray.radius, ray.altitude, ray.mu, distance), 0.0, air.thickness_m);
+        let r = air.bottom_m + altitude;
+        let mu_here = clamp((t_ray + distance) / r, -1.0, 1.0);
+        let mu_s_here = clamp((ray.radius * mu_s + distance * nu) / r, -1.0, 1.0);
+        let columns = columns_to(air, ray, columns_start, altitude, select(-1.0, 1.0, t_ray + distance >= 0.0));
+        let weight = ds * exp(-air_optical_depth(air, columns));
+        let density = air_density(air, altitude);
+        let gas = weight * air.rayleigh_scattering * density.x;
+        let haze = weight * air.mie_scattering * density.y;
+        let sun = sun_transmittance(air, altitude, mu_s_here);
         out.gas += gas * sun;
         out.haze += haze * sun;
-        out.more += (gas + haze) * more_scattered(air, dims, sources, smp, hm, mu_s_here, mu_here, nu);
+        out.more += (gas + haze) * more_scattered(air, dims, sources, smp, altitude, mu_s_here, mu_here, nu);
         out.transfer += gas + haze;
-        out.depth += depth;
-        passed *= exp(-depth);
-        s1 = s2;
-        density1 = density2;
     }
     return out;
 }

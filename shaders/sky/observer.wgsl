@@ -58,10 +58,11 @@ fn as_source(light: vec3f, depth: vec3f) -> vec4f {
 fn sky(@builtin(position) position: vec4f) -> SkyTexel {
     let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_cells, mu_s_at_start(ray, view.nu), view.nu);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_panels, mu_s_at_start(ray, view.nu), view.nu);
     let even = light.gas * rayleigh_phase(view.nu) + light.more;
     if (view.below) {
-        return SkyTexel(as_source(even, light.depth), as_source(light.haze, light.depth));
+        let depth = air_optical_depth(air, columns_along(air, ray, ray.length));
+        return SkyTexel(as_source(even, depth), as_source(light.haze, depth));
     }
     return SkyTexel(sky_encode(even), sky_encode(light.haze));
 }
@@ -75,9 +76,10 @@ fn volume(@builtin(position) position: vec4f) -> SkyTexel {
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
     let end = slice_distance(w, ray.length);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, dims.air_cells, mu_s_at_start(ray, view.nu), view.nu);
+    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, dims.air_panels, mu_s_at_start(ray, view.nu), view.nu);
     let even = light.gas * rayleigh_phase(view.nu) + light.more;
-    return SkyTexel(as_source(even, light.depth), as_source(light.haze, light.depth));
+    let depth = air_optical_depth(air, columns_along(air, ray, end));
+    return SkyTexel(as_source(even, depth), as_source(light.haze, depth));
 }
 
 struct TableLight {

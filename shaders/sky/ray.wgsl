@@ -94,29 +94,47 @@ fn ozone_from_perigee(air: SkyAir, perigee: Length, p: Length, altitude: Length)
     return (parts.x + parts.y) / 6.0;
 }
 
-// Columns of gas, haze and ozone from the ray's start to `distance` along it, in metres at density 1, in closed form.
+// What the columns from a ray's start to any point of it share.
+struct SkyColumns {
+    // At the start: columns of gas and haze straight on, negative if the ray descends; of ozone from the perigee.
+    gas_haze: vec2f,
+    ozone: f32,
+    // Added once the perigee is passed.
+    turn: vec2f,
+    side: f32,
+}
+
+fn sky_columns(air: SkyAir, ray: SkyRay) -> SkyColumns {
+    let side = select(-1.0, 1.0, ray.mu >= 0.0);
+    let h = ray.altitude;
+    let p = ray.perigee_radius;
+    let start = side * air_density(air, h).xy * chapman(air, h - ray.perigee, air.bottom_m + h, p);
+    let turn = 2.0 * air_density(air, ray.perigee).xy * chapman(air, 0.0, p, p);
+    return SkyColumns(start, side * ozone_from_perigee(air, ray.perigee, p, h), turn, side);
+}
+
+// Columns of gas, haze and ozone from the ray's start to the point at `altitude` on the given side of the perigee, in
+// metres at density 1, in closed form; good to about 0.1 m at whatever distance.
+fn columns_to(air: SkyAir, ray: SkyRay, start: SkyColumns, altitude: Length, side: f32) -> vec3f {
+    let p = ray.perigee_radius;
+    let here = side * air_density(air, altitude).xy * chapman(air, altitude - ray.perigee, air.bottom_m + altitude, p);
+    let turn = select(vec2f(0.0), start.turn, side != start.side);
+    let ozone = side * ozone_from_perigee(air, ray.perigee, p, altitude) - start.ozone;
+    return max(vec3f(start.gas_haze - here + turn, ozone), vec3f(0.0));
+}
+
+// The same to `distance`, good to 1e-4 of itself: short columns come from Simpson's rule.
 fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
     let h0 = ray.altitude;
     let h1 = clamp(altitude_along(ray.radius, h0, ray.mu, distance), 0.0, air.thickness_m);
     let hm = altitude_along(ray.radius, h0, ray.mu, 0.5 * distance);
-    let side0 = select(-1.0, 1.0, ray.mu >= 0.0);
-    let side1 = select(-1.0, 1.0, ray.radius * ray.mu + distance >= 0.0);
-    let across = side0 != side1;
-    let p = ray.perigee_radius;
-    let r = air.bottom_m + vec2f(h0, h1);
-    let rise = vec2f(h0, h1) - ray.perigee;
-    let spread = select(abs(h1 - h0), max(rise.x, rise.y), across);
-    let d0 = air_density(air, h0);
-    let d1 = air_density(air, h1);
-    let dm = air_density(air, hm);
-    let turn = 2.0 * air_density(air, ray.perigee).xy * chapman(air, 0.0, p, p);
-    let long = side0 * d0.xy * chapman(air, rise.x, r.x, p) - side1 * d1.xy * chapman(air, rise.y, r.y, p)
-        + select(vec2f(0.0), turn, across);
-    let short = distance / 6.0 * (d0.xy + 4.0 * dm.xy + d1.xy);
-    let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
-    let columns = max(select(long, short, vec2f(spread) < 0.3 * scale_height), vec2f(0.0));
-    let ozone = side1 * ozone_from_perigee(air, ray.perigee, p, h1) - side0 * ozone_from_perigee(air, ray.perigee, p, h0);
-    return vec3f(columns, max(ozone, 0.0));
+    let start = sky_columns(air, ray);
+    let side = select(-1.0, 1.0, ray.radius * ray.mu + distance >= 0.0);
+    let long = columns_to(air, ray, start, h1, side);
+    let short = distance / 6.0 * (air_density(air, h0) + 4.0 * air_density(air, hm) + air_density(air, h1));
+    let spread = select(abs(h1 - h0), max(h0, h1) - ray.perigee, side != start.side);
+    let is_short = vec2f(spread) < 0.3 * vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
+    return vec3f(select(long.xy, short.xy, is_short), long.z);
 }
 
 // Share of the light's disc above the horizon of a point, and the zenith cosine of the middle of that share. x: height
@@ -139,5 +157,21 @@ fn disc_above_horizon(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec2f {
 fn sun_transmittance(air: SkyAir, altitude: Length, mu_s: Cosine) -> vec3f {
     let disc = disc_above_horizon(air, altitude, mu_s);
     let ray = sky_ray(air, altitude, disc.y, false);
-    return disc.x * exp(-air_optical_depth(air, columns_along(air, ray, ray.length)));
+    let columns = columns_to(air, ray, sky_columns(air, ray), air.thickness_m, 1.0);
+    return disc.x * exp(-air_optical_depth(air, columns));
+}
+
+// The stretch of a ray, from `x` to `y` metres along it, that lies in the planet's shadow; empty if y <= x. The shadow
+// is a cylinder behind the planet.
+fn shadow_stretch(air: SkyAir, ray: SkyRay, mu_s: Cosine, nu: Cosine) -> vec2f {
+    let r = ray.radius;
+    let a = max(1.0 - nu * nu, 1e-9);
+    let b = r * (ray.mu - mu_s * nu);
+    let c = ray.altitude * (2.0 * air.bottom_m + ray.altitude) - r * r * mu_s * mu_s;
+    let root = sqrt(max(b * b - a * c, 0.0));
+    // Of the cylinder's stretch, what is behind the plane through the planet's centre across the light.
+    let plane = -r * mu_s / select(nu, 1e-9, abs(nu) < 1e-9);
+    let enter = select((-b - root) / a, max((-b - root) / a, plane), nu < 0.0);
+    let leave = select((-b + root) / a, min((-b + root) / a, plane), nu > 0.0);
+    return select(vec2f(1.0, 0.0), vec2f(enter, leave), b * b > a * c);
 }

@@ -87,8 +87,8 @@ impl Pass {
     pub fn texel_cost(&self, s: &SkySettings) -> f64 {
         let directions = f64::from(2 * s.rule_zeniths * s.rule_azimuths);
         match self.kind {
-            Kind::Gather | Kind::IsotropicGather => f64::from(s.build_cells),
-            Kind::Once => f64::from(s.sky_cells),
+            Kind::Gather | Kind::IsotropicGather => f64::from(4 * s.build_panels),
+            Kind::Once => f64::from(4 * s.sky_panels),
             Kind::Scatter => 0.3 * directions,
             Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.2 * directions,
         }

@@ -15,7 +15,7 @@ pub enum SkyModel {
     /// Light scattered more than once keeps its direction, order by order. The default.
     #[default]
     Directional,
-    /// As the default, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] cells: what
+    /// As the default, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] nodes: what
     /// the tables are measured against.
     BruteForce,
 }
@@ -69,16 +69,16 @@ pub struct SkySettings {
     pub rule_zeniths: u32,
     /// Azimuths on `[0, pi]` that are summed over, `[2, 24]`, default 8.
     pub rule_azimuths: u32,
-    /// Cells of a ray's march while the planet's tables are built, `[4, 64]`, default 14.
-    pub build_cells: u32,
+    /// Panels (of 4 nodes) of a ray's march while the planet's tables are built, `[1, 16]`, default 3.
+    pub build_panels: u32,
     /// Azimuths on `[0, pi]` of an observer's sky, `[8, 256]`, default 40.
     pub sky_azimuths: u32,
     /// Rows of it above the horizon, `[8, 256]`, default 80.
     pub sky_above: u32,
     /// Rows of it below the horizon, `[8, 256]`, default 40.
     pub sky_below: u32,
-    /// Cells of its rays' marches, `[4, 128]`, default 20.
-    pub sky_cells: u32,
+    /// Panels of its rays' marches, `[1, 32]`, default 5.
+    pub sky_panels: u32,
     /// Azimuths on `[0, pi]` of the air in front of things, `[4, 64]`, default 16.
     pub air_azimuths: u32,
     /// Rows of it above the horizon, `[4, 128]`, default 20.
@@ -87,9 +87,9 @@ pub struct SkySettings {
     pub air_below: u32,
     /// Distances of it, `[4, 64]`, default 16.
     pub air_slices: u32,
-    /// Cells of a march to one of them, `[2, 64]`, default 8.
-    pub air_cells: u32,
-    /// Cells of a march per pixel ([`SkyModel::BruteForce`]), `[1, 4096]`, default 64.
+    /// Panels of a march to one of them, `[1, 16]`, default 2.
+    pub air_panels: u32,
+    /// Nodes of a march per pixel, rounded up to fours ([`SkyModel::BruteForce`]), `[1, 4096]`, default 64.
     pub march_cells: u32,
 }
 
@@ -104,16 +104,16 @@ impl Default for SkySettings {
             azimuths: 7,
             rule_zeniths: 8,
             rule_azimuths: 8,
-            build_cells: 14,
+            build_panels: 3,
             sky_azimuths: 40,
             sky_above: 80,
             sky_below: 40,
-            sky_cells: 20,
+            sky_panels: 5,
             air_azimuths: 16,
             air_above: 20,
             air_below: 20,
             air_slices: 16,
-            air_cells: 8,
+            air_panels: 2,
             march_cells: 64,
         }
     }
@@ -138,16 +138,16 @@ impl SkySettings {
             ("azimuths", self.azimuths, 3, 24),
             ("rule_zeniths", self.rule_zeniths, 2, 16),
             ("rule_azimuths", self.rule_azimuths, 2, 24),
-            ("build_cells", self.build_cells, 4, 64),
+            ("build_panels", self.build_panels, 1, 16),
             ("sky_azimuths", self.sky_azimuths, 8, 256),
             ("sky_above", self.sky_above, 8, 256),
             ("sky_below", self.sky_below, 8, 256),
-            ("sky_cells", self.sky_cells, 4, 128),
+            ("sky_panels", self.sky_panels, 1, 32),
             ("air_azimuths", self.air_azimuths, 4, 64),
             ("air_above", self.air_above, 4, 128),
             ("air_below", self.air_below, 4, 128),
             ("air_slices", self.air_slices, 4, 64),
-            ("air_cells", self.air_cells, 2, 64),
+            ("air_panels", self.air_panels, 1, 16),
             ("march_cells", self.march_cells, 1, 4096),
         ];
         for (name, value, lo, hi) in fields {
@@ -183,8 +183,8 @@ mod tests {
         }
         assert!(SkyModel::from_name("best").unwrap_err().message.contains("directional"));
         assert!(SkySettings::default().check().is_ok());
-        let e = SkySettings { sky_cells: 3, ..Default::default() }.check().unwrap_err();
-        assert!(e.message.contains("sky_cells") && e.message.contains("[4, 128]"), "{}", e.message);
+        let e = SkySettings { sky_panels: 0, ..Default::default() }.check().unwrap_err();
+        assert!(e.message.contains("sky_panels") && e.message.contains("[1, 32]"), "{}", e.message);
         let wide = SkySettings { suns: 128, azimuths: 24, ..Default::default() };
         assert!(wide.check().unwrap_err().message.contains("suns x azimuths"));
     }

@@ -77,12 +77,12 @@ pub(crate) struct DimsUniform {
     pub azimuths: u32,
     pub rule_zeniths: u32,
     pub rule_azimuths: u32,
-    pub build_cells: u32,
-    pub sky_cells: u32,
+    pub build_panels: u32,
+    pub sky_panels: u32,
     pub sky_azimuths: u32,
     pub sky_above: u32,
     pub sky_below: u32,
-    pub air_cells: u32,
+    pub air_panels: u32,
     pub air_azimuths: u32,
     pub air_above: u32,
     pub air_below: u32,
@@ -98,12 +98,12 @@ impl DimsUniform {
             azimuths: s.azimuths,
             rule_zeniths: s.rule_zeniths,
             rule_azimuths: s.rule_azimuths,
-            build_cells: s.build_cells,
-            sky_cells: s.sky_cells,
+            build_panels: s.build_panels,
+            sky_panels: s.sky_panels,
             sky_azimuths: s.sky_azimuths,
             sky_above: s.sky_above,
             sky_below: s.sky_below,
-            air_cells: s.air_cells,
+            air_panels: s.air_panels,
             air_azimuths: s.air_azimuths,
             air_above: s.air_above,
             air_below: s.air_below,
@@ -188,7 +188,7 @@ pub(crate) struct ViewUniform {
     pub altitude: f32,
     pub lamp_count: u32,
     pub refraction: f32,
-    pub march_cells: u32,
+    pub march_panels: u32,
     pub lamps: [LampUniform; 2],
 }
 
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(at("SkyLamp", "lit_from"), offset_of!(LampUniform, lit_from));
         assert_eq!(at("SkyLamp", "level"), offset_of!(LampUniform, level));
         assert_eq!(at("SkyView", "edges"), offset_of!(ViewUniform, edges));
-        assert_eq!(at("SkyView", "march_cells"), offset_of!(ViewUniform, march_cells));
+        assert_eq!(at("SkyView", "march_panels"), offset_of!(ViewUniform, march_panels));
         assert_eq!(at("SkyView", "lamps"), offset_of!(ViewUniform, lamps));
     }
 

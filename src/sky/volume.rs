@@ -188,7 +188,7 @@ impl SkyVolume {
             altitude: altitude_m as f32,
             lamp_count: lamps.len() as u32,
             refraction: observer.refraction as f32,
-            march_cells: self.settings.march_cells,
+            march_panels: self.settings.march_cells.div_ceil(4),
             lamps: [LampUniform::zeroed(); LAMPS],
         };
         for (i, lamp) in lamps.iter().enumerate() {
