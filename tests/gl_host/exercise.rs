@@ -10,6 +10,12 @@ struct Numbers { a: vec4f, b: vec4f }
 @group(0) @binding(2) var look: sampler;
 @group(0) @binding(3) var volume: texture_3d<f32>;
 @group(0) @binding(4) var layers: texture_2d_array<f32>;
+@vertex fn bright_corner(@builtin(vertex_index) i: u32) -> Out {
+    return Out(vec4f(f32((i & 1u) * 4u) - 1.0, f32((i >> 1u) * 4u) - 1.0, 0.5, 1.0), i);
+}
+@fragment fn bright(in: Out) -> @location(0) vec4f {
+    return vec4f(2.5, -1.5, f32(in.number), 1.0);
+}
 @vertex fn corner(@location(0) place: vec2f, @location(1) shift: vec2f, @builtin(instance_index) i: u32) -> Out {
     return Out(vec4f(place + shift * 0.1, 0.5, 1.0), i);
 }
@@ -54,6 +60,7 @@ fn texture(device: &wgpu::Device, format: wgpu::TextureFormat, layers: u32, volu
 /// Draws, uploads, copies, computes and reads back; checks the numbers that come back.
 pub fn run(adopted: &GlDevice, target: &GlTarget) {
     draw(adopted);
+    bright(adopted);
     if adopted.device.caps().tier > 0 {
         compute(adopted);
     }
@@ -74,6 +81,71 @@ pub fn run(adopted: &GlDevice, target: &GlTarget) {
         encoder.copy_texture_to_texture(source.as_image_copy(), copy.as_image_copy(), source.size());
         adopted.device.queue.submit([encoder.finish()]);
     }
+}
+
+/// Numbers outside of [0, 1], a number of one corner for the whole triangle, and a target that is never read.
+fn bright(adopted: &GlDevice) {
+    let device = &adopted.device.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+    });
+    let format = wgpu::TextureFormat::Rgba16Float;
+    let target = |usage| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 16, height: 16, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    };
+    let read = target(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
+    let never_read = target(wgpu::TextureUsages::RENDER_ATTACHMENT);
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("bright_corner"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("bright"),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    for texture in [&never_read, &read] {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &texture.create_view(&Default::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.draw(0..3, 0..1);
+    }
+    adopted.device.queue.submit([encoder.finish()]);
+    let texel: Vec<f32> = read_back(adopted, &read)[..8]
+        .chunks_exact(2)
+        .map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32())
+        .collect();
+    assert_eq!(texel, [2.5, -1.5, 2.0, 1.0], "nothing is clamped, and the last corner gives its number");
 }
 
 fn draw(adopted: &GlDevice) {
@@ -132,7 +204,7 @@ fn draw(adopted: &GlDevice) {
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: None,
+            entry_point: Some("corner"),
             compilation_options: Default::default(),
             buffers: &[
                 Some(layout(wgpu::VertexStepMode::Vertex, &per_vertex)),
@@ -154,7 +226,7 @@ fn draw(adopted: &GlDevice) {
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: None,
+            entry_point: Some("shade"),
             compilation_options: Default::default(),
             targets: &[Some(state.clone()), Some(state)],
         }),

@@ -90,6 +90,52 @@ fn an_es_context_keeps_its_state() {
 }
 
 #[test]
+fn old_contexts_keep_their_state() {
+    for mode in [GlMode::HostContext, GlMode::Shared] {
+        nothing_leaks(Api::Core(3, 3), mode, false, 700);
+        nothing_leaks(Api::Compatibility(3, 3), mode, false, 700);
+        nothing_leaks(Api::Es(3, 0), mode, false, 500);
+    }
+}
+
+/// Drivers answer with the latest version they have, whatever a host asks for. This one can be told to be old: the tests
+/// that ask for no more run again in a process of which it knows nothing else.
+#[test]
+fn an_old_driver_keeps_the_state() {
+    let hidden = [
+        "GL_ARB_viewport_array",
+        "GL_ARB_draw_buffers_blend",
+        "GL_ARB_clip_control",
+        "GL_ARB_polygon_offset_clamp",
+        "GL_ARB_compute_shader",
+        "GL_ARB_shader_storage_buffer_object",
+        "GL_ARB_shader_image_load_store",
+        "GL_ARB_draw_indirect",
+        "GL_ARB_query_buffer_object",
+        "GL_ARB_vertex_attrib_binding",
+        "GL_ARB_buffer_storage",
+        "GL_ARB_sample_shading",
+        "GL_ARB_ES3_compatibility",
+        "GL_ARB_texture_cube_map_array",
+        "GL_ARB_stencil_texturing",
+        "GL_KHR_debug",
+    ];
+    let hidden = hidden.map(|name| format!("-{name}")).join(" ");
+    let tests = ["state::old_contexts_keep_their_state", "pictures::textures_of_a_compatibility_context"];
+    let outcome = std::process::Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "--nocapture"])
+        .args(tests)
+        .env("MESA_GL_VERSION_OVERRIDE", "3.3")
+        .env("MESA_GLSL_VERSION_OVERRIDE", "330")
+        .env("MESA_GLES_VERSION_OVERRIDE", "3.0")
+        .env("MESA_EXTENSION_OVERRIDE", hidden)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&outcome.stdout) + String::from_utf8_lossy(&outcome.stderr);
+    assert!(outcome.status.success() && text.contains("2 passed"), "{text}");
+}
+
+#[test]
 fn a_shared_context_keeps_the_hosts_state() {
     nothing_leaks(Api::Core(4, 5), GlMode::Shared, false, 1500);
     nothing_leaks(Api::Compatibility(3, 3), GlMode::Shared, true, 1500);

@@ -148,7 +148,7 @@ unsafe fn raster(gl: &glow::Context, es: bool, version: (u32, u32)) {
         let one: unsafe extern "system" fn(u32) = function("glProvokingVertex");
         one(glow::FIRST_VERTEX_CONVENTION);
         let clamp: unsafe extern "system" fn(u32, u32) = function("glClampColor");
-        clamp(0x891C, 0); // read colour
+        clamp(0x891C, 1); // read colour
         if version >= (4, 1) {
             let view: unsafe extern "system" fn(u32, f32, f32, f32, f32) = function("glViewportIndexedf");
             view(4, 0.5, 1.25, 20.0, 30.0);
@@ -290,7 +290,7 @@ unsafe fn textures(gl: &glow::Context, later: bool, objects: &mut Objects) {
                 gl.bind_texture(target, Some(name));
             }
         }
-        gl.active_texture(glow::TEXTURE0 + 6);
+        gl.active_texture(glow::TEXTURE0 + 17); // further than wgpu goes
         if later {
             let image = gl.create_texture().unwrap();
             gl.bind_texture(glow::TEXTURE_2D, Some(image));

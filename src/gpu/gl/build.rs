@@ -150,7 +150,7 @@ impl Workshop<'_> {
             _ if es => Err(Error::unsupported(format!(
                 "target.color must have 1 sample on OpenGL ES, got {samples}: resolve it before this call"
             ))),
-            Multisample::Each if self.tier0 || !self.ask.info.at_least((4, 0), (99, 0)) => {
+            Multisample::Each if self.tier0 || !self.ask.info.at_least((4, 0), (4, 0)) => {
                 Err(Error::unsupported(format!(
                     "target.multisample must be resolve before OpenGL 4.0 and on tier 0, whose shaders cannot run per \
                      sample, for an image with {samples} samples"

@@ -88,6 +88,13 @@ impl GlInfo {
         self.at_least((4, 3), (3, 1)) || self.has("GL_ARB_compute_shader")
     }
 
+    /// Whether the context has what came with version `desktop` or `es`, or with one of `extensions` before that. 0.0
+    /// stands for never.
+    pub(super) fn knows(&self, desktop: (u32, u32), es: (u32, u32), extensions: &[&str]) -> bool {
+        let since = if self.is_es() { es } else { desktop };
+        since != (0, 0) && self.version >= since || extensions.iter().any(|e| self.has(e))
+    }
+
     pub(super) fn has(&self, extension: &str) -> bool {
         self.extensions.contains(extension)
     }

@@ -313,7 +313,7 @@ impl Parameters {
                 list.push((TEXTURE_SRGB_DECODE_EXT, DECODE_EXT as i32));
             }
         }
-        if side == Side::Depth && info.at_least((4, 3), (3, 1)) {
+        if side == Side::Depth && info.knows((4, 3), (3, 1), &["GL_ARB_stencil_texturing"]) {
             list.push((DEPTH_STENCIL_TEXTURE_MODE, DEPTH_COMPONENT as i32));
         }
         if side == Side::Depth && info.profile == GlProfile::Compatibility {

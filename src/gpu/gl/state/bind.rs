@@ -99,7 +99,9 @@ impl Bindings {
             (TEXTURE_2D_ARRAY, TEXTURE_BINDING_2D_ARRAY),
             (TEXTURE_CUBE_MAP, TEXTURE_BINDING_CUBE_MAP),
         ];
-        if info.at_least((4, 0), (3, 2)) {
+        let cube_arrays =
+            ["GL_ARB_texture_cube_map_array", "GL_EXT_texture_cube_map_array", "GL_OES_texture_cube_map_array"];
+        if info.knows((4, 0), (3, 2), &cube_arrays) {
             textures.push((TEXTURE_CUBE_MAP_ARRAY, TEXTURE_BINDING_CUBE_MAP_ARRAY));
         }
         if info.at_least((3, 2), (3, 1)) {
@@ -113,24 +115,24 @@ impl Bindings {
             (PIXEL_PACK_BUFFER, PIXEL_PACK_BUFFER_BINDING, 0),
             (PIXEL_UNPACK_BUFFER, PIXEL_UNPACK_BUFFER_BINDING, 0),
         ];
-        if info.at_least((4, 0), (3, 1)) {
+        if info.knows((4, 0), (3, 1), &["GL_ARB_draw_indirect"]) {
             buffers.push((DRAW_INDIRECT_BUFFER, DRAW_INDIRECT_BUFFER_BINDING, 0));
         }
-        if info.at_least((4, 3), (3, 1)) {
+        if info.has_compute() {
             buffers.push((DISPATCH_INDIRECT_BUFFER, DISPATCH_INDIRECT_BUFFER_BINDING, 0));
         }
-        if info.at_least((4, 4), (99, 0)) {
+        if info.knows((4, 4), (0, 0), &["GL_ARB_query_buffer_object", "GL_AMD_query_buffer_object"]) {
             buffers.push((QUERY_BUFFER, QUERY_BUFFER_BINDING, 0));
         }
         let uniform = [UNIFORM_BUFFER_BINDING, UNIFORM_BUFFER_START, UNIFORM_BUFFER_SIZE];
         let mut indexed = vec![Indexed::new(UNIFORM_BUFFER, uniform, api.uint(MAX_UNIFORM_BUFFER_BINDINGS).min(SLOTS))];
         let mut images = 0;
-        if info.at_least((4, 3), (3, 1)) {
+        if info.knows((4, 3), (3, 1), &["GL_ARB_shader_storage_buffer_object"]) {
             let storage = [SHADER_STORAGE_BUFFER_BINDING, SHADER_STORAGE_BUFFER_START, SHADER_STORAGE_BUFFER_SIZE];
             let count = api.uint(MAX_SHADER_STORAGE_BUFFER_BINDINGS).min(SLOTS);
             indexed.push(Indexed::new(SHADER_STORAGE_BUFFER, storage, count));
         }
-        if info.at_least((4, 2), (3, 1)) {
+        if info.knows((4, 2), (3, 1), &["GL_ARB_shader_image_load_store"]) {
             images = api.uint(MAX_IMAGE_UNITS).min(IMAGES);
         }
         Self {
@@ -140,7 +142,7 @@ impl Bindings {
             textures,
             samplers: vec![0; units as usize],
             images: vec![Image::default(); images as usize],
-            feedback: info.at_least((4, 0), (3, 0)) && api.PauseTransformFeedback.is_some(),
+            feedback: info.knows((4, 0), (3, 0), &["GL_ARB_transform_feedback2"]),
             ..Self::default()
         }
     }
@@ -197,15 +199,9 @@ impl Bindings {
             }
             api.BindTransformFeedback(TRANSFORM_FEEDBACK, 0);
         }
-        api.UseProgram(0);
         api.BindVertexArray(vao);
         api.BindBuffer(PIXEL_PACK_BUFFER, 0);
         api.BindBuffer(PIXEL_UNPACK_BUFFER, 0);
-        api.BindFramebuffer(FRAMEBUFFER, 0);
-        // A sampler left on a unit would override the parameters of a texture that wgpu reads without one.
-        for unit in 0..self.samplers.len() {
-            api.BindSampler(unit as u32, 0);
-        }
         api.ActiveTexture(TEXTURE0);
     }
 

@@ -1,10 +1,10 @@
 //! The host's OpenGL state while Welkin draws in the host's own context: saved, set to what wgpu takes for granted,
 //! and put back.
 //!
-//! *Leaks in*: wgpu's backend sets most of what it needs at every pass, but trusts a context of its own for the
-//! rest: a vertex array that is not 0, no rasteriser discard, filled polygons, the default clip control, no sampler
-//! left on a unit, packed pixels, no logic operation, every sample covered. *Leaks out*: everything it sets.
-//! One list serves both: what is saved here is the union, and `normalise` sets what a fresh context has.
+//! *Leaks in*: wgpu's backend sets most of what it needs at every pass (masks, scissor, blending, stencil, samplers),
+//! but trusts a context of its own for the rest: a vertex array that is not 0, no rasteriser discard, filled polygons,
+//! the default clip control, packed pixels, no logic operation, every sample covered, nothing clamped. `normalise` sets
+//! that. *Leaks out*: everything it sets. One list serves both: what is saved is the union.
 //!
 //! Not in the list because OpenGL cannot tell: conditional rendering (`glBeginConditionalRender`) must be ended by
 //! the host. Queries that count samples or primitives keep counting, so a host should end them as well.
@@ -127,10 +127,10 @@ fn toggles(api: &Api, info: &GlInfo) -> Vec<Toggle> {
             list.push((cap, fresh));
         }
     };
-    add(info.at_least((4, 0), (3, 2)), SAMPLE_SHADING, false);
+    add(info.knows((4, 0), (3, 2), &["GL_ARB_sample_shading", "GL_OES_sample_shading"]), SAMPLE_SHADING, false);
     add(info.at_least((3, 2), (3, 1)), SAMPLE_MASK, false);
-    add(info.at_least((4, 3), (3, 0)), PRIMITIVE_RESTART_FIXED_INDEX, false);
-    add(info.at_least((4, 3), (3, 2)) || info.has("GL_KHR_debug"), DEBUG_OUTPUT, false);
+    add(info.knows((4, 3), (3, 0), &["GL_ARB_ES3_compatibility"]), PRIMITIVE_RESTART_FIXED_INDEX, false);
+    add(info.knows((4, 3), (3, 2), &["GL_KHR_debug"]), DEBUG_OUTPUT, false);
     add(!es || info.has("GL_EXT_depth_clamp"), DEPTH_CLAMP, false);
     // wgpu means an sRGB format to encode; other formats do not care. OpenGL ES has it always on.
     add(!es || info.has("GL_EXT_sRGB_write_control"), FRAMEBUFFER_SRGB, true);

@@ -62,7 +62,8 @@ pub(super) struct Pixels {
 impl Pixels {
     pub(super) fn new(info: &GlInfo) -> Self {
         let desktop = if info.is_es() { &[] } else { DESKTOP };
-        let compressed = if info.at_least((4, 2), (99, 0)) { COMPRESSED } else { &[] };
+        let compressed =
+            if info.knows((4, 2), (0, 0), &["GL_ARB_compressed_texture_pixel_storage"]) { COMPRESSED } else { &[] };
         let transfer = if info.profile == GlProfile::Compatibility { TRANSFER } else { &[] };
         Self {
             store: EVERYWHERE.iter().chain(desktop).chain(compressed).map(|&(n, fresh)| (n, fresh, fresh)).collect(),

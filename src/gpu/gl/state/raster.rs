@@ -88,8 +88,8 @@ const CLAMPS: [u32; 3] = [CLAMP_READ_COLOR, CLAMP_VERTEX_COLOR, CLAMP_FRAGMENT_C
 
 impl Raster {
     pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
-        let many_views = info.at_least((4, 1), (99, 0)) && api.ViewportIndexedf.is_some();
-        let many_masks = info.at_least((3, 0), (3, 2)) && api.ColorMaski.is_some();
+        let many_views = info.knows((4, 1), (0, 0), &["GL_ARB_viewport_array"]);
+        let many_masks = info.at_least((3, 0), (3, 2));
         let views = if many_views { api.uint(MAX_VIEWPORTS).clamp(1, 64) } else { 1 };
         let targets = if many_masks { api.uint(MAX_DRAW_BUFFERS).clamp(1, 32) } else { 1 };
         Self {
@@ -97,17 +97,11 @@ impl Raster {
             targets: vec![Target::default(); targets as usize],
             many_views,
             many_masks,
-            many_blends: info.at_least((4, 0), (3, 2)) && api.BlendFuncSeparatei.is_some(),
+            many_blends: info.knows((4, 0), (3, 2), &["GL_ARB_draw_buffers_blend"]),
             desktop: !info.is_es(),
             compatibility: info.profile == GlProfile::Compatibility,
-            clip_control: api.ClipControl.is_some()
-                && (info.at_least((4, 5), (99, 0))
-                    || info.has("GL_ARB_clip_control")
-                    || info.has("GL_EXT_clip_control")),
-            offset_clamp: api.PolygonOffsetClamp.is_some()
-                && (info.at_least((4, 6), (99, 0))
-                    || info.has("GL_ARB_polygon_offset_clamp")
-                    || info.has("GL_EXT_polygon_offset_clamp")),
+            clip_control: info.knows((4, 5), (0, 0), &["GL_ARB_clip_control", "GL_EXT_clip_control"]),
+            offset_clamp: info.knows((4, 6), (0, 0), &["GL_ARB_polygon_offset_clamp", "GL_EXT_polygon_offset_clamp"]),
             ..Self::default()
         }
     }
@@ -198,13 +192,6 @@ impl Raster {
     }
 
     pub(super) fn normalise(&self, api: &Api) {
-        api.Disable(SCISSOR_TEST);
-        api.Disable(BLEND);
-        api.ColorMask(1, 1, 1, 1);
-        api.DepthMask(1);
-        for face in [FRONT, BACK] {
-            api.StencilMaskSeparate(face, u32::MAX);
-        }
         if self.desktop {
             api.PolygonMode(FRONT_AND_BACK, FILL);
             api.ProvokingVertex(LAST_VERTEX_CONVENTION);
@@ -216,9 +203,6 @@ impl Raster {
         }
         if self.clip_control {
             api.ClipControl(LOWER_LEFT, NEGATIVE_ONE_TO_ONE);
-        }
-        if self.offset_clamp {
-            api.PolygonOffsetClamp(0.0, 0.0, 0.0);
         }
     }
 
