@@ -154,7 +154,6 @@ gl_functions! {
         WaitSync = c"glWaitSync" (sync: Sync, flags: u32, timeout_ns: u64);
         DeleteSync = c"glDeleteSync" (sync: Sync);
         Flush = c"glFlush" ();
-        BindTransformFeedback = c"glBindTransformFeedback" (target: u32, object: u32);
         PauseTransformFeedback = c"glPauseTransformFeedback" ();
         ResumeTransformFeedback = c"glResumeTransformFeedback" ();
     }

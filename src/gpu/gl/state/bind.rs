@@ -81,7 +81,6 @@ pub(super) struct Bindings {
     images: Vec<Image>,
     feedback: bool,
     feedback_running: bool,
-    feedback_object: u32,
     active_unit: u32,
     program: u32,
     vertex_array: u32,
@@ -159,7 +158,6 @@ impl Bindings {
         self.read = api.uint(READ_FRAMEBUFFER_BINDING);
         self.renderbuffer = api.uint(RENDERBUFFER_BINDING);
         if self.feedback {
-            self.feedback_object = api.uint(TRANSFORM_FEEDBACK_BINDING);
             self.feedback_running = api.int(TRANSFORM_FEEDBACK_ACTIVE) != 0 && api.int(TRANSFORM_FEEDBACK_PAUSED) == 0;
         }
         for (_, binding, name) in &mut self.buffers {
@@ -193,11 +191,8 @@ impl Bindings {
     }
 
     pub(super) fn normalise(&self, api: &Api, vao: u32) {
-        if self.feedback {
-            if self.feedback_running {
-                api.PauseTransformFeedback();
-            }
-            api.BindTransformFeedback(TRANSFORM_FEEDBACK, 0);
+        if self.feedback_running {
+            api.PauseTransformFeedback();
         }
         api.BindVertexArray(vao);
         api.BindBuffer(PIXEL_PACK_BUFFER, 0);
@@ -231,11 +226,8 @@ impl Bindings {
         api.BindFramebuffer(DRAW_FRAMEBUFFER, self.draw);
         api.BindFramebuffer(READ_FRAMEBUFFER, self.read);
         api.UseProgram(self.program);
-        if self.feedback {
-            api.BindTransformFeedback(TRANSFORM_FEEDBACK, self.feedback_object);
-            if self.feedback_running {
-                api.ResumeTransformFeedback();
-            }
+        if self.feedback_running {
+            api.ResumeTransformFeedback();
         }
     }
 }

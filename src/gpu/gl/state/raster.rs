@@ -140,7 +140,7 @@ impl Raster {
                 *value = api.uint(name);
             }
             if self.compatibility {
-                api.ClampColor(CLAMP_FRAGMENT_COLOR, 0); // or the blend colour is answered clamped
+                api.ClampColor(CLAMP_FRAGMENT_COLOR, 0); // stays so: or the blend colour is answered clamped
             }
         }
         self.blend_color = api.floats(BLEND_COLOR);
@@ -196,10 +196,6 @@ impl Raster {
             api.PolygonMode(FRONT_AND_BACK, FILL);
             api.ProvokingVertex(LAST_VERTEX_CONVENTION);
             api.ClampColor(CLAMP_READ_COLOR, FIXED_ONLY);
-            if self.compatibility {
-                api.ClampColor(CLAMP_VERTEX_COLOR, 0);
-                api.ClampColor(CLAMP_FRAGMENT_COLOR, 0);
-            }
         }
         if self.clip_control {
             api.ClipControl(LOWER_LEFT, NEGATIVE_ONE_TO_ONE);
