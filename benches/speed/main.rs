@@ -1,7 +1,9 @@
 //! Benchmarks that print ratios measured within one run: `make bench`.
 
+mod fog;
 mod record;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    record::run()
+    record::run()?;
+    fog::run()
 }

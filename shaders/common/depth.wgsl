@@ -4,6 +4,10 @@
 // Stands for "nothing was drawn here".
 const RANGE_SKY: f32 = 1e12;
 
+// Kinds of depth that a pipeline must read: 1 perspective, 2 parallel rays, 4 logarithmic; for software drivers, which
+// execute all of them.
+override DEPTH_KINDS: u32 = 7u;
+
 struct DepthUniform {
     // Ray origin at the picture's centre and its change per unit of ndc, camera-relative world axes, m.
     origin: vec3f,
@@ -38,7 +42,10 @@ struct ViewRay {
 }
 
 fn view_ray(u: DepthUniform, ndc: vec2f) -> ViewRay {
-    let origin = u.origin + ndc.x * u.origin_dx + ndc.y * u.origin_dy;
+    var origin = u.origin;
+    if (DEPTH_KINDS & 2u) != 0u {
+        origin += ndc.x * u.origin_dx + ndc.y * u.origin_dy;
+    }
     let d = u.direction + ndc.x * u.direction_dx + ndc.y * u.direction_dy;
     let slant = length(d);
     return ViewRay(origin, d / slant, slant);
@@ -64,11 +71,12 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
         return RANGE_SKY;
     }
     let e = clamp(turned, 0.0, 1.0);
-    var w: f32;
-    switch u.kind {
-        case 0u: { w = u.scale / (e - pole); }
-        case 1u: { w = (e - pole) * u.scale; }
-        default: { w = depth_expm1(e * u.log_far) * u.inverse_c; }
+    var w = u.scale / (e - pole);
+    if (DEPTH_KINDS & 2u) != 0u && u.kind == 1u {
+        w = (e - pole) * u.scale;
+    }
+    if (DEPTH_KINDS & 4u) != 0u && u.kind == 2u {
+        w = depth_expm1(e * u.log_far) * u.inverse_c;
     }
     return clamp(w, 0.0, RANGE_SKY);
 }

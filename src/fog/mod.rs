@@ -21,9 +21,12 @@
 //! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
 //! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral.
 //!
+//! # Axes
+//! Rays and directions are (east, north, up) at the camera, as everywhere in a frame.
+//!
 //! # What it needs of others
-//! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude and up at the
-//! camera. Extinctions of air, haze and precipitation at the station.
+//! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude of the
+//! camera, planet and ground. Extinctions of air, haze and precipitation at the station.
 
 pub mod laws;
 pub mod light;
@@ -229,7 +232,7 @@ impl FogLayer {
 /// The light that falls on the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogLight {
-    /// Unit vector to the sun, or at night to the moon, in the axes of the rays.
+    /// Unit vector to the sun, or at night to the moon: (east, north, up).
     pub to_sun: DVec3,
     /// Its direct irradiance at the layer's top, facing it, per channel (any unit; radiance comes out per that unit
     /// and steradian).
@@ -263,8 +266,6 @@ impl FogLight {
 pub struct Viewpoint {
     /// Altitude of the camera above mean sea level, m, \[-1e4, 1e9\].
     pub altitude_m: f64,
-    /// East, north and up at the camera, in the axes of the rays (x, y, z if those are local already).
-    pub east_north_up: [DVec3; 3],
     /// Place on the map, m east and north of any fixed point: only the patches' pattern depends on it.
     pub map_m: [f64; 2],
     /// Radius of the planet, m; infinite for a flat world.
@@ -274,15 +275,9 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// A camera at `altitude_m` over a flat world whose z is up.
+    /// A camera at `altitude_m` over a flat world.
     pub fn flat(altitude_m: f64) -> Self {
-        Self {
-            altitude_m,
-            east_north_up: [DVec3::X, DVec3::Y, DVec3::Z],
-            map_m: [0.0; 2],
-            planet_radius_m: f64::INFINITY,
-            ground_m: 0.0,
-        }
+        Self { altitude_m, map_m: [0.0; 2], planet_radius_m: f64::INFINITY, ground_m: 0.0 }
     }
 
     /// Refuses what is not a viewpoint, by name.
@@ -294,11 +289,6 @@ impl Viewpoint {
         check_range("fog.ground_m", self.ground_m, -1e5, 1e5, "m")?;
         if self.planet_radius_m.is_nan() || self.planet_radius_m <= 1e3 {
             return Err(Error::range("planet_radius_m", "above 1000 m, or infinite", self.planet_radius_m));
-        }
-        for v in self.east_north_up {
-            if !(v.length() - 1.0).abs().lt(&1e-3) {
-                return Err(Error::range("east_north_up", "three unit vectors", v));
-            }
         }
         for v in self.map_m {
             check_range("map_m", v, -1e12, 1e12, "m")?;

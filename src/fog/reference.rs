@@ -4,8 +4,8 @@
 //! # Path through a layer
 //! With r0 the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical and
 //! k = 1/r0, the altitude after t metres is h0 + q/(1 + sqrt(1 + k q)) with q = t (2 mu + k t): exact, and without the
-//! cancellation of sqrt(r^2) - R. An altitude h is met where k t^2 + 2 mu t + c = 0, c = d (2 - k d), d = h0 - h; the
-//! roots are taken in the form that adds. On each side of the ray's lowest point the altitude is monotone, so a slab
+//! cancellation of sqrt(r^2) - R. Seen from its lowest point (its start, its end, or where it is level) a ray only
+//! rises, and meets an altitude d higher after c/(mu + sqrt(mu^2 + k c)), c = d (2 + k d): a form that only adds. So a slab
 //! with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
 //!
 //! # Light along the ray
@@ -68,8 +68,6 @@ pub struct FogModel {
     pub kind: FogKind,
     /// Distance of the compatibility laws.
     pub distance: DistanceKind,
-    /// Up at the camera, host axes.
-    pub up: DVec3,
     /// Altitude of the camera, m.
     pub altitude: f64,
     /// 1/(planet radius + altitude), 1/m; 0 for a flat world.
@@ -79,6 +77,8 @@ pub struct FogModel {
     /// Slab: altitudes where the flanks begin and end (base 0, base 1, top 0, top 1), m. Exponential: reference
     /// altitude, scale height.
     pub knots: [f64; 4],
+    /// 1/height of the slab's flanks, 1/m.
+    pub inverse_flanks: [f64; 2],
     /// Extinction at 550 nm, 1/m; density of the compatibility laws.
     pub extinction: f64,
     /// Start and end of the linear law, m.
@@ -121,7 +121,7 @@ pub struct FogModel {
     pub sky_radiance: DVec3,
     /// Radiance of the ground below it.
     pub ground_radiance: DVec3,
-    /// Patches: share, and waves as (wave vector in host axes, phase at the camera).
+    /// Patches: share, and waves as (wave vector, phase at the camera).
     pub patch_amount: f64,
     /// See `patch_amount`.
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
@@ -167,47 +167,29 @@ pub fn layer_depth_above(m: &FogModel, h: f64) -> f64 {
     let [b0, b1, t0, t1] = m.knots;
     let in_top = t1 - h.clamp(t0, t1);
     let in_base = h.clamp(b0, b1);
-    let top = in_top * in_top * 0.5 / (t1 - t0).max(1e-3);
-    let base = (b1 - in_base) * (b1 + in_base - 2.0 * b0) * 0.5 / (b1 - b0).max(1e-3);
+    let top = in_top * in_top * 0.5 * m.inverse_flanks[1];
+    let base = (b1 - in_base) * (b1 + in_base - 2.0 * b0) * 0.5 * m.inverse_flanks[0];
     m.extinction * (top + (t0 - h.clamp(b1, t0)) + base)
 }
 
-/// Where a ray of cosine `mu` that starts `drop` above an altitude reaches it going down; 0 if it starts below, the
-/// lowest point `turn` if it stays above.
-fn layer_enter(curvature: f64, mu: f64, turn: f64, drop: f64) -> f64 {
-    let c = drop * (2.0 - curvature * drop);
-    let disc = mu * mu - curvature * c;
-    if drop <= 0.0 {
-        0.0
-    } else if disc < 0.0 {
-        turn
-    } else {
-        (c / (disc.sqrt() - mu).max(1e-20)).min(turn)
-    }
+/// Distance after which a ray that rises from its lowest point with cosine `mu` >= 0 is `lift` higher; 0 if that is
+/// below.
+fn layer_reach(curvature: f64, mu: f64, lift: f64) -> f64 {
+    let c = lift.max(0.0) * (2.0 + curvature * lift.max(0.0));
+    c / (mu + (mu * mu + curvature * c).sqrt()).max(1e-20)
 }
 
-/// Where it reaches it going up, after its lowest point; that point if it is above already.
-fn layer_leave(curvature: f64, mu: f64, turn: f64, drop: f64) -> f64 {
-    let c = drop * (2.0 - curvature * drop);
-    let disc = mu * mu - curvature * c;
-    if disc < 0.0 || (mu >= 0.0 && drop >= 0.0) {
-        return turn;
-    }
-    let root = disc.sqrt();
-    let t = if mu >= 0.0 { -c / (mu + root).max(1e-20) } else { (root - mu) / curvature.max(1e-30) };
-    t.max(turn)
-}
-
-/// Optical depth over extinction of a monotone part of a ray: `cross` are the distances at which it meets the knots,
-/// `low` and `high` the altitudes between which it runs.
-fn slab_part(m: &FogModel, bend: f64, cross: [f64; 4], low: f64, high: f64) -> f64 {
-    let length = [(cross[1] - cross[0]).abs(), (cross[2] - cross[1]).abs(), (cross[3] - cross[2]).abs()];
+/// Optical depth over extinction of a slab's part that rises from altitude `low` to `high` over `length` metres,
+/// meeting the knots after `reach`.
+fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, high: f64) -> f64 {
+    let r = reach.map(|x| x.min(length));
     let h = m.knots.map(|k| k.clamp(low, high));
     let share = |i: usize| {
-        let mean = 0.5 * (h[i] + h[i + 1]) - bend * length[i] * length[i] / 12.0;
-        ((mean - m.knots[i]) / (m.knots[i + 1] - m.knots[i]).max(1e-3)).clamp(0.0, 1.0)
+        let l = r[i + 1] - r[i];
+        let mean = 0.5 * (h[i] + h[i + 1]) - bend * l * l / 12.0;
+        ((mean - m.knots[i]) * m.inverse_flanks[i / 2]).clamp(0.0, 1.0)
     };
-    length[0] * share(0) + length[1] + length[2] * (1.0 - share(2))
+    (r[1] - r[0]) * share(0) + (r[2] - r[1]) + (r[3] - r[2]) * (1.0 - share(2))
 }
 
 /// The way of a ray from altitude `h0` with cosine `mu` through the layer, `t` metres long.
@@ -223,17 +205,32 @@ pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
         let first = if end_altitude < h0 { t - length } else { 0.0 };
         return LayerPath { depth, first, last: first + length, end_altitude, end_mu };
     }
-    let turn = if mu < 0.0 { (-mu / k.max(1e-30)).min(t) } else { 0.0 };
-    let low = h0 + layer_rise(k, mu, turn);
+    let level = -mu / k.max(1e-30);
+    let passes = mu < 0.0 && t > level;
+    let falls = mu < 0.0 && !passes;
+    let (low, low_mu) = if passes {
+        // Where the ray is level: r0 (sqrt(1 - mu^2) - 1).
+        (h0 - mu * mu / (1.0 + (1.0 - mu * mu).max(0.0).sqrt()) / k.max(1e-30), 0.0)
+    } else if falls {
+        (end_altitude, (-end_mu).max(0.0))
+    } else {
+        (h0, mu)
+    };
+    let (before, after) = if passes { (level, t - level) } else { (t, 0.0) };
     let bend = k * (1.0 - mu * mu);
-    let turn_free = if mu < 0.0 { -mu / k.max(1e-30) } else { 0.0 };
-    let down = m.knots.map(|h| layer_enter(k, mu, turn_free, h0 - h).min(turn));
-    let up = m.knots.map(|h| layer_leave(k, mu, turn_free, h0 - h).clamp(turn, t));
-    let down_length = slab_part(m, bend, down, low.min(h0), h0);
-    let up_length = slab_part(m, bend, up, low, end_altitude.max(low));
-    let first = if down_length > 0.0 { down[3] } else { up[0] };
-    let last = if up_length > 0.0 { up[3] } else { down[0] };
-    LayerPath { depth: m.extinction * (down_length + up_length), first, last, end_altitude, end_mu }
+    let reach = m.knots.map(|h| layer_reach(k, low_mu, h - low));
+    let high = if passes { h0 } else { h0.max(end_altitude) };
+    let length = slab_part(m, bend, reach, before, low, high.max(low))
+        + slab_part(m, bend, reach, after, low, end_altitude.max(low));
+    let [near, far] = [reach[0], reach[3]].map(|x| x.min(before));
+    let (first, last) = if passes {
+        (level - far, level + reach[3].min(after))
+    } else if falls {
+        (t - far, t - near)
+    } else {
+        (near, far)
+    };
+    LayerPath { depth: m.extinction * length, first, last, end_altitude, end_mu }
 }
 
 /// e^(z^2) erfc(z) for z >= 0, to 1.2e-7 relative (Chebyshev fit of Press et al., Numerical Recipes, 1992, 6.2).
@@ -302,10 +299,11 @@ fn attenuated(rate: DVec3, first: DVec3, last: DVec3, path: DVec3) -> DVec3 {
     )
 }
 
-/// Mean of x over [0, 1] weighted by e^(-r x).
+/// Mean of x over \[0, 1\] weighted by e^(-r x), within 2 % of 1/r - 1/(e^r - 1).
 fn mean_place(r: f64) -> f64 {
-    let (size, e) = (r.abs(), (-r.abs()).exp());
-    let mean = if size < 0.1 { 0.5 - size / 12.0 } else { 1.0 / size - e / (1.0 - e) };
+    let size = r.abs().min(1e6);
+    let p = 1.0 + size * (1.0 / 3.0 + size / 5.7);
+    let mean = p / (size * p + 2.0);
     if r < 0.0 { 1.0 - mean } else { mean }
 }
 
@@ -386,16 +384,17 @@ pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plan
 }
 
 fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSample {
-    let mu = direction.dot(m.up).clamp(-1.0, 1.0);
-    let lift = origin.dot(m.up);
+    let mu = direction.z.clamp(-1.0, 1.0);
+    let lift = origin.z;
     let h0 = m.altitude + lift + 0.5 * m.curvature * (origin.length_squared() - lift * lift);
     let mut t = range;
-    if range >= RANGE_SKY_M {
-        // A ray without an object ends in the ground, if it meets it from above.
-        let turn = if mu < 0.0 { -mu / m.curvature.max(1e-30) } else { 0.0 };
-        let ground = layer_enter(m.curvature, mu, turn, h0 - m.ground);
-        if mu < 0.0 && h0 > m.ground && ground < turn {
-            t = ground;
+    if range >= RANGE_SKY_M && mu < 0.0 && h0 > m.ground {
+        // A ray without an object ends in the ground, if it meets it.
+        let d = h0 - m.ground;
+        let c = d * (2.0 - m.curvature * d);
+        let disc = mu * mu - m.curvature * c;
+        if disc > 0.0 {
+            t = c / (disc.sqrt() - mu);
         }
     }
     let path = layer_path(m, h0, mu, t);
@@ -420,7 +419,7 @@ fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> Fog
         _ => (-(m.extinction * d).powi(2)).exp(),
     };
     if range >= RANGE_SKY_M {
-        let x = (direction.dot(m.up).clamp(-1.0, 1.0).asin() / m.sky_band.max(1e-6)).clamp(0.0, 1.0);
+        let x = (direction.z.clamp(-1.0, 1.0).asin() / m.sky_band.max(1e-6)).clamp(0.0, 1.0);
         v = if m.sky_band > 0.0 { x * x * (3.0 - 2.0 * x) } else { 1.0 };
         if m.sky_band >= WHOLE_SKY {
             v = 0.0;

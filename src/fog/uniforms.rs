@@ -16,6 +16,9 @@ const WAVELENGTHS_NM: [f64; 3] = [680.0, 550.0, 440.0];
 /// real planet lets a low sun pass sqrt(2 thickness/radius), some thousandths.
 const MIN_MU0: f64 = 0.01;
 
+/// A slab's lower edge must lie this far below the ground to be left out: hosts draw valleys and pits.
+const MARGIN_M: f64 = 2000.0;
+
 /// Diffusion exponent times depth below which a channel's two exponentials are drawn as a straight line, whose error
 /// is an eighth of the square.
 const LINEAR_DIFFUSION: f64 = 0.05;
@@ -39,7 +42,7 @@ impl FogModel {
                 law.validate()?;
                 m.distance = law.distance;
                 m.sky_band = law.sky_band;
-                m.first = law.colour.map_or_else(|| deep_layer_radiance(light, view), DVec3::from);
+                m.first = law.colour.map_or_else(|| deep_layer_radiance(light), DVec3::from);
                 (m.kind, m.extinction) = match law.curve {
                     Curve::Linear { .. } => (FogKind::Linear, 0.0),
                     Curve::Exponential { density_per_m } => (FogKind::ExponentialLaw, density_per_m),
@@ -57,11 +60,11 @@ impl FogModel {
         Self {
             kind: FogKind::Clear,
             distance: DistanceKind::Range,
-            up: view.east_north_up[2],
             altitude: view.altitude_m,
             curvature: 1.0 / (view.planet_radius_m + view.altitude_m),
             ground: view.ground_m,
             knots: [0.0; 4],
+            inverse_flanks: [0.0; 2],
             extinction: 0.0,
             linear: [0.0, 1.0],
             sky_band: 0.0,
@@ -69,7 +72,7 @@ impl FogModel {
             scaling: DVec3::ONE,
             depth_total: 0.0,
             to_sun: light.to_sun,
-            inverse_mu0: 1.0 / light.to_sun.dot(view.east_north_up[2]).max(MIN_MU0),
+            inverse_mu0: 1.0 / light.to_sun.z.max(MIN_MU0),
             lobes: PhaseLobes::new(&Phase::HenyeyGreenstein { g: 0.0 }),
             forward: 0.0,
             smooth: 0.0,
@@ -100,6 +103,10 @@ impl FogModel {
                 (FogKind::Exponential, [reference_m, scale_height_m, 0.0, 0.0])
             }
         };
+        if self.kind == FogKind::Slab {
+            let [b0, b1, t0, t1] = self.knots;
+            self.inverse_flanks = [b1 - b0, t1 - t0].map(|h| 1.0 / h.max(1e-3));
+        }
         self.depth_total = layer_depth_above(self, view.ground_m);
         self.lobes = PhaseLobes::new(&layer.phase);
         (self.forward, _, self.smooth) = delta_scaling(1.0, self.lobes.moments());
@@ -171,8 +178,23 @@ impl FogModel {
             let [ka, kb] = [waves[a].0, waves[b].0];
             let k = [ka[0] - kb[0], ka[1] - kb[1]];
             let phase = k[0] * place[0] + k[1] * place[1] + waves[a].1 - waves[b].1;
-            *slot = (view.east_north_up[0] * k[0] + view.east_north_up[1] * k[1], phase.rem_euclid(tau));
+            *slot = (DVec3::new(k[0], k[1], 0.0), phase.rem_euclid(tau));
         }
+    }
+
+    /// Values of the `override` constants with which a pipeline that includes `fog/lookup.wgsl` draws this model and
+    /// no more than it needs.
+    pub fn constants(&self) -> [(&'static str, f64); 5] {
+        let flag = |b: bool| f64::from(u8::from(b));
+        let even = |v: DVec3| v.x == v.y && v.y == v.z;
+        let lifted = self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M;
+        [
+            ("FOG_KINDS", f64::from(1u32 << self.kind as u32)),
+            ("FOG_ABSORBING", flag(self.absorbing)),
+            ("FOG_PATCHES", flag(self.patch_amount > 0.0)),
+            ("FOG_NEUTRAL", flag(even(self.ratio) && even(self.scaling) && even(self.k))),
+            ("FOG_LIFTED", flag(lifted)),
+        ]
     }
 
     /// The form the shaders read (`FogUniform` of `fog/lookup.wgsl`).
@@ -182,8 +204,6 @@ impl FogModel {
         // Powers are taken on the GPU by exponentials of these; an asymmetry of 0 stays small to any power.
         let log = |x: f64| x.abs().max(1e-9).ln() as f32;
         FogUniform {
-            up: v(self.up),
-            kind: self.kind as u32,
             to_sun: v(self.to_sun),
             altitude: self.altitude as f32,
             knots: self.knots.map(|k| k as f32),
@@ -191,11 +211,11 @@ impl FogModel {
             extinction: self.extinction as f32,
             scaling: v(self.scaling),
             depth_total: self.depth_total as f32,
-            linear: self.linear.map(|k| k as f32),
+            pair: if self.kind == FogKind::Slab { self.inverse_flanks } else { self.linear }.map(|k| k as f32),
             sky_band: self.sky_band as f32,
             plane_distance: u32::from(self.distance == DistanceKind::Plane),
             lobes: [log(lobes.g_hg), log(lobes.g_draine), lobes.alpha as f32, lobes.w_draine as f32],
-            forward: self.forward as f32,
+            radius: if self.curvature > 0.0 { (1.0 / self.curvature) as f32 } else { 1e30 },
             curvature: self.curvature as f32,
             ground: self.ground as f32,
             inverse_mu0: self.inverse_mu0 as f32,
@@ -204,9 +224,10 @@ impl FogModel {
             first: v(self.first),
             patch_amount: self.patch_amount as f32,
             sky_radiance: v(self.sky_radiance),
-            smooth_g: self.smooth as f32,
+            kind: self.kind as u32,
             ground_radiance: v(self.ground_radiance),
-            hg_sign: lobes.g_hg.signum() as f32,
+            pad: 0.0,
+            scattering: [(1.0 - lobes.w_draine).ln(), lobes.g_hg.signum(), self.forward, self.smooth].map(|k| k as f32),
             constant: term(&self.constant),
             slope: term(&self.slope),
             beam: term(&self.beam),
@@ -218,10 +239,10 @@ impl FogModel {
 }
 
 /// What a deep layer of droplets under this light shows in the horizontal, one scaled depth below its top.
-fn deep_layer_radiance(light: &FogLight, view: &Viewpoint) -> DVec3 {
+fn deep_layer_radiance(light: &FogLight) -> DVec3 {
     let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 15.0 });
     let (_, albedo, asymmetry) = delta_scaling(1.0, lobes.moments());
-    let mu0 = light.to_sun.dot(view.east_north_up[2]).max(MIN_MU0);
+    let mu0 = light.to_sun.z.max(MIN_MU0);
     DVec3::from(std::array::from_fn(|i| {
         let (sun, sky, ground) = (light.sun_irradiance[i], light.sky_irradiance[i], light.ground_albedo[i]);
         Slab { depth: 10.0, albedo, asymmetry, mu0, sun, sky, ground }.solve().intensities(1.0)[0].max(0.0)
@@ -237,8 +258,6 @@ fn term(t: &Term) -> [[f32; 4]; 2] {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
 pub struct FogUniform {
-    pub up: [f32; 3],
-    pub kind: u32,
     pub to_sun: [f32; 3],
     pub altitude: f32,
     pub knots: [f32; 4],
@@ -246,11 +265,11 @@ pub struct FogUniform {
     pub extinction: f32,
     pub scaling: [f32; 3],
     pub depth_total: f32,
-    pub linear: [f32; 2],
+    pub pair: [f32; 2],
     pub sky_band: f32,
     pub plane_distance: u32,
     pub lobes: [f32; 4],
-    pub forward: f32,
+    pub radius: f32,
     pub curvature: f32,
     pub ground: f32,
     pub inverse_mu0: f32,
@@ -259,9 +278,10 @@ pub struct FogUniform {
     pub first: [f32; 3],
     pub patch_amount: f32,
     pub sky_radiance: [f32; 3],
-    pub smooth_g: f32,
+    pub kind: u32,
     pub ground_radiance: [f32; 3],
-    pub hg_sign: f32,
+    pub pad: f32,
+    pub scattering: [f32; 4],
     pub constant: [[f32; 4]; 2],
     pub slope: [[f32; 4]; 2],
     pub beam: [[f32; 4]; 2],

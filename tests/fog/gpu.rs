@@ -28,6 +28,18 @@ fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::T
 /// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform
 /// `u` of type `uniform_type`; `include` is the library's shader file under test.
 pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    evaluate_with(include, body, uniform_type, uniform, inputs, &[])
+}
+
+/// As [`evaluate`], by a pipeline with these `override` constants.
+pub fn evaluate_with(
+    include: &str,
+    body: &str,
+    uniform_type: &str,
+    uniform: &[u8],
+    inputs: &[[f32; 4]],
+    constants: &[(&str, f64)],
+) -> Vec<[f32; 4]> {
     let d = device();
     let height = (inputs.len() as u32).div_ceil(WIDTH);
     let mut padded = inputs.to_vec();
@@ -48,7 +60,7 @@ pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], i
     });
     d.queue.write_buffer(&buffer, 0, uniform);
     let layout = layout();
-    let pipeline = cached(&layout, include, body, uniform_type);
+    let pipeline = cached(&layout, include, body, uniform_type, constants);
     let group = d.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
@@ -69,14 +81,20 @@ pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], i
 }
 
 /// Compiling costs far more than drawing: each distinct function is compiled once.
-fn cached(layout: &wgpu::BindGroupLayout, include: &str, body: &str, uniform_type: &str) -> wgpu::RenderPipeline {
+fn cached(
+    layout: &wgpu::BindGroupLayout,
+    include: &str,
+    body: &str,
+    uniform_type: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
     static KNOWN: Mutex<Vec<(String, wgpu::RenderPipeline)>> = Mutex::new(Vec::new());
-    let key = format!("{include}\n{body}\n{uniform_type}");
+    let key = format!("{include}\n{body}\n{uniform_type}\n{constants:?}");
     let mut known = KNOWN.lock().expect("no test panics while it compiles");
     if let Some((_, p)) = known.iter().find(|(k, _)| *k == key) {
         return p.clone();
     }
-    let made = pipeline(layout, include, body, uniform_type);
+    let made = pipeline(layout, include, body, uniform_type, constants);
     known.push((key, made.clone()));
     made
 }
@@ -112,7 +130,13 @@ fn make_layout() -> wgpu::BindGroupLayout {
     })
 }
 
-fn pipeline(layout: &wgpu::BindGroupLayout, include: &str, body: &str, uniform_type: &str) -> wgpu::RenderPipeline {
+fn pipeline(
+    layout: &wgpu::BindGroupLayout,
+    include: &str,
+    body: &str,
+    uniform_type: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
     let d = device();
     let library = shader::assemble(include).expect("the library's shader assembles");
     let vertex = shader::assemble("common/fullscreen.wgsl").expect("assembles");
@@ -146,7 +170,7 @@ fn pipeline(layout: &wgpu::BindGroupLayout, include: &str, body: &str, uniform_t
         fragment: Some(wgpu::FragmentState {
             module: &module,
             entry_point: Some("evaluate"),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             targets: &[Some(wgpu::TextureFormat::Rgba32Float.into())],
         }),
         multiview_mask: None,

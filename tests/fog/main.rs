@@ -6,5 +6,6 @@ mod drawn;
 mod gpu;
 mod light;
 mod path;
+mod pictures;
 mod probe;
 mod slab;
