@@ -61,9 +61,9 @@ pub struct SkySettings {
     pub suns: u32,
     /// Altitudes of the planet's tables, `[8, 64]`, default 20.
     pub altitudes: u32,
-    /// Zenith angles in which a source is known, `[4, 32]`, default 13.
+    /// Zenith angles in which a source is known, `[4, 32]`, default 17.
     pub zeniths: u32,
-    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 7.
+    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 9.
     pub azimuths: u32,
     /// Zenith angles on each side of the horizon that are summed over, `[2, 16]`, default 8.
     pub rule_zeniths: u32,
@@ -79,7 +79,7 @@ pub struct SkySettings {
     pub sky_below: u32,
     /// Panels of its rays' marches, `[1, 32]`, default 5.
     pub sky_panels: u32,
-    /// Azimuths on `[0, pi]` of the air in front of things, `[4, 64]`, default 16.
+    /// Azimuths on `[0, pi]` of the air in front of things, `[4, 64]`, default 24.
     pub air_azimuths: u32,
     /// Rows of it above the horizon, `[4, 128]`, default 20.
     pub air_above: u32,
@@ -100,8 +100,8 @@ impl Default for SkySettings {
             orders: 5,
             suns: 64,
             altitudes: 20,
-            zeniths: 13,
-            azimuths: 7,
+            zeniths: 17,
+            azimuths: 9,
             rule_zeniths: 8,
             rule_azimuths: 8,
             build_panels: 3,
@@ -109,7 +109,7 @@ impl Default for SkySettings {
             sky_above: 80,
             sky_below: 40,
             sky_panels: 5,
-            air_azimuths: 16,
+            air_azimuths: 24,
             air_above: 20,
             air_below: 20,
             air_slices: 16,

@@ -1,0 +1,105 @@
+//! Asks the drawn model from a script: CSV with a header on standard input, each line back with the answer's columns.
+//!
+//! ```text
+//! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
+//! probe fog --visibility METRES
+//! ```
+//! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
+
+use std::io::{Read as _, Write as _};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use welkin::gpu::{Device, DeviceOptions};
+use welkin::sky::probe::{Probe, Question};
+use welkin::sky::{Planet, SkyModel, SkySettings};
+use welkin::{Error, Result, Status};
+
+const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
+                     probe fog --visibility METRES < distances.csv";
+
+/// Options by name, each with its value.
+struct Options(Vec<(String, String)>);
+
+impl Options {
+    fn parse(known: &[&str], mut rest: impl Iterator<Item = String>) -> Result<Self> {
+        let mut out = Vec::new();
+        while let Some(name) = rest.next() {
+            let value = rest.next().filter(|_| known.contains(&name.as_str()));
+            let value =
+                value.ok_or_else(|| usage(&format!("`{name}` is no option of this question or has no value")))?;
+            out.push((name, value));
+        }
+        Ok(Self(out))
+    }
+
+    fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().rev().find(|(n, _)| n == name).map(|(_, v)| v.as_str())
+    }
+}
+
+fn usage(what: &str) -> Error {
+    Error::new(Status::InvalidArgument, format!("{what}\n{USAGE}"))
+}
+
+fn read_input() -> Result<String> {
+    let mut bytes = Vec::new();
+    let failed = |e: std::io::Error| Error::new(Status::Io, format!("reading standard input: {e}"));
+    std::io::stdin().read_to_end(&mut bytes).map_err(failed)?;
+    String::from_utf8(bytes).map_err(|e| {
+        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let line = before.iter().filter(|b| **b == b'\n').count() + 1;
+        let start = before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+        let column = String::from_utf8_lossy(&before[start..]).chars().count() + 1;
+        Error::new(Status::Parse, format!("line {line}, column {column}: not UTF-8"))
+    })
+}
+
+fn device() -> Result<Arc<Device>> {
+    Device::headless(&DeviceOptions::default())
+}
+
+fn sky(question: Question, rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--planet", "--model"], rest)?;
+    let path = options.get("--planet").ok_or_else(|| usage("--planet is missing"))?;
+    let text = std::fs::read_to_string(path).map_err(|e| Error::new(Status::Io, format!("{path}: {e}")))?;
+    let planet = Planet::from_toml(&text).map_err(|e| Error::new(e.status, format!("{path}: {e}")))?;
+    let model = options.get("--model").map_or(Ok(SkyModel::default()), SkyModel::from_name)?;
+    let input = read_input()?;
+    let mut probe = Probe::new(&device()?, &SkySettings::with_model(model), &planet)?;
+    welkin::sky::probe_csv(&mut probe, question, &input)
+}
+
+fn fog(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--visibility"], rest)?;
+    let text = options.get("--visibility").ok_or_else(|| usage("--visibility is missing"))?;
+    let visibility = text.parse().map_err(|_| usage(&format!("--visibility is no number: {text:?}")))?;
+    let input = read_input()?;
+    welkin::fog::probe_csv(&*device()?, visibility, &input)
+}
+
+fn run() -> Result<String> {
+    let mut arguments = std::env::args().skip(1);
+    let what = arguments.next().ok_or_else(|| usage("no question"))?;
+    match what.as_str() {
+        "sky" => sky(Question::Sky, arguments),
+        "aerial" => sky(Question::Aerial, arguments),
+        "irradiance" => sky(Question::Irradiance, arguments),
+        "fog" => fog(arguments),
+        other => Err(usage(&format!("unknown question `{other}`"))),
+    }
+}
+
+fn main() -> ExitCode {
+    let done = run().and_then(|out| {
+        let failed = |e: std::io::Error| Error::new(Status::Io, format!("writing the answers: {e}"));
+        std::io::stdout().write_all(out.as_bytes()).map_err(failed)
+    });
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("probe: {e}");
+            ExitCode::from(2)
+        }
+    }
+}
