@@ -157,8 +157,8 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
 
 /// Nutation in longitude and true obliquity of the ecliptic, rad (Meeus chapter 22, the two leading terms: 0.5").
 fn nutation_obliquity(t: f64) -> (f64, f64) {
-    let node = (125.04452 - 1934.136_261 * t).to_radians();
-    let sun = (280.4665 + 36_000.7698 * t).to_radians();
+    let node = (125.044_52 - 1_934.136_261 * t).to_radians();
+    let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
     let arc_seconds = -17.20 * node.sin() - 1.32 * (2.0 * sun).sin();
     let obliquity = 23.439_291_1 - 0.013_004_2 * t + (9.20 * node.cos() + 0.57 * (2.0 * sun).cos()) / 3600.0;
     ((arc_seconds / 3600.0).to_radians(), obliquity.to_radians())

@@ -43,7 +43,8 @@ fn substance(kind: CloudKind) -> Substance {
 const MIDDLE_FROM_M: f64 = 2000.0;
 const HIGH_FROM_M: f64 = 6000.0;
 
-/// The kind of a layer whose kind nobody named: by level, by cover (half and more is a sheet), and by what falls from it.
+/// The kind of a layer whose kind nobody named: by level, by cover (more than half is a sheet), and by what falls from it
+/// (`raining` is more than drizzle, which falls from stratus).
 fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     let sheet = layer.cover > 0.5;
     match (layer.base_m, sheet) {
@@ -113,6 +114,7 @@ pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MA
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
     let showers = p.showers || p.thunderstorm;
+    let drizzle = matches!(p.kind, PrecipitationKind::Drizzle | PrecipitationKind::FreezingDrizzle);
     let mut layers = w.clouds.clone();
     if raining && rain_needs_cloud && layers.iter().all(|l| l.cover <= 0.0) {
         layers.clear();
@@ -122,7 +124,8 @@ pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MA
     let mut made: Vec<CloudSlab> = Vec::with_capacity(layers.len());
     for (i, layer) in layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0) {
         let rains = source == Some(i);
-        let known = if layer.kind == CloudKind::Unknown { likely_kind(layer, rains, showers) } else { layer.kind };
+        let known =
+            if layer.kind == CloudKind::Unknown { likely_kind(layer, rains && !drizzle, showers) } else { layer.kind };
         let water = if rains && rain_needs_cloud { water_path_for_rate_kg_m2(p.rate_mm_h) } else { 0.0 };
         made.push(slab(layer, known, water));
     }
@@ -149,7 +152,8 @@ fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
 
 /// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver (1980, eq. 24)
 /// with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976). Transmittance, direct and
-/// diffuse together, is 1 minus this.
+/// diffuse together, is 1 minus this. Against discrete ordinates (Henyey-Greenstein, g = 0.85, depths 1 to 64) it errs by at most
+/// 0.0044 with the sun overhead and 0.029 at 60 degrees (tested); of five two-stream closures tried it is the nearest.
 pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> f64 {
     let mu = cos_zenith.clamp(0.01, 1.0);
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);
@@ -217,12 +221,12 @@ mod tests {
 
     #[test]
     fn two_stream_holds_to_discrete_ordinates() {
-        // Reflectance of a conservative Henyey-Greenstein slab, g = 0.85, by PythonicDISORT; worst cases are thin slabs.
+        // Reflectance of a conservative Henyey-Greenstein slab, g = 0.85, by PythonicDISORT.
         let table =
             [(1.0, 0.04232, 0.16488), (4.0, 0.19092, 0.41602), (16.0, 0.55721, 0.69740), (64.0, 0.84628, 0.89497)];
         for (tau, high, low) in table {
             let (a, b) = (slab_reflectance(tau, 0.85, 1.0), slab_reflectance(tau, 0.85, 0.5));
-            assert!((a - high).abs() < 0.012, "tau {tau}, mu 1: {a} against {high}");
+            assert!((a - high).abs() < 0.0045, "tau {tau}, mu 1: {a} against {high}");
             assert!((b - low).abs() < 0.03, "tau {tau}, mu .5: {b} against {low}");
         }
         assert_eq!(slab_reflectance(0.0, 0.85, 1.0), 0.0);

@@ -11,6 +11,7 @@ mod conditions;
 mod derive;
 pub mod hydrometeors;
 mod kinds;
+mod metar;
 mod model;
 mod particles;
 mod surface;
@@ -26,6 +27,7 @@ pub use conditions::{
 };
 pub use derive::{Overrides, derive, derive_with};
 pub use kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
+pub use metar::{MAX_METAR_BYTES, MetarReport, RunwayVisualRange};
 pub use model::{
     Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,

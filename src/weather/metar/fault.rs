@@ -1,0 +1,58 @@
+//! Words of a report with their places, and the sentence for a word that does not belong there.
+
+use crate::error::{Error, Status};
+
+/// One word of the report and the byte at which it begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Word<'a> {
+    pub text: &'a str,
+    pub at: usize,
+}
+
+/// The report's words; an equals sign ends the report as the end of the text does.
+pub(super) fn words(report: &str) -> Vec<Word<'_>> {
+    let body = report.split('=').next().unwrap_or("");
+    let mut words = Vec::new();
+    let mut start = None;
+    for (i, c) in body.char_indices().chain([(body.len(), ' ')]) {
+        match (c.is_whitespace(), start) {
+            (false, None) => start = Some(i),
+            (true, Some(s)) => {
+                words.push(Word { text: &body[s..i], at: s });
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    words
+}
+
+/// The refusal: place of byte `at` in `report` as line and column, what was expected, what is there.
+pub(super) fn fault(report: &str, at: usize, expected: &str, found: Option<&str>) -> Error {
+    let before = &report[..at.min(report.len())];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    // A long or binary word would drown the message.
+    let found = found.map_or_else(|| "the end".into(), |w| format!("{:?}", w.chars().take(24).collect::<String>()));
+    Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_know_their_places() {
+        let w = words("METAR  KDEN\n171853Z= rest");
+        let places: Vec<(&str, usize)> = w.iter().map(|w| (w.text, w.at)).collect();
+        assert_eq!(places, [("METAR", 0), ("KDEN", 7), ("171853Z", 12)]);
+        assert!(words(" \n\t ").is_empty() && words("").is_empty());
+    }
+
+    #[test]
+    fn columns_count_characters_from_one_on_their_line() {
+        let text = "METAR KDEN\nä24009KT";
+        assert!(fault(text, 13, "a", Some("b")).message.starts_with("METAR line 2, column 2: expected a, found \"b\""));
+        assert!(fault(text, 999, "a", None).message.contains("found the end"));
+    }
+}

@@ -1,0 +1,277 @@
+//! What a report means: words of intensity become rates, classes become figures.
+
+use super::MetarReport;
+use super::groups::CloudGroup;
+use super::parse::Parsed;
+use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
+use crate::error::{Error, Result, Status};
+use crate::weather::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind};
+use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Weather, Wind};
+use crate::weather::{LN_20, air, hydrometeors, particles};
+
+/// Base of a layer whose height a report leaves out, m.
+const ASSUMED_BASE_M: f64 = 600.0;
+/// Vertical visibility of a hidden sky without a figure, m.
+const ASSUMED_VERTICAL_M: f64 = 60.0;
+/// Relative humidity of a report without a dew point.
+const ASSUMED_HUMIDITY: f64 = 0.7;
+
+/// Rates of light, moderate and heavy, mm/h: middles of the classes (the heavy class is open).
+///
+/// Rain: AMS Glossary (2.5 and 7.6 mm/h divide). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow in melted water:
+/// Rasmussen et al. 1999 (1.0 and 2.5); used only where visibility does not tell it.
+fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
+    use PrecipitationKind as K;
+    match kind {
+        K::None => [0.0; 3],
+        K::Drizzle | K::FreezingDrizzle => [0.15, 0.4, 0.8],
+        K::Rain | K::Hail | K::SmallHail if convective => [1.5, 6.0, 30.0],
+        K::Rain | K::FreezingRain | K::IcePellets => [1.3, 5.0, 15.0],
+        K::Hail | K::SmallHail => [1.3, 5.0, 15.0],
+        K::Sleet => [1.0, 3.0, 8.0],
+        K::Snow => [0.5, 1.7, 4.0],
+        K::SnowGrains => [0.1, 0.3, 0.6],
+        K::IceCrystals => [0.02, 0.05, 0.1],
+    }
+}
+
+/// Bounds of snowfall's classes in melted water, mm/h (Rasmussen et al. 1999).
+const SNOW_CLASSES_MM_H: [(f64, f64); 3] = [(0.05, 1.0), (1.0, 2.5), (2.5, 10.0)];
+
+fn class(intensity: Intensity) -> usize {
+    match intensity {
+        Intensity::Light => 0,
+        Intensity::Heavy => 2,
+        _ => 1,
+    }
+}
+
+/// Melted rate of snow, mm/h: what makes the reported visibility (`extinction_per_m` after the air's), or six tenths of it where
+/// fog or blowing snow share the blame, held to the bounds of the reported intensity.
+fn snow_rate_mm_h(intensity: Intensity, extinction_per_m: f64, shared: bool) -> f64 {
+    let (lo, hi) = SNOW_CLASSES_MM_H[class(intensity)];
+    hydrometeors::snow_rate_mm_h(extinction_per_m * if shared { 0.6 } else { 1.0 }).clamp(lo, hi)
+}
+
+/// Kind and liquid part of what a group lets fall.
+fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Option<f64>) {
+    use {Phenomenon as P, PrecipitationKind as K};
+    let has = |p: P| g.phenomena.contains(&p);
+    let freezing = g.descriptor == Some(Descriptor::Freezing);
+    let first = g.phenomena.first().copied();
+    // The predominant part is named first (WMO-No. 306, 15.8.9).
+    let liquid_first = first.is_some_and(|p| matches!(p, P::Rain | P::Drizzle));
+    let part = Some(if liquid_first { 0.6 } else { 0.4 });
+    let liquid = has(P::Rain) || has(P::Drizzle);
+    match first {
+        None => (K::None, None),
+        _ if freezing && liquid && !has(P::Rain) => (K::FreezingDrizzle, None),
+        _ if freezing && liquid => (K::FreezingRain, None),
+        _ if liquid && has(P::IcePellets) => (K::IcePellets, part),
+        _ if liquid && has(P::Snow) => (K::Sleet, part),
+        _ if has(P::Rain) => (K::Rain, None),
+        Some(P::Drizzle) => (K::Drizzle, None),
+        Some(P::Snow) => (K::Snow, None),
+        Some(P::SnowGrains) => (K::SnowGrains, None),
+        Some(P::IceCrystals) => (K::IceCrystals, None),
+        Some(P::IcePellets) => (K::IcePellets, None),
+        Some(P::Hail) => (K::Hail, None),
+        Some(P::SmallHail) => (K::SmallHail, None),
+        // Unknown precipitation: rain melts above about 2 C and snow survives below about 0 (Matsuo and Sasyo 1981).
+        Some(P::UnknownPrecipitation) if freezing => (K::FreezingRain, None),
+        Some(P::UnknownPrecipitation) if temperature_c > 2.0 => (K::Rain, None),
+        Some(P::UnknownPrecipitation) if temperature_c > 0.0 => (K::Sleet, None),
+        Some(P::UnknownPrecipitation) => (K::Snow, None),
+        _ => (K::None, None),
+    }
+}
+
+fn precipitation(p: &Parsed, w: &Weather) -> Precipitation {
+    use Phenomenon as P;
+    let here = |g: &&WeatherGroup| g.intensity != Intensity::Vicinity;
+    let thunder = p.weather.iter().any(|g| g.descriptor == Some(Descriptor::Thunderstorm));
+    let falls = |g: &&WeatherGroup| {
+        here(g) && g.descriptor != Some(Descriptor::Blowing) && g.descriptor != Some(Descriptor::Drifting)
+    };
+    let Some(g) = p.weather.iter().filter(falls).find(|g| g.phenomena.iter().any(|x| x.falls())) else {
+        return Precipitation { thunderstorm: thunder, ..Precipitation::default() };
+    };
+    let (kind, liquid_fraction) = falling_kind(g, w.temperature_c);
+    let showers = g.descriptor == Some(Descriptor::Showers);
+    let left = (LN_20 / w.visibility_m - air::RAYLEIGH_550_PER_M).max(0.0);
+    let shared = w.fog.kind != FogKind::None || w.lofted.kind != LoftedKind::None;
+    let rate_mm_h = match kind {
+        PrecipitationKind::Snow => snow_rate_mm_h(g.intensity, left, shared),
+        kind => class_rate_mm_h(kind, showers || thunder)[class(g.intensity)],
+    };
+    let hail = p.weather.iter().filter(here).any(|g| g.phenomena.iter().any(|x| matches!(x, P::Hail | P::SmallHail)));
+    let hail_is_all = matches!(kind, PrecipitationKind::Hail | PrecipitationKind::SmallHail);
+    Precipitation { kind, rate_mm_h, liquid_fraction, showers, thunderstorm: thunder, hail: hail && !hail_is_all }
+}
+
+/// Fog, particles and lifted matter, from all groups that are here.
+fn obscurations(p: &Parsed, w: &mut Weather) {
+    use {Descriptor as D, Phenomenon as P};
+    for g in p.weather.iter().filter(|g| g.intensity != Intensity::Vicinity) {
+        for &x in &g.phenomena {
+            match (x, g.descriptor) {
+                (P::Fog, d) => {
+                    w.fog = Fog::of(match d {
+                        Some(D::Shallow) => FogKind::Shallow,
+                        Some(D::Patches) => FogKind::Patches,
+                        Some(D::Partial) => FogKind::Partial,
+                        Some(D::Freezing) => FogKind::Freezing,
+                        _ => FogKind::Fog,
+                    });
+                }
+                (P::Mist, _) if w.fog.kind == FogKind::None => w.fog = Fog::of(FogKind::Mist),
+                (P::Haze, _) => w.aerosol = Aerosol::of(AerosolKind::Haze),
+                (P::Smoke, _) => w.aerosol = Aerosol::of(AerosolKind::Smoke),
+                (P::VolcanicAsh, _) => w.aerosol = Aerosol::of(AerosolKind::VolcanicAsh),
+                (P::Snow, Some(D::Blowing)) => w.lofted = Lofted::of(LoftedKind::BlowingSnow),
+                (P::Snow, Some(D::Drifting)) => w.lofted = Lofted::of(LoftedKind::DriftingSnow),
+                (P::Dust | P::Sand, Some(D::Drifting)) => w.lofted = Lofted::of(LoftedKind::DriftingDust),
+                (P::Dust, Some(D::Blowing)) | (P::DustStorm, _) => lift(w, LoftedKind::BlowingDust, AerosolKind::Dust),
+                (P::Sand, Some(D::Blowing)) | (P::SandStorm, _) => lift(w, LoftedKind::BlowingSand, AerosolKind::Sand),
+                (P::Dust, _) => w.aerosol = Aerosol::of(AerosolKind::Dust),
+                (P::Sand, _) => w.aerosol = Aerosol::of(AerosolKind::Sand),
+                (P::Spray, _) => w.lofted = Lofted::of(LoftedKind::BlowingSpray),
+                _ => {}
+            }
+        }
+    }
+}
+
+fn lift(w: &mut Weather, lofted: LoftedKind, aerosol: AerosolKind) {
+    w.lofted = Lofted::of(lofted);
+    w.aerosol = Aerosol::of(aerosol);
+}
+
+fn clouds(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
+    for group in &p.clouds {
+        match *group {
+            CloudGroup::Layer { cover, base_m, kind } if w.clouds.len() < MAX_CLOUD_LAYERS => {
+                if base_m.is_none() {
+                    assumed.push("clouds[].base_m");
+                }
+                w.clouds.push(CloudLayer::of(kind, cover, base_m.unwrap_or(ASSUMED_BASE_M).min(20_000.0)));
+            }
+            CloudGroup::Obscured(vertical_m) => {
+                if vertical_m.is_none() {
+                    assumed.push("vertical_visibility_m");
+                }
+                w.vertical_visibility_m = Some(vertical_m.unwrap_or(ASSUMED_VERTICAL_M).min(10_000.0));
+            }
+            CloudGroup::Missing => assumed.push("clouds"),
+            _ => {}
+        }
+    }
+    name_the_thundercloud(w);
+}
+
+/// Thunder comes from a cumulonimbus: where no layer is named so, the lowest that covers half the sky is one, else the lowest.
+fn name_the_thundercloud(w: &mut Weather) {
+    let named = w.clouds.iter().any(|c| c.kind == CloudKind::Cumulonimbus);
+    if !w.precipitation.thunderstorm || named {
+        return;
+    }
+    let lowest = w.clouds.iter_mut().min_by(|a, b| {
+        let thin = |c: &CloudLayer| c.cover < 0.5;
+        thin(a).cmp(&thin(b)).then(a.base_m.total_cmp(&b.base_m))
+    });
+    if let Some(layer) = lowest {
+        layer.kind = CloudKind::Cumulonimbus;
+    }
+}
+
+fn wind(p: &Parsed, assumed: &mut Vec<&'static str>) -> Wind {
+    let Some(g) = p.wind else {
+        assumed.push("wind");
+        return Wind::default();
+    };
+    let all_round = (g.variable && g.speed_m_s > 0.0).then_some((0.0, 360.0));
+    if g.from_deg.is_none() && !g.variable {
+        assumed.push("wind.from_deg");
+    }
+    Wind {
+        gust_m_s: g.gust_m_s,
+        variable_deg: p.wind_range.or(all_round),
+        ..Wind::of(g.speed_m_s, g.from_deg.unwrap_or(0.0))
+    }
+}
+
+fn air_of(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
+    match p.temperature_c {
+        Some(t) => w.temperature_c = t,
+        None => assumed.push("temperature_c"),
+    }
+    match (p.temperature_c, p.dew_point_c) {
+        (Some(_), Some(dew)) => w.set_dew_point_c(dew),
+        _ => {
+            w.relative_humidity = ASSUMED_HUMIDITY;
+            assumed.push("relative_humidity");
+        }
+    }
+    match p.pressure_hpa {
+        Some(hpa) => w.pressure_hpa = hpa,
+        None => assumed.push("pressure_hpa"),
+    }
+}
+
+/// Visibility as a figure; where the report says only "at least", what humidity and precipitation leave, at least that much.
+fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64 {
+    let floor = match p.visibility {
+        _ if p.cavok => 10_000.0,
+        Some(v) if !v.at_least => return v.metres.min(1e6),
+        Some(v) => v.metres,
+        None => {
+            assumed.push("visibility_m");
+            0.0
+        }
+    };
+    let falling = hydrometeors::falling(&w.precipitation).extinction_per_m;
+    particles::unlimited_visibility_m(w.relative_humidity, falling).max(floor)
+}
+
+/// The weather and its surroundings.
+///
+/// # Errors
+/// [`Status::Parse`] if the figures cannot stand together; the groups' own ranges keep that from happening.
+pub(super) fn report(p: &Parsed) -> Result<MetarReport> {
+    let mut assumed = Vec::new();
+    let mut w = Weather { wind: wind(p, &mut assumed), ..Weather::default() };
+    air_of(p, &mut w, &mut assumed);
+    obscurations(p, &mut w);
+    // Snow's rate needs the visibility and an open-ended visibility needs the rate: a first figure serves the second.
+    w.visibility_m = p.visibility.map_or(10_000.0, |v| v.metres);
+    w.precipitation = precipitation(p, &w);
+    w.visibility_m = visibility_m(p, &w, &mut assumed);
+    clouds(p, &mut w, &mut assumed);
+    w.runway_visual_range_m = p.runways.iter().map(|r| r.range_m).min_by(f64::total_cmp).map(|m| m.min(10_000.0));
+    if let Some(sea) = p.sea {
+        let background = w.aerosol.kind == AerosolKind::Continental;
+        w.aerosol = if background { Aerosol::of(AerosolKind::Maritime) } else { w.aerosol };
+        w.sea = Sea {
+            state: sea.state,
+            significant_wave_height_m: sea.wave_height_m,
+            temperature_c: sea.temperature_c,
+            swell: None,
+        };
+    }
+    w.validate().map_err(|e| Error::new(Status::Parse, format!("METAR line 1, column 1: {}", e.message)))?;
+    Ok(MetarReport {
+        weather: w,
+        station: p.station.clone(),
+        day: p.day,
+        hour: p.hour,
+        minute: p.minute,
+        special: p.special,
+        automatic: p.automatic,
+        corrected: p.corrected,
+        visibility_is_minimum: p.cavok || p.visibility.is_none_or(|v| v.at_least),
+        runways: p.runways.clone(),
+        assumed,
+        trend: p.trend.clone(),
+        remarks: p.remarks.clone(),
+    })
+}
