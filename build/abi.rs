@@ -207,8 +207,9 @@ pub fn write_table(model: &Model) -> String {
             let upper = s.name.to_uppercase();
             let _ = writeln!(
                 out,
-                "pub(crate) static {upper}: StructInfo = StructInfo {{ name: \"{}\", size: size_of::<{path}>(), align: align_of::<{path}>(), fields: &[",
-                s.name
+                "pub(crate) static {upper}: StructInfo = StructInfo {{ name: \"{}\", size: size_of::<{path}>(), align: align_of::<{path}>(), has_init: {}, fields: &[",
+                s.name,
+                !s.defaults.is_empty()
             );
             for (field, ty) in &s.fields {
                 let (kind, count) = kind(model, ty);

@@ -209,6 +209,16 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_OPENGL_HOST_DESC 20
 /** wk_opengl_target */
 #define WK_STRUCT_TYPE_OPENGL_TARGET 21
+/** wk_sky_settings */
+#define WK_STRUCT_TYPE_SKY_SETTINGS 22
+/** wk_fog_law */
+#define WK_STRUCT_TYPE_FOG_LAW 23
+/** wk_conditions */
+#define WK_STRUCT_TYPE_CONDITIONS 24
+/** wk_celestial */
+#define WK_STRUCT_TYPE_CELESTIAL 25
+/** wk_ambient */
+#define WK_STRUCT_TYPE_AMBIENT 26
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -1743,7 +1753,7 @@ typedef struct wk_context_desc {
     uint32_t struct_size;
     /** WK_STRUCT_TYPE_CONTEXT_DESC. */
     wk_struct_type struct_type;
-    /** No extensions in this version: NULL. */
+    /** NULL (the default), or a wk_sky_settings. */
     const void *next;
     /** Default WK_WORLD_FLAT. */
     wk_world_kind world_kind;
@@ -1817,6 +1827,90 @@ WK_API wk_status wk_context_destroy(wk_context *context);
  */
 WK_API
 wk_status wk_context_desc_init(wk_context_desc *out,
+                               uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * How the sky is drawn
+ *
+ * Four models share the same look-ups. The default holds within 3 % of converged multiple scattering; the others are
+ * for comparison and for slow machines. A wk_sky_settings goes into wk_context_desc.next.
+ * ====================================================================================================
+ */
+
+/** The ways to draw one sky. */
+typedef uint32_t wk_sky_model;
+
+/** Light scattered more than once keeps its direction, order by order. */
+#define WK_SKY_DIRECTIONAL 0
+/**
+ * Light scattered more than once is the same in all directions (Hillaire 2020): -3 to -6 % near the horizon, +3 % at
+ * the zenith; built in a tenth of the time.
+ */
+#define WK_SKY_ISOTROPIC 1
+/**
+ * Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008); 20 to 50 % of the light is
+ * missing. How older systems drew.
+ */
+#define WK_SKY_TABLE_3D 2
+/** As the default, but light scattered once is marched in every pixel: what the tables are measured against. */
+#define WK_SKY_BRUTE_FORCE 3
+
+/** Numbers of the sky's tables. An extension: put it into wk_context_desc.next. */
+typedef struct wk_sky_settings {
+    /** sizeof(wk_sky_settings) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SKY_SETTINGS. */
+    wk_struct_type struct_type;
+    /** The next extension. Default NULL. */
+    const void *next;
+    /** Which model draws. Default WK_SKY_DIRECTIONAL. */
+    wk_sky_model model;
+    /**
+     * Orders of scattering that are carried one by one; the rest is a geometric series. Range [2, 16], default 5.
+     */
+    uint32_t orders;
+    /** Sun angles of the planet's tables. Range [16, 128], default 64. */
+    uint32_t suns;
+    /** Altitudes of the planet's tables. Range [8, 64], default 20. */
+    uint32_t altitudes;
+    /** Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40. */
+    uint32_t sky_azimuths;
+    /** Rows of an observer's sky above the horizon. Range [8, 256], default 80. */
+    uint32_t sky_above;
+    /** Rows of an observer's sky below the horizon. Range [8, 256], default 40. */
+    uint32_t sky_below;
+    /** Distances of the air in front of things. Range [4, 64], default 16. */
+    uint32_t air_slices;
+    /** Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
+    uint32_t march_cells;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_sky_settings;
+
+/** Every field of `wk_sky_settings` at its default. */
+#define WK_SKY_SETTINGS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sky_settings), \
+    /* struct_type */ WK_STRUCT_TYPE_SKY_SETTINGS, \
+    /* next */ NULL, \
+    /* model */ WK_SKY_DIRECTIONAL, \
+    /* orders */ 5, \
+    /* suns */ 64, \
+    /* altitudes */ 20, \
+    /* sky_azimuths */ 40, \
+    /* sky_above */ 80, \
+    /* sky_below */ 40, \
+    /* air_slices */ 16, \
+    /* march_cells */ 64, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SKY_SETTINGS_INIT`. `struct_size` is `sizeof(wk_sky_settings)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_sky_settings_init(wk_sky_settings *out,
                                uint32_t struct_size);
 
 /*
@@ -1951,6 +2045,525 @@ WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_
 WK_API
 wk_status wk_given_direction_init(wk_given_direction *out,
                                   uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Fog laws of older simulators
+ *
+ * Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, the laws of older
+ * systems can be drawn in its place: linear, exponential, exponential squared, on range or plane distance.
+ * ====================================================================================================
+ */
+
+/** The curve: V is what is left of an object's colour at a distance d, 1 clear, 0 all fog. */
+typedef uint32_t wk_fog_curve;
+
+/** No fog at all, whatever the weather. */
+#define WK_FOG_CURVE_CLEAR 0
+/** V = (end - d) / (end - start), clamped. */
+#define WK_FOG_CURVE_LINEAR 1
+/** V = exp(-density d). */
+#define WK_FOG_CURVE_EXPONENTIAL 2
+/** V = exp(-(density d)^2). */
+#define WK_FOG_CURVE_EXPONENTIAL_SQUARED 3
+
+/** What is taken as distance. */
+typedef uint32_t wk_fog_distance;
+
+/** From the camera's centre: turning on the spot changes nothing. */
+#define WK_FOG_DISTANCE_RANGE 0
+/** From the camera's plane, as the oldest systems have it. */
+#define WK_FOG_DISTANCE_PLANE 1
+
+/** Which optional fields of a wk_fog_law are set. */
+typedef uint32_t wk_fog_law_has_flags;
+
+/** color */
+#define WK_FOG_LAW_HAS_COLOR 1
+
+/** A fog law in place of the weather's fog. */
+typedef struct wk_fog_law {
+    /** sizeof(wk_fog_law) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FOG_LAW. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_FOG_CURVE_CLEAR. */
+    wk_fog_curve curve;
+    /** Default WK_FOG_DISTANCE_RANGE. */
+    wk_fog_distance distance;
+    /** Which optional fields are set. Default 0. */
+    wk_fog_law_has_flags has;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** Linear: where fog begins, m. Range [0, 1e9], default 0. */
+    double start_m;
+    /** Linear: where nothing is left, m. Above start_m, at most 1e9; default 1000. */
+    double end_m;
+    /** Exponential and squared: 1/m. Range [0, 10], default 0.003. */
+    double density_per_m;
+    /**
+     * Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else what deep fog under the
+     * present light would show.
+     */
+    double color[3];
+    /**
+     * Sky pixels fade fully at the horizon and not at all this high above it, rad. Range [0, pi], default 0.2: 0 leaves
+     * the sky as it is, pi covers all of it.
+     */
+    double sky_band;
+} wk_fog_law;
+
+/** Every field of `wk_fog_law` at its default. */
+#define WK_FOG_LAW_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_fog_law), \
+    /* struct_type */ WK_STRUCT_TYPE_FOG_LAW, \
+    /* next */ NULL, \
+    /* curve */ WK_FOG_CURVE_CLEAR, \
+    /* distance */ WK_FOG_DISTANCE_RANGE, \
+    /* has */ 0, \
+    /* reserved0 */ 0, \
+    /* start_m */ 0.0, \
+    /* end_m */ 1000.0, \
+    /* density_per_m */ 0.003, \
+    /* color */ { 0.0, 0.0, 0.0 }, \
+    /* sky_band */ 0.2 \
+}
+
+/**
+ * Draws a fog law in place of the weather's fog; NULL returns to the weather's.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *fog_law);
+
+/**
+ * Distance beyond which a fog law leaves less than 1/255 of an object's colour, m: a host need not draw what is farther.
+ * Measured as the law measures; infinite if it never comes to that.
+ * Thread: any.
+ */
+WK_API
+wk_status wk_fog_law_cull_distance(const wk_fog_law *fog_law,
+                                   double *out_distance_m);
+
+/**
+ * Distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than 1/255 of an
+ * object's contrast, m: about 1.85 times the visibility.
+ * Thread: any.
+ */
+WK_API wk_status wk_visibility_cull_distance(double visibility_m, double *out_distance_m);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FOG_LAW_INIT`. `struct_size` is `sizeof(wk_fog_law)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Queries: conditions
+ *
+ * What the weather comes to in physical quantities, at any place and any time that the timeline still knows: closed
+ * form, no device is asked. Heights are above the station unless they say otherwise.
+ * ====================================================================================================
+ */
+
+/** The weather as physical quantities, each continuous in time. */
+typedef struct wk_conditions {
+    /** sizeof(wk_conditions) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CONDITIONS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Total extinction at station height and 550 nm, 1/m. */
+    double extinction_per_m;
+    /** Meteorological optical range at station height, m. */
+    double visibility_m;
+    /** Air at 2 m, degrees Celsius. */
+    double temperature_c;
+    /** Fraction. */
+    double relative_humidity;
+    /** Pressure reduced to sea level, hPa. */
+    double pressure_hpa;
+    /** Pressure at the station, hPa. */
+    double station_pressure_hpa;
+    /** Station above mean sea level, m. */
+    double station_altitude_m;
+    /** Air density at sea level over that at 15 C and 1013.25 hPa. */
+    double rayleigh_density_ratio;
+    /** Height over which air thins out by 1/e, m. */
+    double rayleigh_scale_height_m;
+    /** Of air, at 550 nm and station height, 1/m. */
+    double rayleigh_extinction_per_m;
+    /** Of particles, at 550 nm and station height, 1/m. */
+    double aerosol_extinction_per_m;
+    /** Extinction goes with (wavelength / 550 nm)^-exponent. */
+    double aerosol_angstrom_exponent;
+    /** At 550 nm. */
+    double aerosol_single_scattering_albedo;
+    /** Mean cosine of the phase function. */
+    double aerosol_asymmetry;
+    /** Height over which particles thin out by 1/e, m. */
+    double aerosol_scale_height_m;
+    /** Inside the layer at the ground, at 550 nm, 1/m; 0 where there is none. */
+    double fog_extinction_per_m;
+    /** Base of the layer, m. */
+    double fog_base_m;
+    /** Top of the layer, m. */
+    double fog_top_m;
+    /** Depth of its soft upper edge, m. */
+    double fog_softness_m;
+    /** Part of the ground that it covers, fraction. */
+    double fog_coverage;
+    /** Part of the sky hidden by all layers together, fraction. */
+    double cloud_cover;
+    /** Rain, mm/h. */
+    double rain_mm_h;
+    /** Drizzle, mm/h. */
+    double drizzle_mm_h;
+    /** Snow, snow grains and ice crystals, mm/h of melted water. */
+    double snow_mm_h;
+    /** Ice pellets and small hail, mm/h of melted water. */
+    double ice_pellets_mm_h;
+    /** Hail, mm/h of melted water. */
+    double hail_mm_h;
+    /** Part of rain and drizzle that freezes where it lands, fraction. */
+    double freezing;
+    /** How convective it is: 0 steady, 1 showers. */
+    double showers;
+    /** Whether there is thunder: 0 to 1. */
+    double thunder;
+    /** By all that falls, at 550 nm, 1/m. */
+    double precipitation_extinction_per_m;
+    /** Velocity at 10 m towards the east, m/s. */
+    double wind_east_m_s;
+    /** Velocity at 10 m towards the north, m/s. */
+    double wind_north_m_s;
+    /** Highest 3-second gust at 10 m, m/s. */
+    double wind_gust_m_s;
+    /** Standard deviation of speed over its mean, at 10 m. */
+    double wind_turbulence_intensity;
+    /** Half the range over which the direction wanders, degrees: 0 steady, 180 all round. */
+    double wind_wander_deg;
+    /** Of the land, m. */
+    double roughness_length_m;
+    /** Of the sea, m. */
+    double sea_roughness_length_m;
+    /** Of the wind sea, m. */
+    double significant_wave_height_m;
+    /** Of the swell, m; 0 without swell. */
+    double swell_height_m;
+    /** Its peak period, s. */
+    double swell_period_s;
+    /** Its direction of travel, unit vector's east. */
+    double swell_east;
+    /** Its direction of travel, unit vector's north. */
+    double swell_north;
+    /** Water, degrees Celsius. */
+    double sea_temperature_c;
+    /** Of the ground: 0 dry, 0.3 damp, 1 under a closed film. */
+    double wetness;
+    /** Part of the ground under standing water, fraction. */
+    double puddles;
+    /** Part of the ground under ice or frost, fraction. */
+    double ice;
+    /** Lying snow, m. */
+    double snow_depth_m;
+    /** Ozone column, Dobson units. */
+    double ozone_du;
+} wk_conditions;
+
+/** Every field of `wk_conditions` at its default. */
+#define WK_CONDITIONS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_conditions), \
+    /* struct_type */ WK_STRUCT_TYPE_CONDITIONS, \
+    /* next */ NULL, \
+    /* extinction_per_m */ 0.0, \
+    /* visibility_m */ 0.0, \
+    /* temperature_c */ 0.0, \
+    /* relative_humidity */ 0.0, \
+    /* pressure_hpa */ 0.0, \
+    /* station_pressure_hpa */ 0.0, \
+    /* station_altitude_m */ 0.0, \
+    /* rayleigh_density_ratio */ 0.0, \
+    /* rayleigh_scale_height_m */ 0.0, \
+    /* rayleigh_extinction_per_m */ 0.0, \
+    /* aerosol_extinction_per_m */ 0.0, \
+    /* aerosol_angstrom_exponent */ 0.0, \
+    /* aerosol_single_scattering_albedo */ 0.0, \
+    /* aerosol_asymmetry */ 0.0, \
+    /* aerosol_scale_height_m */ 0.0, \
+    /* fog_extinction_per_m */ 0.0, \
+    /* fog_base_m */ 0.0, \
+    /* fog_top_m */ 0.0, \
+    /* fog_softness_m */ 0.0, \
+    /* fog_coverage */ 0.0, \
+    /* cloud_cover */ 0.0, \
+    /* rain_mm_h */ 0.0, \
+    /* drizzle_mm_h */ 0.0, \
+    /* snow_mm_h */ 0.0, \
+    /* ice_pellets_mm_h */ 0.0, \
+    /* hail_mm_h */ 0.0, \
+    /* freezing */ 0.0, \
+    /* showers */ 0.0, \
+    /* thunder */ 0.0, \
+    /* precipitation_extinction_per_m */ 0.0, \
+    /* wind_east_m_s */ 0.0, \
+    /* wind_north_m_s */ 0.0, \
+    /* wind_gust_m_s */ 0.0, \
+    /* wind_turbulence_intensity */ 0.0, \
+    /* wind_wander_deg */ 0.0, \
+    /* roughness_length_m */ 0.0, \
+    /* sea_roughness_length_m */ 0.0, \
+    /* significant_wave_height_m */ 0.0, \
+    /* swell_height_m */ 0.0, \
+    /* swell_period_s */ 0.0, \
+    /* swell_east */ 0.0, \
+    /* swell_north */ 0.0, \
+    /* sea_temperature_c */ 0.0, \
+    /* wetness */ 0.0, \
+    /* puddles */ 0.0, \
+    /* ice */ 0.0, \
+    /* snow_depth_m */ 0.0, \
+    /* ozone_du */ 0.0 \
+}
+
+/** A horizontally mixed layer of cloud; plain values of a list. */
+typedef struct wk_cloud_slab {
+    /** Part of the sky covered, fraction. */
+    double cover;
+    /** Base, m. */
+    double base_m;
+    /** Thickness, m. */
+    double thickness_m;
+    /** Optical depth straight up, where there is cloud. */
+    double optical_depth;
+    /** Effective radius of droplets or crystals, um. */
+    double droplet_radius_um;
+    /** Mean cosine of the phase function. */
+    double asymmetry;
+    /** Shape: 0 a sheet, 0.5 fair-weather heaps, 1 cumulonimbus. */
+    double convection;
+    /** Part of the water that is ice, fraction. */
+    double ice_fraction;
+} wk_cloud_slab;
+
+/**
+ * The conditions at a place of the host's world and a simulation time; of times before the last update only what is
+ * still under way is known.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_conditions(const wk_context *context,
+                                    const double (*position_m)[3],
+                                    double time_s,
+                                    wk_conditions *out_conditions);
+
+/**
+ * The cloud layers at a place and time, low ones first. `*out_count` gets their number, at most 16, also where
+ * `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
+ * sizeof(wk_cloud_slab) of your header.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_cloud_slabs(const wk_context *context,
+                                     const double (*position_m)[3],
+                                     double time_s,
+                                     wk_cloud_slab *slabs,
+                                     uint32_t capacity,
+                                     uint32_t slab_size,
+                                     uint32_t *out_count);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CONDITIONS_INIT`. `struct_size` is `sizeof(wk_conditions)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Queries: light and visibility
+ *
+ * At any place of the host's world and the context's present time. Directions are unit vectors (east, north, up) at the
+ * place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
+ * (0.2126, 0.7152, 0.0722) is the photometric value.
+ *
+ * Lists go in and out as (pointer, count, size of an element in your header); everything is checked before anything is
+ * written.
+ * ====================================================================================================
+ */
+
+/** The sun or the moon over a place. */
+typedef struct wk_celestial {
+    /** sizeof(wk_celestial) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CELESTIAL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Towards it, without refraction: what scattering sees. */
+    double direction[3];
+    /** Towards it as it appears, lifted by refraction. */
+    double apparent[3];
+    /** In the disc's plane, towards the middle of the lit limb (moon). */
+    double bright_limb[3];
+    /** Illuminance above the air on a surface facing it, lux a channel. */
+    double illuminance_lux[3];
+    /** Degrees clockwise from true north, [0, 360). */
+    double azimuth_deg;
+    /** Degrees above the horizon, without refraction. */
+    double elevation_deg;
+    /** Degrees above the horizon as it appears. */
+    double apparent_elevation_deg;
+    /** Angular radius, rad. */
+    double angular_radius;
+    /** Lit part of the face, fraction. */
+    double lit;
+    /** Vertical over horizontal diameter of the disc. */
+    double flattening;
+    /** Share of its direct light that clouds let through. */
+    double direct_share;
+} wk_celestial;
+
+/** Every field of `wk_celestial` at its default. */
+#define WK_CELESTIAL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_celestial), \
+    /* struct_type */ WK_STRUCT_TYPE_CELESTIAL, \
+    /* next */ NULL, \
+    /* direction */ { 0.0, 0.0, 0.0 }, \
+    /* apparent */ { 0.0, 0.0, 0.0 }, \
+    /* bright_limb */ { 0.0, 0.0, 0.0 }, \
+    /* illuminance_lux */ { 0.0, 0.0, 0.0 }, \
+    /* azimuth_deg */ 0.0, \
+    /* elevation_deg */ 0.0, \
+    /* apparent_elevation_deg */ 0.0, \
+    /* angular_radius */ 0.0, \
+    /* lit */ 0.0, \
+    /* flattening */ 0.0, \
+    /* direct_share */ 0.0 \
+}
+
+/** Light that arrives at a place, after air and clouds; plain values of a list. */
+typedef struct wk_ground_light {
+    /** Direct sun on a surface facing it, lux a channel. */
+    double sun_lux[3];
+    /** Direct moon on a surface facing it, lux a channel. */
+    double moon_lux[3];
+    /** Sky and clouds on level ground, lux a channel. */
+    double sky_lux[3];
+    /** Everything on level ground, luminance-weighted, lux. */
+    double total_lux;
+} wk_ground_light;
+
+/** Two points of the host's world, m; plain values of a list. */
+typedef struct wk_segment {
+    /** Where the eye is. */
+    double from_m[3];
+    /** Where the object is, at least a millimetre away. */
+    double to_m[3];
+} wk_segment;
+
+/** What lies between two points; plain values of a list. */
+typedef struct wk_between {
+    /** Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file). */
+    double transmittance[3];
+    /**
+     * Meteorological optical range along the way, m: where 550 nm light would fall to 5 % if all the way were like this
+     * part of it. Infinite where nothing stops light.
+     */
+    double visibility_m;
+} wk_between;
+
+/** The sky's light on surfaces of any slope. */
+typedef struct wk_ambient {
+    /** sizeof(wk_ambient) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_AMBIENT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Radiance of sky (upper half) and lit ground (lower half) in nine real spherical harmonics, cd/m^2:
+     * sh9[3 * coefficient + channel], coefficients in the order 00; 1y, 1z, 1x; 2xy, 2yz, 2zz, 2xz, 2xx-yy
+     * (Ramamoorthi and Hanrahan 2001), x east, y north, z up.
+     */
+    double sh9[27];
+} wk_ambient;
+
+/** Every field of `wk_ambient` at its default. */
+#define WK_AMBIENT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_ambient), \
+    /* struct_type */ WK_STRUCT_TYPE_AMBIENT, \
+    /* next */ NULL, \
+    /* sh9 */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * The sun over a place of the host's world.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_sun(const wk_context *context,
+                             const double (*position_m)[3],
+                             wk_celestial *out_sun);
+
+/**
+ * The moon over a place of the host's world.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_moon(const wk_context *context,
+                              const double (*position_m)[3],
+                              wk_celestial *out_moon);
+
+/**
+ * Light that arrives at places of the host's world, at most wk_caps.max_batch of them. `position_size` and `light_size`
+ * are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_light(const wk_context *context,
+                               const double (*positions_m)[3],
+                               uint32_t count,
+                               uint32_t position_size,
+                               wk_ground_light *lights,
+                               uint32_t light_size);
+
+/**
+ * Transmittance and visibility between pairs of points, at most wk_caps.max_batch of them: air, haze, fog and what
+ * falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_between(const wk_context *context,
+                                 const wk_segment *segments,
+                                 uint32_t count,
+                                 uint32_t segment_size,
+                                 wk_between *between,
+                                 uint32_t between_size);
+
+/**
+ * The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,
+ * and waits for the GPU once after every change of the air.
+ * Thread: as wk_view_record.
+ */
+WK_API
+wk_status wk_context_get_ambient(wk_context *context,
+                                 const double (*position_m)[3],
+                                 wk_ambient *out_ambient);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CELESTIAL_INIT`. `struct_size` is `sizeof(wk_celestial)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_celestial_init(wk_celestial *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_AMBIENT_INIT`. `struct_size` is `sizeof(wk_ambient)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -24,6 +24,11 @@ pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
     STRUCTS.iter().map(|s| (s.name, s.size, s.align, fields(s))).collect()
 }
 
+/// Whether the header has a `WK_X_INIT` of the struct `name`.
+pub fn has_init(name: &str) -> bool {
+    STRUCTS.iter().any(|s| s.name == name && s.has_init)
+}
+
 /// Calls `wk_x_init` of the struct `name` on `bytes`, which are aligned for any struct.
 pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
     assert!(struct_size as usize <= size_of_val(bytes), "the buffer holds the struct");

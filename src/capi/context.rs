@@ -21,6 +21,7 @@ use super::{
     handles::{self, Object},
     input::{self, out},
     layout::{self, init_struct, struct_size},
+    sky::wk_sky_settings,
     status::*,
 };
 use crate::{
@@ -85,7 +86,7 @@ pub struct wk_context_desc {
     pub struct_size: u32,
     /// WK_STRUCT_TYPE_CONTEXT_DESC.
     pub struct_type: wk_struct_type,
-    /// No extensions in this version: NULL.
+    /// NULL (the default), or a wk_sky_settings.
     pub next: *const c_void,
     /// Default WK_WORLD_FLAT.
     pub world_kind: wk_world_kind,
@@ -178,7 +179,7 @@ pub(super) fn in_struct(param: &str, e: Error) -> Error {
 }
 
 /// # Safety
-/// `desc.planet_toml` is NULL or a string.
+/// `desc.planet_toml` is NULL or a string, and the chain is checked.
 unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let kind = match desc.world_kind {
         WK_WORLD_TANGENT => WorldKind::Tangent,
@@ -206,7 +207,10 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     };
     let utc_at_zero = Utc(desc.utc_at_zero_s);
     sun_position(utc_at_zero, &world.origin).map_err(|e| renamed("utc", "desc.utc_at_zero_s", e))?;
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, ..ContextDesc::default() })
+    // SAFETY: the caller's promise.
+    let sky = unsafe { layout::extension::<wk_sky_settings>(desc.next)? }.unwrap_or(wk_sky_settings::INIT).to_rust();
+    sky.check().map_err(|e| e.within("wk_sky_settings."))?;
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
@@ -225,7 +229,7 @@ pub unsafe extern "C" fn wk_context_create(
         // SAFETY: the caller's promise about `desc`.
         let desc = unsafe { layout::read_or_default(&"desc", desc)? };
         // SAFETY: as above.
-        unsafe { layout::check_chain(&"desc", desc.next, &[])? };
+        unsafe { layout::check_chain(&"desc", desc.next, &[WK_STRUCT_TYPE_SKY_SETTINGS])? };
         // SAFETY: as above.
         let description = unsafe { description(&desc)? };
         let context = Context::new(object.cell.gpu().clone(), object.cell.shared()?, description)?;

@@ -201,7 +201,6 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         camera,
         depth_mapping,
         color: images.color,
-        color_read: None,
         depth: images.depth,
         mask: images.mask,
         color_space: match c.color_space {

@@ -94,6 +94,83 @@ fn check_count(param: &str, count: usize, limit: usize) -> Result<()> {
     Err(Error::range(&format!("{param}'s count"), &format!("at most {limit}"), count))
 }
 
+/// A caller's list of plain values, `size` bytes apart.
+pub(super) struct Places<T> {
+    first: *const T,
+    size: usize,
+}
+
+impl<T: Copy> Places<T> {
+    /// # Errors
+    /// Too many, NULL, misaligned, or a size that does not fit.
+    pub(super) fn new(
+        param: &str,
+        size_name: &str,
+        first: *const T,
+        count: u32,
+        size: u32,
+        limit: usize,
+    ) -> Result<Self> {
+        check_count(param, count as usize, limit)?;
+        if count > 0 {
+            layout::check_pointer(&param, first)?;
+            check_element_size::<T>(size_name, size)?;
+        }
+        Ok(Self { first, size: size as usize })
+    }
+
+    /// The element `i`; the caller knows that there is one.
+    pub(super) fn at(&self, i: usize) -> *const T {
+        self.first.wrapping_byte_add(i * self.size)
+    }
+}
+
+/// A caller's room for plain values, `size` bytes apart.
+pub(super) struct Room<T> {
+    first: *mut T,
+    capacity: usize,
+    size: usize,
+}
+
+impl<T: Copy> Room<T> {
+    /// # Errors
+    /// NULL, misaligned, or a size that does not fit.
+    pub(super) fn new(param: &str, size_name: &str, first: *mut T, capacity: u32, size: u32) -> Result<Self> {
+        if capacity > 0 {
+            layout::check_pointer(&param, first.cast_const())?;
+            check_element_size::<T>(size_name, size)?;
+        }
+        Ok(Self { first, capacity: capacity as usize, size: size as usize })
+    }
+
+    /// # Errors
+    /// If it cannot hold `count`.
+    pub(super) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
+        if count <= self.capacity {
+            return Ok(());
+        }
+        Err(Error::range(param, &format!("at least {count}"), self.capacity))
+    }
+
+    /// Writes element `i`; what a later version's element has beyond is left alone.
+    ///
+    /// # Safety
+    /// `i` is below the capacity, and the caller has that room.
+    pub(super) unsafe fn write(&self, i: usize, value: &T) {
+        // SAFETY: the caller's promise.
+        unsafe { self.first.wrapping_byte_add(i * self.size).write(*value) };
+    }
+}
+
+/// Plain values of lists never change within a major version; a later one has its additions behind.
+fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
+    let (least, align) = (size_of::<T>(), align_of::<T>());
+    if (size as usize) >= least && (size as usize).is_multiple_of(align) {
+        return Ok(());
+    }
+    Err(Error::range(name, &format!("at least {least} and a multiple of {align}"), size))
+}
+
 /// Reads a list of tagged structs, `stride` bytes apart; each is checked as `name[i]`, and `take` gets it.
 ///
 /// # Safety

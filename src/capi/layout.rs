@@ -41,6 +41,8 @@ pub(crate) struct StructInfo {
     pub name: &'static str,
     pub size: usize,
     pub align: usize,
+    /// Whether there is a `WK_X_INIT`: the plain values of lists have none.
+    pub has_init: bool,
     pub fields: &'static [Field],
 }
 

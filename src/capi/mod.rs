@@ -28,7 +28,15 @@ pub mod weather;
 
 pub mod context;
 
+pub mod sky;
+
 pub mod timeline;
+
+pub mod fog_law;
+
+pub mod conditions;
+
+pub mod query;
 
 pub mod frame;
 

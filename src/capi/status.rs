@@ -92,6 +92,16 @@ pub const WK_STRUCT_TYPE_WEATHER_OVERRIDES: wk_struct_type = 19;
 pub const WK_STRUCT_TYPE_OPENGL_HOST_DESC: wk_struct_type = 20;
 /// wk_opengl_target
 pub const WK_STRUCT_TYPE_OPENGL_TARGET: wk_struct_type = 21;
+/// wk_sky_settings
+pub const WK_STRUCT_TYPE_SKY_SETTINGS: wk_struct_type = 22;
+/// wk_fog_law
+pub const WK_STRUCT_TYPE_FOG_LAW: wk_struct_type = 23;
+/// wk_conditions
+pub const WK_STRUCT_TYPE_CONDITIONS: wk_struct_type = 24;
+/// wk_celestial
+pub const WK_STRUCT_TYPE_CELESTIAL: wk_struct_type = 25;
+/// wk_ambient
+pub const WK_STRUCT_TYPE_AMBIENT: wk_struct_type = 26;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

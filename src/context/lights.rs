@@ -38,13 +38,16 @@ pub struct Light {
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
 const SUN_LUX: f64 = 133_334.0;
+/// Colour of unscattered sunlight in linear Rec. 709 of luminance 1: ASTM G173's extraterrestrial spectrum seen by the
+/// CIE 1931 observer (chromaticity 0.3234, 0.3333).
+pub(super) const SUN_COLOR: [f64; 3] = [1.0937, 0.9784, 0.9390];
 /// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 /// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer of
-/// light at these wavelengths looks like is their sum weighted by it. Adapted (von Kries) to unscattered sunlight as
-/// white, as daylight film and eyes are: on a D65 display it would look yellow.
+/// light at these wavelengths looks like is their sum weighted by it.
 pub(super) fn color_columns(_planet: &Planet) -> [[f64; 3]; 3] {
-    [[SUN_LUX, 0.0, 0.0], [0.0, SUN_LUX, 0.0], [0.0, 0.0, SUN_LUX]]
+    let lux = SUN_COLOR.map(|v| v * SUN_LUX);
+    [[lux[0], 0.0, 0.0], [0.0, lux[1], 0.0], [0.0, 0.0, lux[2]]]
 }
 
 /// Colour of a transfer at the planet's wavelengths.

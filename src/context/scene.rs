@@ -112,10 +112,7 @@ fn air_mass(elevation_deg: f64) -> f64 {
 fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, spectrum: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let (depth, ozone) = zenith_depths(planet, altitude_m);
     let mass = air_mass(elevation_deg);
-    // From a height the horizon lies deeper and the sun sets later.
-    let h = altitude_m.max(0.0);
-    let dip = ((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).atan().to_degrees();
-    let up = smooth(-0.9, -0.25, elevation_deg + dip);
+    let up = smooth(-0.9, -0.25, elevation_deg);
     let color = color_columns(planet);
     let lux = map(spectrum, ozone, |l, t| l * (-t * mass).exp());
     let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
@@ -239,21 +236,16 @@ impl Context {
         moon: &Light,
         below: f64,
     ) -> GroundLight {
-        let tops = c.cloud_slabs().map(|s| s.top_m() + c.air.station_altitude_m);
-        let cloud_top_m = tops.fold(0.0, f64::max);
         let one = |light: &Light| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
-            let at = |altitude_m| clear_light(planet, altitude_m, elevation.to_degrees(), light.spectrum);
-            let (direct, sky) = at(place.altitude_m);
-            // What clouds pass on diffusely fell on their tops, through less air.
-            let (on_top, _) = at(place.altitude_m.max(cloud_top_m));
+            let (direct, sky) = clear_light(planet, place.altitude_m, elevation.to_degrees(), light.spectrum);
             let clouds = c.cloud_light(light.direction.z, 0.2);
             let share = |v: f64| 1.0 + (v - 1.0) * below;
             let level = light.direction.z.max(0.0);
             let from_clouds = clouds.diffuse * below;
             (
                 direct.map(|d| d * share(clouds.direct)),
-                map(on_top, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
+                map(direct, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
             )
         };
         let (sun_lux, sun_sky) = one(sun);

@@ -49,9 +49,6 @@ pub struct Frame<'a> {
     pub depth_mapping: DepthMapping,
     /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
-    /// What `color` shows now, where it cannot be copied from: of the same size and samples, with TEXTURE_BINDING, brought up
-    /// to date by whoever made it. Without it `color` is copied for every call.
-    pub color_read: Option<&'a wgpu::Texture>,
     /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING.
     pub depth: Option<&'a wgpu::Texture>,
     /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
@@ -76,7 +73,6 @@ impl<'a> Frame<'a> {
             camera,
             depth_mapping: DepthMapping { reversed: true, ..Default::default() },
             color: Some(color),
-            color_read: None,
             depth,
             mask: None,
             color_space: ColorSpace::SceneLinear,

@@ -68,7 +68,7 @@ impl Stages {
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming the usage.
-pub(super) fn check_color(texture: &wgpu::Texture, read: Option<&wgpu::Texture>) -> Result<()> {
+pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     let format = texture.format();
     if !matches!(
@@ -87,15 +87,8 @@ pub(super) fn check_color(texture: &wgpu::Texture, read: Option<&wgpu::Texture>)
              Rg11b10Ufloat, Rgba16Float, Rgba32Float"
         )));
     }
-    let Some(read) = read else {
-        return check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
-    };
-    check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)?;
-    if (read.size(), read.sample_count()) != (texture.size(), texture.sample_count()) {
-        let of = |t: &wgpu::Texture| format!("{} x {}, {} samples", t.width(), t.height(), t.sample_count());
-        return Err(Error::range("color_read", &format!("as color, {}", of(texture)), of(read)));
-    }
-    check_usage("color_read", read, wgpu::TextureUsages::TEXTURE_BINDING)
+    let needed = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    check_usage("color", texture, needed)
 }
 
 /// Checks that a depth texture can be read and matches the colour target.

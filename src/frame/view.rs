@@ -40,7 +40,6 @@ pub struct Report {
 #[derive(PartialEq)]
 struct Bound {
     color: wgpu::Texture,
-    read: Option<wgpu::Texture>,
     depth: Option<wgpu::Texture>,
     mask: Option<wgpu::Texture>,
 }
@@ -200,7 +199,7 @@ impl View {
     /// Checks everything a draw needs before anything is recorded.
     fn check_targets(&self, frame: &Frame<'_>, stages: Stages, scene: &Scene) -> Result<ViewRays> {
         let color = frame.color.ok_or_else(|| Error::range("color", "a texture for stages that draw", "none"))?;
-        check_color(color, frame.color_read)?;
+        check_color(color)?;
         if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
             return Err(Error::unsupported(
                 "color.samples above 1: this device cannot shade per sample; resolve first",
@@ -284,10 +283,7 @@ impl View {
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
     fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
-            b.color == *color
-                && b.read.as_ref() == frame.color_read
-                && b.depth.as_ref() == frame.depth
-                && b.mask.as_ref() == frame.mask
+            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask
         });
         if same {
             return Ok(());
@@ -295,24 +291,17 @@ impl View {
         let fits = self.copy.as_ref().is_some_and(|c| {
             c.size() == color.size() && c.format() == color.format() && c.sample_count() == color.sample_count()
         });
-        if frame.color_read.is_some() {
-            self.copy = None;
-        } else if !fits {
+        if !fits {
             self.copy = Some(color_copy(&self.device.device, color));
             let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
             let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
             self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
         }
-        let Some(read) = frame.color_read.or(self.copy.as_ref()) else { return Ok(()) };
+        let Some(copy) = &self.copy else { return Ok(()) };
         let group =
-            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], read, frame.depth, frame.mask);
+            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], copy, frame.depth, frame.mask);
         let target = color.create_view(&Default::default());
-        let bound = Bound {
-            color: color.clone(),
-            read: frame.color_read.cloned(),
-            depth: frame.depth.cloned(),
-            mask: frame.mask.cloned(),
-        };
+        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned() };
         self.bound = Some((bound, group, target));
         Ok(())
     }

@@ -5,7 +5,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, context::*, device::*, frame::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, query::*, status::*, surface::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -60,6 +61,24 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_save", "context", false, |h| unsafe { wk_context_save(h.cast(), null_mut(), 0, null_mut()) }),
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
+        case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
+        case("wk_context_get_conditions", "context", false, |h| unsafe {
+            wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_cloud_slabs", "context", false, |h| unsafe {
+            wk_context_get_cloud_slabs(h.cast(), null(), 0.0, null_mut(), 0, 0, null_mut())
+        }),
+        case("wk_context_get_sun", "context", false, |h| unsafe { wk_context_get_sun(h.cast(), null(), null_mut()) }),
+        case("wk_context_get_moon", "context", false, |h| unsafe { wk_context_get_moon(h.cast(), null(), null_mut()) }),
+        case("wk_context_get_light", "context", false, |h| unsafe {
+            wk_context_get_light(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_between", "context", false, |h| unsafe {
+            wk_context_get_between(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_ambient", "context", false, |h| unsafe {
+            wk_context_get_ambient(h.cast(), null(), null_mut())
+        }),
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
@@ -132,6 +151,8 @@ const WITHOUT: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
     "wk_version",
+    "wk_fog_law_cull_distance",
+    "wk_visibility_cull_distance",
     "wk_utc_from_calendar",
     "wk_get_veil_snippet",
     "wk_set_log_callback",

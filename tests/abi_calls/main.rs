@@ -5,6 +5,7 @@
 //! if a function of the header has none.
 
 mod handles;
+mod queries;
 mod structs;
 mod weather;
 mod world;

@@ -7,8 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, context::*, device::*, frame::*, opengl::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
-    vulkan::*, weather::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, query::*, status::*, surface::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -87,6 +87,22 @@ fn cases(world: &World) -> Vec<Case> {
             let weather = wk_weather { clouds: p.cast(), cloud_count: 1, cloud_stride: 2 << 20, ..init("wk_weather") };
             unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
         }),
+        case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
+        case("wk_sky_settings", "wk_sky_settings", true, move |p| {
+            let desc = wk_context_desc { next: p, ..init("wk_context_desc") };
+            let mut out = null_mut();
+            let status = unsafe { wk_context_create(device, &desc, &mut out) };
+            kept(status, out);
+            unsafe { wk_context_destroy(out) };
+            status
+        }),
+        case("wk_conditions", "out_conditions", false, move |p| unsafe {
+            wk_context_get_conditions(context, &ORIGIN, 0.0, p.cast())
+        }),
+        case("wk_celestial", "out_sun", false, move |p| unsafe { wk_context_get_sun(context, &ORIGIN, p.cast()) }),
+        case("wk_ambient", "out_ambient", false, move |p| unsafe {
+            wk_context_get_ambient(context, &ORIGIN, p.cast())
+        }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
         }),
@@ -100,9 +116,15 @@ fn cases(world: &World) -> Vec<Case> {
     ]
 }
 
-/// Structs that need a live window or a Vulkan host: their own tests reach them.
+const ORIGIN: [f64; 3] = [0.0; 3];
+
+/// Plain values of lists, and structs that need a live window or a host: their own tests reach them.
 const ELSEWHERE: &[&str] = &[
     "wk_surface_config",
+    "wk_cloud_slab",
+    "wk_ground_light",
+    "wk_segment",
+    "wk_between",
     "wk_opengl_image",
     "wk_opengl_target",
     "wk_vulkan_image",

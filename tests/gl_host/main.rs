@@ -2,6 +2,9 @@
 //! looked at with the host's own OpenGL.
 #![cfg(target_os = "linux")]
 
+#[path = "../c_scene/mod.rs"]
+mod c_scene;
+mod capi;
 mod egl;
 mod exercise;
 mod host;
@@ -12,3 +15,6 @@ mod pictures;
 mod snapshot;
 mod state;
 mod unusual;
+
+/// The size of the pictures that come through the C functions.
+const SIZE: (u32, u32) = (images::WIDTH, images::HEIGHT);

@@ -2,6 +2,9 @@
 //! host reads, the layouts and semaphores are kept to, and the validation layer has nothing to say.
 #![cfg(not(any(target_os = "macos", target_os = "ios")))]
 
+#[path = "../c_scene/mod.rs"]
+mod c_scene;
+mod capi;
 mod draw;
 mod host;
 mod refusals;

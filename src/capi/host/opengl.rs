@@ -46,7 +46,6 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
     let images = desc.map(|desc| host.target(&gpu.device, &desc)).transpose().map_err(|e| e.within("frame."))?;
     if let Some(images) = &images {
         frame.color = Some(&images.color);
-        frame.color_read = images.color_read.as_ref();
         frame.depth = images.depth_read.as_ref();
         frame.mask = images.mask.as_ref();
     }

@@ -1,0 +1,352 @@
+//! Queries: conditions
+//!
+//! What the weather comes to in physical quantities, at any place and any time that the timeline still knows: closed
+//! form, no device is asked. Heights are above the station unless they say otherwise.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input::{self, check_finite, out},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Result, Status},
+    weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_conditions.rs"));
+
+/// The weather as physical quantities, each continuous in time.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_conditions {
+    /// sizeof(wk_conditions) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CONDITIONS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Total extinction at station height and 550 nm, 1/m.
+    pub extinction_per_m: f64,
+    /// Meteorological optical range at station height, m.
+    pub visibility_m: f64,
+    /// Air at 2 m, degrees Celsius.
+    pub temperature_c: f64,
+    /// Fraction.
+    pub relative_humidity: f64,
+    /// Pressure reduced to sea level, hPa.
+    pub pressure_hpa: f64,
+    /// Pressure at the station, hPa.
+    pub station_pressure_hpa: f64,
+    /// Station above mean sea level, m.
+    pub station_altitude_m: f64,
+    /// Air density at sea level over that at 15 C and 1013.25 hPa.
+    pub rayleigh_density_ratio: f64,
+    /// Height over which air thins out by 1/e, m.
+    pub rayleigh_scale_height_m: f64,
+    /// Of air, at 550 nm and station height, 1/m.
+    pub rayleigh_extinction_per_m: f64,
+    /// Of particles, at 550 nm and station height, 1/m.
+    pub aerosol_extinction_per_m: f64,
+    /// Extinction goes with (wavelength / 550 nm)^-exponent.
+    pub aerosol_angstrom_exponent: f64,
+    /// At 550 nm.
+    pub aerosol_single_scattering_albedo: f64,
+    /// Mean cosine of the phase function.
+    pub aerosol_asymmetry: f64,
+    /// Height over which particles thin out by 1/e, m.
+    pub aerosol_scale_height_m: f64,
+    /// Inside the layer at the ground, at 550 nm, 1/m; 0 where there is none.
+    pub fog_extinction_per_m: f64,
+    /// Base of the layer, m.
+    pub fog_base_m: f64,
+    /// Top of the layer, m.
+    pub fog_top_m: f64,
+    /// Depth of its soft upper edge, m.
+    pub fog_softness_m: f64,
+    /// Part of the ground that it covers, fraction.
+    pub fog_coverage: f64,
+    /// Part of the sky hidden by all layers together, fraction.
+    pub cloud_cover: f64,
+    /// Rain, mm/h.
+    pub rain_mm_h: f64,
+    /// Drizzle, mm/h.
+    pub drizzle_mm_h: f64,
+    /// Snow, snow grains and ice crystals, mm/h of melted water.
+    pub snow_mm_h: f64,
+    /// Ice pellets and small hail, mm/h of melted water.
+    pub ice_pellets_mm_h: f64,
+    /// Hail, mm/h of melted water.
+    pub hail_mm_h: f64,
+    /// Part of rain and drizzle that freezes where it lands, fraction.
+    pub freezing: f64,
+    /// How convective it is: 0 steady, 1 showers.
+    pub showers: f64,
+    /// Whether there is thunder: 0 to 1.
+    pub thunder: f64,
+    /// By all that falls, at 550 nm, 1/m.
+    pub precipitation_extinction_per_m: f64,
+    /// Velocity at 10 m towards the east, m/s.
+    pub wind_east_m_s: f64,
+    /// Velocity at 10 m towards the north, m/s.
+    pub wind_north_m_s: f64,
+    /// Highest 3-second gust at 10 m, m/s.
+    pub wind_gust_m_s: f64,
+    /// Standard deviation of speed over its mean, at 10 m.
+    pub wind_turbulence_intensity: f64,
+    /// Half the range over which the direction wanders, degrees: 0 steady, 180 all round.
+    pub wind_wander_deg: f64,
+    /// Of the land, m.
+    pub roughness_length_m: f64,
+    /// Of the sea, m.
+    pub sea_roughness_length_m: f64,
+    /// Of the wind sea, m.
+    pub significant_wave_height_m: f64,
+    /// Of the swell, m; 0 without swell.
+    pub swell_height_m: f64,
+    /// Its peak period, s.
+    pub swell_period_s: f64,
+    /// Its direction of travel, unit vector's east.
+    pub swell_east: f64,
+    /// Its direction of travel, unit vector's north.
+    pub swell_north: f64,
+    /// Water, degrees Celsius.
+    pub sea_temperature_c: f64,
+    /// Of the ground: 0 dry, 0.3 damp, 1 under a closed film.
+    pub wetness: f64,
+    /// Part of the ground under standing water, fraction.
+    pub puddles: f64,
+    /// Part of the ground under ice or frost, fraction.
+    pub ice: f64,
+    /// Lying snow, m.
+    pub snow_depth_m: f64,
+    /// Ozone column, Dobson units.
+    pub ozone_du: f64,
+}
+
+impl wk_conditions {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CONDITIONS,
+        next: null(),
+        extinction_per_m: 0.0,
+        visibility_m: 0.0,
+        temperature_c: 0.0,
+        relative_humidity: 0.0,
+        pressure_hpa: 0.0,
+        station_pressure_hpa: 0.0,
+        station_altitude_m: 0.0,
+        rayleigh_density_ratio: 0.0,
+        rayleigh_scale_height_m: 0.0,
+        rayleigh_extinction_per_m: 0.0,
+        aerosol_extinction_per_m: 0.0,
+        aerosol_angstrom_exponent: 0.0,
+        aerosol_single_scattering_albedo: 0.0,
+        aerosol_asymmetry: 0.0,
+        aerosol_scale_height_m: 0.0,
+        fog_extinction_per_m: 0.0,
+        fog_base_m: 0.0,
+        fog_top_m: 0.0,
+        fog_softness_m: 0.0,
+        fog_coverage: 0.0,
+        cloud_cover: 0.0,
+        rain_mm_h: 0.0,
+        drizzle_mm_h: 0.0,
+        snow_mm_h: 0.0,
+        ice_pellets_mm_h: 0.0,
+        hail_mm_h: 0.0,
+        freezing: 0.0,
+        showers: 0.0,
+        thunder: 0.0,
+        precipitation_extinction_per_m: 0.0,
+        wind_east_m_s: 0.0,
+        wind_north_m_s: 0.0,
+        wind_gust_m_s: 0.0,
+        wind_turbulence_intensity: 0.0,
+        wind_wander_deg: 0.0,
+        roughness_length_m: 0.0,
+        sea_roughness_length_m: 0.0,
+        significant_wave_height_m: 0.0,
+        swell_height_m: 0.0,
+        swell_period_s: 0.0,
+        swell_east: 0.0,
+        swell_north: 0.0,
+        sea_temperature_c: 0.0,
+        wetness: 0.0,
+        puddles: 0.0,
+        ice: 0.0,
+        snow_depth_m: 0.0,
+        ozone_du: 0.0,
+    };
+
+    fn of(c: &Conditions) -> Self {
+        Self {
+            extinction_per_m: c.extinction_per_m,
+            visibility_m: c.visibility_m(),
+            temperature_c: c.air.temperature_c,
+            relative_humidity: c.air.relative_humidity,
+            pressure_hpa: c.air.pressure_hpa,
+            station_pressure_hpa: c.air.station_pressure_hpa,
+            station_altitude_m: c.air.station_altitude_m,
+            rayleigh_density_ratio: c.air.rayleigh_density_ratio,
+            rayleigh_scale_height_m: c.air.rayleigh_scale_height_m,
+            rayleigh_extinction_per_m: c.air.rayleigh_extinction_per_m,
+            aerosol_extinction_per_m: c.aerosol.extinction_per_m,
+            aerosol_angstrom_exponent: c.aerosol.angstrom_exponent,
+            aerosol_single_scattering_albedo: c.aerosol.single_scattering_albedo,
+            aerosol_asymmetry: c.aerosol.asymmetry,
+            aerosol_scale_height_m: c.aerosol.scale_height_m,
+            fog_extinction_per_m: c.fog.extinction_per_m,
+            fog_base_m: c.fog.base_m,
+            fog_top_m: c.fog.top_m,
+            fog_softness_m: c.fog.softness_m,
+            fog_coverage: c.fog.coverage,
+            cloud_cover: c.cloud_cover(),
+            rain_mm_h: c.precipitation.rain_mm_h,
+            drizzle_mm_h: c.precipitation.drizzle_mm_h,
+            snow_mm_h: c.precipitation.snow_mm_h,
+            ice_pellets_mm_h: c.precipitation.ice_pellets_mm_h,
+            hail_mm_h: c.precipitation.hail_mm_h,
+            freezing: c.precipitation.freezing,
+            showers: c.precipitation.showers,
+            thunder: c.precipitation.thunder,
+            precipitation_extinction_per_m: c.precipitation.extinction_per_m,
+            wind_east_m_s: c.wind.east_m_s,
+            wind_north_m_s: c.wind.north_m_s,
+            wind_gust_m_s: c.wind.gust_m_s,
+            wind_turbulence_intensity: c.wind.turbulence_intensity,
+            wind_wander_deg: c.wind.wander_deg,
+            roughness_length_m: c.wind.roughness_length_m,
+            sea_roughness_length_m: c.wind.sea_roughness_length_m,
+            significant_wave_height_m: c.sea.significant_wave_height_m,
+            swell_height_m: c.sea.swell_height_m,
+            swell_period_s: c.sea.swell_period_s,
+            swell_east: c.sea.swell_east,
+            swell_north: c.sea.swell_north,
+            sea_temperature_c: c.sea.temperature_c,
+            wetness: c.surface.wetness,
+            puddles: c.surface.puddles,
+            ice: c.surface.ice,
+            snow_depth_m: c.surface.snow_depth_m,
+            ozone_du: c.ozone_du,
+            ..Self::INIT
+        }
+    }
+}
+
+/// A horizontally mixed layer of cloud; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_cloud_slab {
+    /// Part of the sky covered, fraction.
+    pub cover: f64,
+    /// Base, m.
+    pub base_m: f64,
+    /// Thickness, m.
+    pub thickness_m: f64,
+    /// Optical depth straight up, where there is cloud.
+    pub optical_depth: f64,
+    /// Effective radius of droplets or crystals, um.
+    pub droplet_radius_um: f64,
+    /// Mean cosine of the phase function.
+    pub asymmetry: f64,
+    /// Shape: 0 a sheet, 0.5 fair-weather heaps, 1 cumulonimbus.
+    pub convection: f64,
+    /// Part of the water that is ice, fraction.
+    pub ice_fraction: f64,
+}
+
+impl wk_cloud_slab {
+    fn of(s: &CloudSlab) -> Self {
+        Self {
+            cover: s.cover,
+            base_m: s.base_m,
+            thickness_m: s.thickness_m,
+            optical_depth: s.optical_depth,
+            droplet_radius_um: s.droplet_radius_um,
+            asymmetry: s.asymmetry,
+            convection: s.convection,
+            ice_fraction: s.ice_fraction,
+        }
+    }
+}
+
+/// A place of the host's world, three finite numbers.
+///
+/// # Safety
+/// `p` is NULL or points to three numbers.
+pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3]> {
+    layout::check_pointer(&param, p)?;
+    // SAFETY: checked, and the caller's promise.
+    let position = unsafe { p.read() };
+    for (i, v) in position.iter().enumerate() {
+        if !v.is_finite() {
+            return Err(Error::range(&format!("{param}[{i}]"), "finite", v));
+        }
+    }
+    Ok(position)
+}
+
+/// The conditions at a place of the host's world and a simulation time; of times before the last update only what is
+/// still under way is known.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_conditions(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_conditions: *mut wk_conditions,
+) -> wk_status {
+    guard("wk_context_get_conditions", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let place = unsafe {
+            position("position_m", position_m)?;
+            layout::out_struct(&"out_conditions", out_conditions)?
+        };
+        place.set(&wk_conditions::of(&object.read().conditions_at(check_finite("time_s", time_s)?)?));
+        Ok(Status::Ok)
+    })
+}
+
+/// The cloud layers at a place and time, low ones first. `*out_count` gets their number, at most 16, also where
+/// `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
+/// sizeof(wk_cloud_slab) of your header.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_cloud_slabs(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    slabs: *mut wk_cloud_slab,
+    capacity: u32,
+    slab_size: u32,
+    out_count: *mut u32,
+) -> wk_status {
+    guard("wk_context_get_cloud_slabs", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `position_m`.
+        unsafe { position("position_m", position_m)? };
+        let count = out("out_count", out_count)?;
+        let room = input::Room::new("slabs", "slab_size", slabs, capacity, slab_size)?;
+        let conditions = object.read().conditions_at(check_finite("time_s", time_s)?)?;
+        let found: [Option<&CloudSlab>; MAX_CLOUD_LAYERS] = {
+            let mut slabs = conditions.cloud_slabs();
+            std::array::from_fn(|_| slabs.next())
+        };
+        let present = found.iter().flatten().count();
+        // SAFETY: `count` was checked and is the caller's.
+        unsafe { count.write(present as u32) };
+        if capacity > 0 {
+            room.check_capacity("capacity", present)?;
+            for (i, slab) in found.iter().flatten().enumerate() {
+                // SAFETY: `i` is below the capacity that the caller promises.
+                unsafe { room.write(i, &wk_cloud_slab::of(slab)) };
+            }
+        }
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,169 @@
+//! Fog laws of older simulators
+//!
+//! Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, the laws of older
+//! systems can be drawn in its place: linear, exponential, exponential squared, on range or plane distance.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input::{check_finite, out},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    fog::{
+        CompatibilityLaw, Law, koschmieder_extinction_per_m,
+        laws::{CULL_THRESHOLD, Curve, DistanceKind, cull_distance_m},
+    },
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_fog_law.rs"));
+
+/// The curve: V is what is left of an object's colour at a distance d, 1 clear, 0 all fog.
+pub type wk_fog_curve = u32;
+/// No fog at all, whatever the weather.
+pub const WK_FOG_CURVE_CLEAR: wk_fog_curve = 0;
+/// V = (end - d) / (end - start), clamped.
+pub const WK_FOG_CURVE_LINEAR: wk_fog_curve = 1;
+/// V = exp(-density d).
+pub const WK_FOG_CURVE_EXPONENTIAL: wk_fog_curve = 2;
+/// V = exp(-(density d)^2).
+pub const WK_FOG_CURVE_EXPONENTIAL_SQUARED: wk_fog_curve = 3;
+
+/// What is taken as distance.
+pub type wk_fog_distance = u32;
+/// From the camera's centre: turning on the spot changes nothing.
+pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
+/// From the camera's plane, as the oldest systems have it.
+pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
+
+/// Which optional fields of a wk_fog_law are set.
+pub type wk_fog_law_has_flags = u32;
+/// color
+pub const WK_FOG_LAW_HAS_COLOR: wk_fog_law_has_flags = 1;
+
+/// A fog law in place of the weather's fog.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_fog_law {
+    /// sizeof(wk_fog_law) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FOG_LAW.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Default WK_FOG_CURVE_CLEAR.
+    pub curve: wk_fog_curve,
+    /// Default WK_FOG_DISTANCE_RANGE.
+    pub distance: wk_fog_distance,
+    /// Which optional fields are set. Default 0.
+    pub has: wk_fog_law_has_flags,
+    /// Must be 0.
+    pub reserved0: u32,
+    /// Linear: where fog begins, m. Range [0, 1e9], default 0.
+    pub start_m: f64,
+    /// Linear: where nothing is left, m. Above start_m, at most 1e9; default 1000.
+    pub end_m: f64,
+    /// Exponential and squared: 1/m. Range [0, 10], default 0.003.
+    pub density_per_m: f64,
+    /// Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else what deep fog under the
+    /// present light would show.
+    pub color: [f64; 3],
+    /// Sky pixels fade fully at the horizon and not at all this high above it, rad. Range [0, pi], default 0.2: 0 leaves
+    /// the sky as it is, pi covers all of it.
+    pub sky_band: f64,
+}
+
+impl wk_fog_law {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FOG_LAW,
+        next: null(),
+        curve: WK_FOG_CURVE_CLEAR,
+        distance: WK_FOG_DISTANCE_RANGE,
+        has: 0,
+        reserved0: 0,
+        start_m: 0.0,
+        end_m: 1000.0,
+        density_per_m: 0.003,
+        color: [0.0, 0.0, 0.0],
+        sky_band: 0.2,
+    };
+}
+
+/// # Safety
+/// `p` is NULL or a `wk_fog_law`.
+unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&"fog_law", p)? };
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&"fog_law", c.next, &[])? };
+    let curve = match c.curve {
+        WK_FOG_CURVE_LINEAR => Curve::Linear { start_m: c.start_m, end_m: c.end_m },
+        WK_FOG_CURVE_EXPONENTIAL => Curve::Exponential { density_per_m: c.density_per_m },
+        WK_FOG_CURVE_EXPONENTIAL_SQUARED => Curve::ExponentialSquared { density_per_m: c.density_per_m },
+        _ => return Ok(Law::Clear),
+    };
+    let plane = c.distance == WK_FOG_DISTANCE_PLANE;
+    let law = CompatibilityLaw {
+        curve,
+        distance: if plane { DistanceKind::Plane } else { DistanceKind::Range },
+        colour: (c.has & WK_FOG_LAW_HAS_COLOR != 0).then_some(c.color),
+        sky_band: c.sky_band,
+    };
+    law.validate().map_err(in_law)?;
+    Ok(Law::Compatibility(law))
+}
+
+/// `fog.start_m must ..` as the header has it: `fog_law.start_m must ..`.
+fn in_law(e: Error) -> Error {
+    Error::new(e.status, e.message.replace("fog.colour", "fog_law.color").replace("fog.", "fog_law."))
+}
+
+/// Draws a fog law in place of the weather's fog; NULL returns to the weather's.
+/// Thread: exclusive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_law: *const wk_fog_law) -> wk_status {
+    guard("wk_context_set_fog_law", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `fog_law`.
+        let law = if fog_law.is_null() { None } else { Some(unsafe { law(fog_law)? }) };
+        object.write().set_fog_law(law)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Distance beyond which a fog law leaves less than 1/255 of an object's colour, m: a host need not draw what is farther.
+/// Measured as the law measures; infinite if it never comes to that.
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, out_distance_m: *mut f64) -> wk_status {
+    guard("wk_fog_law_cull_distance", |_| {
+        let place = out("out_distance_m", out_distance_m)?;
+        // SAFETY: the caller's promise about `fog_law`.
+        let distance = match unsafe { law(fog_law)? } {
+            Law::Compatibility(law) => law.cull_distance_m(CULL_THRESHOLD),
+            _ => f64::INFINITY,
+        };
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(distance) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than 1/255 of an
+/// object's contrast, m: about 1.85 times the visibility.
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_visibility_cull_distance(visibility_m: f64, out_distance_m: *mut f64) -> wk_status {
+    guard("wk_visibility_cull_distance", |_| {
+        let place = out("out_distance_m", out_distance_m)?;
+        check_range("visibility_m", check_finite("visibility_m", visibility_m)?, 1.0, 1e6, "m")?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(cull_distance_m(koschmieder_extinction_per_m(visibility_m))) };
+        Ok(Status::Ok)
+    })
+}

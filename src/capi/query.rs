@@ -1,0 +1,305 @@
+//! Queries: light and visibility
+//!
+//! At any place of the host's world and the context's present time. Directions are unit vectors (east, north, up) at the
+//! place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
+//! (0.2126, 0.7152, 0.0722) is the photometric value.
+//!
+//! Lists go in and out as (pointer, count, size of an element in your header); everything is checked before anything is
+//! written.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    MAX_BATCH,
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    input,
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    context::{Between, Context, GroundLight, Light},
+    error::{Result, Status},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_query.rs"));
+
+/// The sun or the moon over a place.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_celestial {
+    /// sizeof(wk_celestial) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CELESTIAL.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Towards it, without refraction: what scattering sees.
+    pub direction: [f64; 3],
+    /// Towards it as it appears, lifted by refraction.
+    pub apparent: [f64; 3],
+    /// In the disc's plane, towards the middle of the lit limb (moon).
+    pub bright_limb: [f64; 3],
+    /// Illuminance above the air on a surface facing it, lux a channel.
+    pub illuminance_lux: [f64; 3],
+    /// Degrees clockwise from true north, [0, 360).
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon, without refraction.
+    pub elevation_deg: f64,
+    /// Degrees above the horizon as it appears.
+    pub apparent_elevation_deg: f64,
+    /// Angular radius, rad.
+    pub angular_radius: f64,
+    /// Lit part of the face, fraction.
+    pub lit: f64,
+    /// Vertical over horizontal diameter of the disc.
+    pub flattening: f64,
+    /// Share of its direct light that clouds let through.
+    pub direct_share: f64,
+}
+
+impl wk_celestial {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CELESTIAL,
+        next: null(),
+        direction: [0.0, 0.0, 0.0],
+        apparent: [0.0, 0.0, 0.0],
+        bright_limb: [0.0, 0.0, 0.0],
+        illuminance_lux: [0.0, 0.0, 0.0],
+        azimuth_deg: 0.0,
+        elevation_deg: 0.0,
+        apparent_elevation_deg: 0.0,
+        angular_radius: 0.0,
+        lit: 0.0,
+        flattening: 0.0,
+        direct_share: 0.0,
+    };
+
+    fn of(light: &Light) -> Self {
+        let elevation = |d: DVec3| d.z.clamp(-1.0, 1.0).asin().to_degrees();
+        let d = light.direction;
+        Self {
+            direction: d.to_array(),
+            apparent: light.apparent.to_array(),
+            bright_limb: light.bright_limb.to_array(),
+            illuminance_lux: light.illuminance_lux,
+            azimuth_deg: d.x.atan2(d.y).to_degrees().rem_euclid(360.0),
+            elevation_deg: elevation(d),
+            apparent_elevation_deg: elevation(light.apparent),
+            angular_radius: light.angular_radius,
+            lit: light.lit,
+            flattening: light.flattening,
+            direct_share: light.direct_share,
+            ..Self::INIT
+        }
+    }
+}
+
+/// Light that arrives at a place, after air and clouds; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_ground_light {
+    /// Direct sun on a surface facing it, lux a channel.
+    pub sun_lux: [f64; 3],
+    /// Direct moon on a surface facing it, lux a channel.
+    pub moon_lux: [f64; 3],
+    /// Sky and clouds on level ground, lux a channel.
+    pub sky_lux: [f64; 3],
+    /// Everything on level ground, luminance-weighted, lux.
+    pub total_lux: f64,
+}
+
+impl wk_ground_light {
+    fn of(light: &GroundLight) -> Self {
+        Self { sun_lux: light.sun_lux, moon_lux: light.moon_lux, sky_lux: light.sky_lux, total_lux: light.total_lux }
+    }
+}
+
+/// Two points of the host's world, m; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_segment {
+    /// Where the eye is.
+    pub from_m: [f64; 3],
+    /// Where the object is, at least a millimetre away.
+    pub to_m: [f64; 3],
+}
+
+/// What lies between two points; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_between {
+    /// Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file).
+    pub transmittance: [f64; 3],
+    /// Meteorological optical range along the way, m: where 550 nm light would fall to 5 % if all the way were like this
+    /// part of it. Infinite where nothing stops light.
+    pub visibility_m: f64,
+}
+
+impl wk_between {
+    fn of(between: &Between) -> Self {
+        Self { transmittance: between.transmittance, visibility_m: between.visibility_m }
+    }
+}
+
+/// The sky's light on surfaces of any slope.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_ambient {
+    /// sizeof(wk_ambient) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_AMBIENT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Radiance of sky (upper half) and lit ground (lower half) in nine real spherical harmonics, cd/m^2:
+    /// sh9[3 * coefficient + channel], coefficients in the order 00; 1y, 1z, 1x; 2xy, 2yz, 2zz, 2xz, 2xx-yy
+    /// (Ramamoorthi and Hanrahan 2001), x east, y north, z up.
+    pub sh9: [f64; 27],
+}
+
+impl wk_ambient {
+    pub(crate) const INIT: Self =
+        Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_AMBIENT, next: null(), sh9: [0.0; 27] };
+}
+
+/// The sun over a place of the host's world.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_sun(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    out_sun: *mut wk_celestial,
+) -> wk_status {
+    // SAFETY: the caller's promises are the same.
+    unsafe { celestial("wk_context_get_sun", context, position_m, "out_sun", out_sun, |c, p| Ok(c.light_at(p)?.sun)) }
+}
+
+/// The moon over a place of the host's world.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_moon(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    out_moon: *mut wk_celestial,
+) -> wk_status {
+    // SAFETY: the caller's promises are the same.
+    unsafe {
+        celestial("wk_context_get_moon", context, position_m, "out_moon", out_moon, |c, p| Ok(c.light_at(p)?.moon))
+    }
+}
+
+/// # Safety
+/// `position_m` is NULL or three numbers, `out` NULL or a `wk_celestial`.
+unsafe fn celestial(
+    function: &'static str,
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    out_name: &str,
+    out: *mut wk_celestial,
+    which: fn(&Context, DVec3) -> Result<Light>,
+) -> wk_status {
+    guard(function, |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&out_name, out)?) };
+        place.set(&wk_celestial::of(&which(&object.read(), DVec3::from_array(at))?));
+        Ok(Status::Ok)
+    })
+}
+
+/// Light that arrives at places of the host's world, at most wk_caps.max_batch of them. `position_size` and `light_size`
+/// are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_light(
+    context: *const wk_context,
+    positions_m: *const [f64; 3],
+    count: u32,
+    position_size: u32,
+    lights: *mut wk_ground_light,
+    light_size: u32,
+) -> wk_status {
+    guard("wk_context_get_light", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
+        let room = input::Room::new("lights", "light_size", lights, count, light_size)?;
+        let context = object.read();
+        let answer = |i: usize| {
+            // SAFETY: `i` is below the count that the caller promises.
+            let at = unsafe { position(&format!("positions_m[{i}]"), places.at(i))? };
+            Ok(wk_ground_light::of(&context.light_at(DVec3::from_array(at))?.arriving))
+        };
+        let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
+        for (i, light) in answers.iter().enumerate() {
+            // SAFETY: as above.
+            unsafe { room.write(i, light) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Transmittance and visibility between pairs of points, at most wk_caps.max_batch of them: air, haze, fog and what
+/// falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_between(
+    context: *const wk_context,
+    segments: *const wk_segment,
+    count: u32,
+    segment_size: u32,
+    between: *mut wk_between,
+    between_size: u32,
+) -> wk_status {
+    guard("wk_context_get_between", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let pairs = input::Places::new("segments", "segment_size", segments, count, segment_size, MAX_BATCH)?;
+        let room = input::Room::new("between", "between_size", between, count, between_size)?;
+        let context = object.read();
+        let answer = |i: usize| {
+            let pair = pairs.at(i);
+            // SAFETY: `i` is below the count that the caller promises.
+            let (from, to) = unsafe {
+                let part = |name: &str, p: *const [f64; 3]| position(&format!("segments[{i}].{name}"), p);
+                (part("from_m", &raw const (*pair).from_m)?, part("to_m", &raw const (*pair).to_m)?)
+            };
+            let between = context.between(DVec3::from_array(from), DVec3::from_array(to));
+            Ok(wk_between::of(&between.map_err(|e| e.within(&format!("segments[{i}]: ")))?))
+        };
+        let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
+        for (i, between) in answers.iter().enumerate() {
+            // SAFETY: as above.
+            unsafe { room.write(i, between) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,
+/// and waits for the GPU once after every change of the air.
+/// Thread: as wk_view_record.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_ambient(
+    context: *mut wk_context,
+    position_m: *const [f64; 3],
+    out_ambient: *mut wk_ambient,
+) -> wk_status {
+    guard("wk_context_get_ambient", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let (at, place) =
+            unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ambient", out_ambient)?) };
+        object.cell.drain();
+        let sh = object.read().ambient_at(DVec3::from_array(at))?;
+        let mut answer = wk_ambient::INIT;
+        for (to, from) in answer.sh9.iter_mut().zip(sh.as_flattened()) {
+            *to = f64::from(*from);
+        }
+        place.set(&answer);
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,109 @@
+//! How the sky is drawn
+//!
+//! Four models share the same look-ups. The default holds within 3 % of converged multiple scattering; the others are
+//! for comparison and for slow machines. A wk_sky_settings goes into wk_context_desc.next.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    layout::{init_struct, struct_size},
+    status::*,
+};
+use crate::sky::{SkyModel, SkySettings};
+
+include!(concat!(env!("OUT_DIR"), "/init_sky.rs"));
+
+/// The ways to draw one sky.
+pub type wk_sky_model = u32;
+/// Light scattered more than once keeps its direction, order by order.
+pub const WK_SKY_DIRECTIONAL: wk_sky_model = 0;
+/// Light scattered more than once is the same in all directions (Hillaire 2020): -3 to -6 % near the horizon, +3 % at
+/// the zenith; built in a tenth of the time.
+pub const WK_SKY_ISOTROPIC: wk_sky_model = 1;
+/// Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008); 20 to 50 % of the light is
+/// missing. How older systems drew.
+pub const WK_SKY_TABLE_3D: wk_sky_model = 2;
+/// As the default, but light scattered once is marched in every pixel: what the tables are measured against.
+pub const WK_SKY_BRUTE_FORCE: wk_sky_model = 3;
+
+/// Numbers of the sky's tables. An extension: put it into wk_context_desc.next.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_sky_settings {
+    /// sizeof(wk_sky_settings) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_SKY_SETTINGS.
+    pub struct_type: wk_struct_type,
+    /// The next extension. Default NULL.
+    pub next: *const c_void,
+    /// Which model draws. Default WK_SKY_DIRECTIONAL.
+    pub model: wk_sky_model,
+    /// Orders of scattering that are carried one by one; the rest is a geometric series. Range [2, 16], default 5.
+    pub orders: u32,
+    /// Sun angles of the planet's tables. Range [16, 128], default 64.
+    pub suns: u32,
+    /// Altitudes of the planet's tables. Range [8, 64], default 20.
+    pub altitudes: u32,
+    /// Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40.
+    pub sky_azimuths: u32,
+    /// Rows of an observer's sky above the horizon. Range [8, 256], default 80.
+    pub sky_above: u32,
+    /// Rows of an observer's sky below the horizon. Range [8, 256], default 40.
+    pub sky_below: u32,
+    /// Distances of the air in front of things. Range [4, 64], default 16.
+    pub air_slices: u32,
+    /// Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64.
+    pub march_cells: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_sky_settings {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_SKY_SETTINGS,
+        next: null(),
+        model: WK_SKY_DIRECTIONAL,
+        orders: 5,
+        suns: 64,
+        altitudes: 20,
+        sky_azimuths: 40,
+        sky_above: 80,
+        sky_below: 40,
+        air_slices: 16,
+        march_cells: 64,
+        reserved0: 0,
+    };
+
+    /// As the Rust side takes it.
+    pub(super) fn to_rust(self) -> SkySettings {
+        SkySettings {
+            model: match self.model {
+                WK_SKY_ISOTROPIC => SkyModel::IsotropicTables,
+                WK_SKY_TABLE_3D => SkyModel::Table3d,
+                WK_SKY_BRUTE_FORCE => SkyModel::BruteForce,
+                _ => SkyModel::Directional,
+            },
+            orders: self.orders,
+            suns: self.suns,
+            altitudes: self.altitudes,
+            sky_azimuths: self.sky_azimuths,
+            sky_above: self.sky_above,
+            sky_below: self.sky_below,
+            air_slices: self.air_slices,
+            march_cells: self.march_cells,
+            // The rest are the sky's own affair, and change with how it is computed.
+            ..SkySettings::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_those_of_the_sky() {
+        assert_eq!(wk_sky_settings::INIT.to_rust(), SkySettings::default());
+    }
+}

@@ -1,0 +1,191 @@
+//! Queries: what they answer agrees with the Rust side, lists are checked before anything is written.
+
+use std::ptr::{null, null_mut};
+
+use welkin::capi::{conditions::*, fog_law::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*};
+
+use super::world::{World, init, message};
+
+const EYE: [f64; 3] = [0.0, 0.0, 2.0];
+
+#[track_caller]
+fn refused(status: wk_status, wanted: &str) {
+    assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{wanted}: {}", message());
+    assert!(message().contains(wanted), "{wanted}: {}", message());
+}
+
+#[test]
+fn conditions_follow_the_weather_and_its_transition() {
+    let world = World::new();
+    let layers = [
+        wk_cloud_layer { cover: 0.5, base_m: 900.0, ..init("wk_cloud_layer") },
+        wk_cloud_layer { cover: 1.0, base_m: 3000.0, ..init("wk_cloud_layer") },
+    ];
+    let rain = wk_weather {
+        visibility_m: 4000.0,
+        precipitation_kind: WK_PRECIPITATION_RAIN,
+        precipitation_rate_mm_h: 5.0,
+        wind_speed_m_s: 8.0,
+        wind_from_deg: 270.0,
+        clouds: layers.as_ptr(),
+        cloud_count: 2,
+        ..init("wk_weather")
+    };
+    let at = |time_s: f64| {
+        let mut conditions = init::<wk_conditions>("wk_conditions");
+        // SAFETY: live pointers.
+        let status = unsafe { wk_context_get_conditions(world.context, &EYE, time_s, &mut conditions) };
+        assert_eq!(status, WK_OK, "{}", message());
+        conditions
+    };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_context_set_weather(world.context, &rain, 100.0, 60.0) }, WK_OK, "{}", message());
+    assert!((at(0.0).visibility_m / 40_000.0 - 1.0).abs() < 1e-6);
+    assert_eq!(at(0.0).rain_mm_h, 0.0);
+    let (half, whole) = (at(130.0), at(200.0));
+    assert!(half.rain_mm_h > 1.0 && half.rain_mm_h < whole.rain_mm_h);
+    assert!((whole.visibility_m / 4000.0 - 1.0).abs() < 1e-6 && (whole.wind_east_m_s - 8.0).abs() < 1e-9);
+    let mut slabs = [wk_cloud_slab { ..unsafe { std::mem::zeroed() } }; 16];
+    let size = size_of::<wk_cloud_slab>() as u32;
+    let mut count = 0;
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        let get = |room: *mut wk_cloud_slab, capacity, count: *mut u32| {
+            wk_context_get_cloud_slabs(world.context, &EYE, 200.0, room, capacity, size, count)
+        };
+        assert_eq!(get(null_mut(), 0, &mut count), WK_OK);
+        assert!(count >= 2);
+        refused(get(slabs.as_mut_ptr(), 1, &mut count), "capacity must be at least");
+        assert_eq!(slabs[0].cover, 0.0);
+        assert_eq!(get(slabs.as_mut_ptr(), 16, &mut count), WK_OK);
+        assert!(slabs[..count as usize].iter().all(|s| s.cover > 0.0 && s.optical_depth > 0.0));
+        let status = wk_context_get_cloud_slabs(world.context, &EYE, 0.0, slabs.as_mut_ptr(), 16, 8, &mut count);
+        refused(status, "slab_size must be at least 64");
+        let mut c = init::<wk_conditions>("wk_conditions");
+        refused(wk_context_get_conditions(world.context, null(), 0.0, &mut c), "position_m must not be NULL");
+        refused(
+            wk_context_get_conditions(world.context, &[0.0, f64::NAN, 0.0], 0.0, &mut c),
+            "position_m[1] must be finite",
+        );
+        refused(wk_context_get_conditions(world.context, &EYE, f64::NAN, &mut c), "time_s must be finite");
+        assert_eq!(c.visibility_m, 0.0, "nothing is written");
+    }
+}
+
+#[test]
+fn the_sun_is_where_the_host_puts_it_or_where_the_almanac_has_it() {
+    let world = World::new();
+    let mut sun = init::<wk_celestial>("wk_celestial");
+    let mut moon = sun;
+    let given = wk_given_direction { azimuth_deg: 200.0, elevation_deg: 30.0, ..init("wk_given_direction") };
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_get_sun(world.context, &EYE, &mut sun), WK_OK);
+        // 10:00 UTC on midsummer at 50 N, 10 E: high in the south-east.
+        assert!((50.0..64.0).contains(&sun.elevation_deg) && (120.0..175.0).contains(&sun.azimuth_deg));
+        assert!(sun.apparent_elevation_deg > sun.elevation_deg && sun.illuminance_lux[1] > 1e5);
+        assert_eq!(wk_context_set_sun(world.context, &given), WK_OK);
+        assert_eq!(wk_context_get_sun(world.context, &EYE, &mut sun), WK_OK);
+        assert!((sun.azimuth_deg - 200.0).abs() < 1e-9 && (sun.elevation_deg - 30.0).abs() < 1e-9);
+        assert_eq!(wk_context_get_moon(world.context, &EYE, &mut moon), WK_OK);
+        assert!(moon.illuminance_lux[1] < 1.0 && (0.0..=1.0).contains(&moon.lit));
+        refused(wk_context_get_sun(world.context, null(), &mut sun), "position_m must not be NULL");
+    }
+}
+
+#[test]
+fn batches_answer_all_or_nothing() {
+    let world = World::new();
+    let places = [EYE, [0.0, 0.0, 2000.0], [1e4, -2e4, 10.0]];
+    let zero = wk_ground_light { sun_lux: [0.0; 3], moon_lux: [0.0; 3], sky_lux: [0.0; 3], total_lux: 0.0 };
+    let mut lights = [zero; 3];
+    let (step, size) = (24, size_of::<wk_ground_light>() as u32);
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        let get = |places: &[[f64; 3]], lights: &mut [wk_ground_light]| {
+            let count = places.len() as u32;
+            wk_context_get_light(world.context, places.as_ptr(), count, step, lights.as_mut_ptr(), size)
+        };
+        assert_eq!(get(&places, &mut lights), WK_OK, "{}", message());
+        assert!(lights.iter().all(|l| l.total_lux > 1e4 && l.total_lux < 2e5), "{:?}", lights.map(|l| l.total_lux));
+        let mut untouched = [zero; 3];
+        let bad = [EYE, [0.0, 0.0, f64::INFINITY], EYE];
+        refused(get(&bad, &mut untouched), "positions_m[1][2] must be finite, got inf");
+        assert_eq!(untouched[0].total_lux, 0.0);
+        let many = wk_context_get_light(world.context, places.as_ptr(), 70_000, step, lights.as_mut_ptr(), size);
+        refused(many, "positions_m's count must be at most 65536");
+        let narrow = wk_context_get_light(world.context, places.as_ptr(), 3, 16, lights.as_mut_ptr(), size);
+        refused(narrow, "position_size must be at least 24 and a multiple of 8, got 16");
+        let narrow = wk_context_get_light(world.context, places.as_ptr(), 3, step, lights.as_mut_ptr(), 8);
+        refused(narrow, "light_size must be at least 80");
+        let none = wk_context_get_light(world.context, null(), 3, step, lights.as_mut_ptr(), size);
+        refused(none, "positions_m must not be NULL");
+        let none = wk_context_get_light(world.context, places.as_ptr(), 3, step, null_mut(), size);
+        refused(none, "lights must not be NULL");
+        assert_eq!(wk_context_get_light(world.context, null(), 0, 0, null_mut(), 0), WK_OK);
+    }
+}
+
+#[test]
+fn visibility_between_points_is_that_of_the_weather() {
+    let world = World::new();
+    let fog = wk_weather { visibility_m: 400.0, fog_kind: WK_FOG_FOG, relative_humidity: 1.0, ..init("wk_weather") };
+    let segment = |distance: f64| wk_segment { from_m: EYE, to_m: [0.0, distance, 2.0] };
+    let segments = [segment(400.0), segment(100.0), segment(5.0)];
+    let mut between = [wk_between { transmittance: [0.0; 3], visibility_m: 0.0 }; 3];
+    let sizes = (size_of::<wk_segment>() as u32, size_of::<wk_between>() as u32);
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        assert_eq!(wk_context_set_weather(world.context, &fog, 0.0, 0.0), WK_OK, "{}", message());
+        let get = |segments: &[wk_segment], between: &mut [wk_between]| {
+            let count = segments.len() as u32;
+            wk_context_get_between(world.context, segments.as_ptr(), count, sizes.0, between.as_mut_ptr(), sizes.1)
+        };
+        assert_eq!(get(&segments, &mut between), WK_OK, "{}", message());
+        // At the visibility 5 % is left (the haze thins a little with height, so not exactly).
+        assert!((between[0].transmittance[1] - 0.05).abs() < 1e-3, "{:?}", between[0].transmittance);
+        assert!((between[2].visibility_m / 400.0 - 1.0).abs() < 0.01, "{}", between[2].visibility_m);
+        assert!(between[0].transmittance[1] < between[1].transmittance[1]);
+        refused(get(&[segment(0.0)], &mut between), "segments[0]: to must be at least a millimetre");
+        refused(get(&[segment(f64::NAN)], &mut between), "segments[0].to_m[1] must be finite");
+    }
+}
+
+#[test]
+fn ambient_light_is_asked_for_with_a_place() {
+    let world = World::new();
+    let mut ambient = init::<wk_ambient>("wk_ambient");
+    // SAFETY: live pointers.
+    unsafe {
+        refused(wk_context_get_ambient(world.context, null(), &mut ambient), "position_m must not be NULL");
+        refused(wk_context_get_ambient(world.context, &EYE, null_mut()), "out_ambient must not be NULL");
+        assert_eq!(wk_context_get_ambient(world.context, &EYE, &mut ambient), WK_OK, "{}", message());
+    }
+    assert!(ambient.sh9.iter().all(|v| v.is_finite()));
+}
+
+#[test]
+fn fog_laws_of_older_systems_are_checked_and_say_how_far_they_reach() {
+    let world = World::new();
+    let linear = wk_fog_law { curve: WK_FOG_CURVE_LINEAR, start_m: 100.0, end_m: 900.0, ..init("wk_fog_law") };
+    let mut distance = 0.0;
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_set_fog_law(world.context, &linear), WK_OK, "{}", message());
+        assert_eq!(wk_context_set_fog_law(world.context, null()), WK_OK);
+        let wrong = wk_fog_law { end_m: 50.0, ..linear };
+        refused(wk_context_set_fog_law(world.context, &wrong), "fog_law.end_m must be above fog_law.start_m");
+        let wrong = wk_fog_law { has: WK_FOG_LAW_HAS_COLOR, color: [0.0, -1.0, 0.0], ..linear };
+        refused(wk_context_set_fog_law(world.context, &wrong), "fog_law.color must be in");
+        assert_eq!(wk_fog_law_cull_distance(&linear, &mut distance), WK_OK);
+        assert!((distance - (900.0 - 800.0 / 255.0)).abs() < 1e-9);
+        assert_eq!(wk_fog_law_cull_distance(&init("wk_fog_law"), &mut distance), WK_OK);
+        assert!(distance.is_infinite());
+        assert_eq!(wk_visibility_cull_distance(1000.0, &mut distance), WK_OK);
+        assert!((distance - 1000.0 * 255_f64.ln() / 20_f64.ln()).abs() < 1e-6);
+        refused(wk_visibility_cull_distance(f64::NAN, &mut distance), "visibility_m must be finite");
+        refused(wk_visibility_cull_distance(0.5, &mut distance), "visibility_m must be in [1, 1000000] m");
+        refused(wk_visibility_cull_distance(10.0, null_mut()), "out_distance_m must not be NULL");
+        refused(wk_fog_law_cull_distance(null(), &mut distance), "fog_law must not be NULL");
+    }
+}
