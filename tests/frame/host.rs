@@ -8,6 +8,7 @@ use welkin::{
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
     scene::Camera,
+    sky::SkySettings,
 };
 
 /// A device, a context and one view, with targets of `size`.
@@ -43,11 +44,27 @@ pub fn camera() -> Camera {
     Camera::look_to(DVec3::new(0.0, 0.0, 2500.0), DVec3::Y, DVec3::Z, 1.0, 160.0 / 90.0, 0.1)
 }
 
+/// A coarse sky, built in an instant: these tests ask how frames are composed, not how right the sky is.
+pub fn coarse() -> ContextDesc {
+    let sky = SkySettings {
+        orders: 2,
+        suns: 24,
+        altitudes: 8,
+        zeniths: 6,
+        azimuths: 4,
+        rule_zeniths: 4,
+        rule_azimuths: 4,
+        build_panels: 1,
+        ..SkySettings::default()
+    };
+    ContextDesc { sky, ..ContextDesc::default() }
+}
+
 impl Host {
     pub fn new(format: wgpu::TextureFormat) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
-        let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
+        let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
         let view = View::new(&context).unwrap();
         let color = texture(&device, format, 1);

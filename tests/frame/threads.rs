@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use welkin::{
-    context::{Context, ContextDesc, GivenDirection},
+    context::{Context, GivenDirection},
     frame::{Exposure, Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
 };
 
-use crate::host::{camera, texture};
+use crate::host::{camera, coarse, texture};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const FRAMES: u64 = 8;
 
 fn context(device: &Arc<Device>, shared: &Arc<Shared>, elevation_deg: f64) -> Context {
-    let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default()).unwrap();
+    let mut context = Context::new(device.clone(), shared.clone(), coarse()).unwrap();
     context.set_sun(Some(GivenDirection { azimuth_deg: 30.0, elevation_deg })).unwrap();
     context
 }
