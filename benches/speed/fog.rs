@@ -206,11 +206,11 @@ pub fn run() -> Fallible<()> {
     let (copy, all) = (bench.pipeline("copy", &[]), bench.pipeline("fogged", &[]));
     let clear = FogModel::new(&Law::Clear, &light, &view)?;
     let base = bench.time(&copy, &clear)?;
-    let depth = rays()?.constant();
+    let depth = ("DEPTH_KINDS", f64::from(rays()?.depth_kinds()));
     println!("fog, 640 x 360 ({}): copying pass {base:.2} ms", bench.device.caps().adapter_name);
     for (name, law) in laws() {
         let model = FogModel::new(&law, &light, &view)?;
-        let constants = [&model.constants()[..], &[depth]].concat();
+        let constants = [&model.variant().constants()[..], &[depth]].concat();
         let narrow = bench.time(&bench.pipeline("fogged", &constants), &model)?;
         let wide = bench.time(&all, &model)?;
         println!(

@@ -8,7 +8,7 @@
 // it). So air lies in front of a far fog bank and behind the fog round the camera, without a seam between.
 //!include "common/depth.wgsl"
 
-// What a pipeline can draw; FogModel::constants() gives the least that a model needs. Real GPUs step over what the
+// What a pipeline can draw; FogVariant::constants() gives them. Real GPUs step over what the
 // uniform does not ask for, software drivers execute it: there a narrow pipeline is several times as fast.
 // Bit k: kind k of FogUniform.
 override FOG_KINDS: u32 = 63u;

@@ -29,14 +29,14 @@ pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
     } else {
         Phase::Droplets { diameter_um: 15.0 }
     };
-    let patches = (f.coverage < 0.999).then_some(Patches {
-        amount: (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0),
-        size_m: f.patch_size_m.clamp(5.0, 1e5),
-        seed,
-        drift_m: [0.0; 2],
-    });
+    let amount = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
+    // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part of
+    // the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
+    let inside = 1.0 - amount * f.coverage.max(0.01).ln();
+    let patches =
+        (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m: [0.0; 2] });
     Some(FogLayer {
-        extinction_per_m: f.extinction_per_m.min(crate::fog::MAX_EXTINCTION_PER_M),
+        extinction_per_m: (f.extinction_per_m / inside).min(crate::fog::MAX_EXTINCTION_PER_M),
         angstrom: f.angstrom_exponent.clamp(-1.0, 4.0),
         albedo: [f.single_scattering_albedo.clamp(0.0, 1.0); 3],
         profile,
@@ -65,7 +65,6 @@ impl Scene {
             map_m: self.map_m,
             planet_radius_m,
             ground_m: self.conditions.air.station_altitude_m.min(self.place.altitude_m),
-            ..Viewpoint::flat(0.0)
         };
         FogModel::new(law.unwrap_or(&own), &light, &view)
     }

@@ -47,7 +47,7 @@ pub use queries::{
     visibility_between_m,
 };
 pub use reference::{FogKind, FogModel, FogSample};
-pub use uniforms::FogUniform;
+pub use uniforms::{FogUniform, FogVariant};
 
 /// Contrast left at the meteorological optical range (WMO-No. 8).
 pub const CONTRAST_THRESHOLD: f64 = 0.05;

@@ -182,19 +182,16 @@ impl FogModel {
         }
     }
 
-    /// Values of the `override` constants with which a pipeline that includes `fog/lookup.wgsl` draws this model and
-    /// no more than it needs.
-    pub fn constants(&self) -> [(&'static str, f64); 5] {
-        let flag = |b: bool| f64::from(u8::from(b));
+    /// The least that a pipeline must be able to do to draw this model.
+    pub fn variant(&self) -> FogVariant {
         let even = |v: DVec3| v.x == v.y && v.y == v.z;
-        let lifted = self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M;
-        [
-            ("FOG_KINDS", f64::from(1u32 << self.kind as u32)),
-            ("FOG_ABSORBING", flag(self.absorbing)),
-            ("FOG_PATCHES", flag(self.patch_amount > 0.0)),
-            ("FOG_NEUTRAL", flag(even(self.ratio) && even(self.scaling) && even(self.k))),
-            ("FOG_LIFTED", flag(lifted)),
-        ]
+        FogVariant {
+            kinds: 1 << self.kind as u32,
+            absorbing: self.absorbing,
+            patches: self.patch_amount > 0.0,
+            neutral: even(self.ratio) && even(self.scaling) && even(self.k),
+            lifted: self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M,
+        }
     }
 
     /// The form the shaders read (`FogUniform` of `fog/lookup.wgsl`).
@@ -235,6 +232,40 @@ impl FogModel {
             fall: term(&self.fall),
             patch_waves: self.patch_waves.map(|(k, p)| [k.x as f32, k.y as f32, k.z as f32, p as f32]),
         }
+    }
+}
+
+/// What a pipeline that includes `fog/lookup.wgsl` can draw. A GPU steps over what the uniform does not ask for, so one
+/// pipeline for [`FogVariant::ALL`] serves it and need never be exchanged; software drivers execute every branch and
+/// are three times as fast with the least that a model needs ([`FogModel::variant`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FogVariant {
+    /// Bit k: kind k of [`FogKind`].
+    pub kinds: u32,
+    /// Layers that absorb.
+    pub absorbing: bool,
+    /// Layers in patches.
+    pub patches: bool,
+    /// Only layers whose channels are alike.
+    pub neutral: bool,
+    /// Slabs with a lower edge.
+    pub lifted: bool,
+}
+
+impl FogVariant {
+    /// Everything.
+    pub const ALL: Self = Self { kinds: 63, absorbing: true, patches: true, neutral: false, lifted: true };
+
+    /// Values of the shader's `override` constants.
+    pub fn constants(&self) -> [(&'static str, f64); 5] {
+        let flag = |b: bool| f64::from(u8::from(b));
+        [
+            ("FOG_KINDS", f64::from(self.kinds)),
+            ("FOG_ABSORBING", flag(self.absorbing)),
+            ("FOG_PATCHES", flag(self.patches)),
+            ("FOG_NEUTRAL", flag(self.neutral)),
+            ("FOG_LIFTED", flag(self.lifted)),
+        ]
     }
 }
 

@@ -8,7 +8,7 @@ use std::{
 use super::{target::Stages, uniform::FrameUniform};
 use crate::{
     error::Result,
-    fog::FogUniform,
+    fog::{FogUniform, FogVariant},
     gpu::{
         Device,
         pass::{self, FullscreenDesc},
@@ -24,7 +24,10 @@ pub(super) struct Variant {
     pub samples: u32,
     pub has_depth: bool,
     pub has_mask: bool,
-    pub fog: bool,
+    /// What the fog must be able to draw, if there is any.
+    pub fog: Option<FogVariant>,
+    /// Kinds of depth that are read ([`ViewRays::depth_kinds`](crate::scene::ViewRays::depth_kinds)).
+    pub depth_kinds: u32,
     /// The sky is marched per pixel instead of looked up.
     pub march: bool,
 }
@@ -169,6 +172,17 @@ impl Composite {
             let multi = variant.samples > 1;
             let layouts = self.layouts(multi);
             let yes = |b: bool| f64::from(u8::from(b));
+            let own = [
+                ("BACKGROUND", yes(variant.stages.has(Stages::BACKGROUND))),
+                ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
+                ("TONE", yes(variant.stages.has(Stages::TONE))),
+                ("SKY_MARCH", yes(variant.march)),
+                ("FOG", yes(variant.fog.is_some())),
+                ("DEPTH_KINDS", f64::from(variant.depth_kinds)),
+                ("HAS_DEPTH", yes(variant.has_depth)),
+                ("HAS_MASK", yes(variant.has_mask)),
+            ];
+            let constants = [&own[..], &variant.fog.unwrap_or(FogVariant::ALL).constants()].concat();
             let pipeline = pass::fullscreen(
                 device,
                 &FullscreenDesc {
@@ -180,15 +194,7 @@ impl Composite {
                         blend: None,
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
-                    constants: &[
-                        ("BACKGROUND", yes(variant.stages.has(Stages::BACKGROUND))),
-                        ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
-                        ("TONE", yes(variant.stages.has(Stages::TONE))),
-                        ("SKY_MARCH", yes(variant.march)),
-                        ("FOG", yes(variant.fog)),
-                        ("HAS_DEPTH", yes(variant.has_depth)),
-                        ("HAS_MASK", yes(variant.has_mask)),
-                    ],
+                    constants: &constants,
                     samples: variant.samples,
                 },
             )?;

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     context::{Context, Scene},
     error::{Error, Result, Status},
-    fog::{FogKind, FogUniform},
+    fog::{FogKind, FogUniform, FogVariant},
     gpu::Device,
     scene::{Camera, ViewRays},
     sky::SkyVolume,
@@ -244,7 +244,10 @@ impl View {
             samples: color.sample_count(),
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
-            fog: fog.kind != FogKind::Clear,
+            // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
+            fog: (fog.kind != FogKind::Clear)
+                .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
+            depth_kinds: rays.depth_kinds(),
             march: context.marches_sky(),
         };
         if variant.stages == Stages(0) {
@@ -255,7 +258,7 @@ impl View {
         self.report.exposure = exposure;
         let block = uniform(frame, scene, rays, color, exposure, context, tone);
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
-        if variant.fog {
+        if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
@@ -273,7 +276,7 @@ impl View {
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
-            let variant = (variant.samples > 1, variant.fog, variant.march);
+            let variant = (variant.samples > 1, variant.fog.is_some(), variant.march);
             froxels.draw(&self.device, &self.shared, encoder, variant, &groups)?;
             self.report.passes += 1;
         }

@@ -309,10 +309,10 @@ impl ViewRays {
         2.0 * self.direction[2].length() / (self.direction[0].length() * f64::from(height.max(1)))
     }
 
-    /// The value of the `override` constant `DEPTH_KINDS` with which a pipeline reads this camera's depth and no other
-    /// kind.
-    pub fn constant(&self) -> (&'static str, f64) {
-        ("DEPTH_KINDS", f64::from(1u32 << self.kind))
+    /// Value of the shaders' `override` constant `DEPTH_KINDS` with which a pipeline reads this camera's depth and no
+    /// other kind.
+    pub fn depth_kinds(&self) -> u32 {
+        1 << self.kind
     }
 
     /// The form the shaders read (`DepthUniform` of `common/depth.wgsl`).

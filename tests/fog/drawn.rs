@@ -28,7 +28,14 @@ fn drawn(m: &FogModel, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
 /// The same by the pipeline that can do no more than the model needs.
 fn drawn_narrow(m: &FogModel, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let uniform = m.uniform();
-    gpu::evaluate_with("fog/lookup.wgsl", BODY, "FogUniform", bytemuck::bytes_of(&uniform), inputs, &m.constants())
+    gpu::evaluate_with(
+        "fog/lookup.wgsl",
+        BODY,
+        "FogUniform",
+        bytemuck::bytes_of(&uniform),
+        inputs,
+        &m.variant().constants(),
+    )
 }
 
 fn twin(m: &FogModel, i: [f32; 4]) -> [f64; 4] {
