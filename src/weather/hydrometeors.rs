@@ -22,6 +22,17 @@ pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     libm::exp(C[0] + x * (C[1] + x * (C[2] + x * C[3])) + slope * (log_rate - x))
 }
 
+/// Rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by bisection, held to
+/// \[0, 500\].
+pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 500.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if rain_extinction_per_m(middle) < extinction_per_m { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
 /// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm and
 /// 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h.
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
@@ -146,6 +157,10 @@ mod tests {
             let fit = rain_extinction_per_m(r);
             assert!((fit / truth - 1.0).abs() < 0.007, "{r} mm/h: {fit} against {truth}");
         }
+        for r in [0.001, 0.3, 5.0, 120.0] {
+            assert!((rain_rate_mm_h(rain_extinction_per_m(r)) / r - 1.0).abs() < 1e-9);
+        }
+        assert!(rain_rate_mm_h(0.0) < 1e-12);
         assert_eq!(rain_extinction_per_m(0.0), 0.0);
         assert!(rain_extinction_per_m(1e-9) > 0.0 && rain_extinction_per_m(1e-9) < 1e-8);
     }

@@ -14,6 +14,7 @@ mod kinds;
 mod metar;
 mod model;
 mod particles;
+mod presets;
 mod surface;
 pub mod timeline;
 mod validate;

@@ -35,6 +35,18 @@ fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
     }
 }
 
+/// Bounds of rain's classes, mm/h: steady (AMS) and convective (WMO-No. 8).
+const RAIN_CLASSES_MM_H: [[(f64, f64); 3]; 2] =
+    [[(0.1, 2.5), (2.5, 7.6), (7.6, 50.0)], [(0.1, 2.5), (2.5, 10.0), (10.0, 50.0)]];
+
+/// Rate of rain, mm/h: the class's middle, or less where so much rain could not be seen through as far as the report says, but
+/// not below the class.
+fn rain_rate_mm_h(kind: PrecipitationKind, intensity: Intensity, convective: bool, extinction_per_m: f64) -> f64 {
+    let (lo, hi) = RAIN_CLASSES_MM_H[usize::from(convective)][class(intensity)];
+    let middle = class_rate_mm_h(kind, convective)[class(intensity)];
+    middle.min(hydrometeors::rain_rate_mm_h(extinction_per_m)).clamp(lo, hi)
+}
+
 /// Bounds of snowfall's classes in melted water, mm/h (Rasmussen et al. 1999).
 const SNOW_CLASSES_MM_H: [(f64, f64); 3] = [(0.05, 1.0), (1.0, 2.5), (2.5, 10.0)];
 
@@ -102,6 +114,9 @@ fn precipitation(p: &Parsed, w: &Weather) -> Precipitation {
     let shared = w.fog.kind != FogKind::None || w.lofted.kind != LoftedKind::None;
     let rate_mm_h = match kind {
         PrecipitationKind::Snow => snow_rate_mm_h(g.intensity, left, shared),
+        PrecipitationKind::Rain | PrecipitationKind::FreezingRain => {
+            rain_rate_mm_h(kind, g.intensity, showers || thunder, left)
+        }
         kind => class_rate_mm_h(kind, showers || thunder)[class(g.intensity)],
     };
     let hail = p.weather.iter().filter(here).any(|g| g.phenomena.iter().any(|x| matches!(x, P::Hail | P::SmallHail)));
