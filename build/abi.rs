@@ -158,7 +158,7 @@ fn kind(model: &Model, ty: &syn::Type) -> (String, usize) {
 
 fn plain_kind(model: &Model, name: &str) -> String {
     let simple = match name {
-        "u8" => "U8",
+        "u8" | "c_char" => "U8",
         "u16" => "U16",
         "u32" => "U32",
         "i32" => "I32",
@@ -230,10 +230,8 @@ pub fn write_table(model: &Model) -> String {
     out.push_str(&write_inits_by_name(model));
     let list = |f: &dyn Fn(&Section) -> Vec<String>| model.sections.iter().flat_map(f).collect::<Vec<_>>().join(", ");
     let structs = list(&|s| s.structs.iter().map(|x| format!("&{}", x.name.to_uppercase())).collect());
-    let enums = list(&|s| s.enums.iter().map(|x| format!("&{}", x.name.to_uppercase())).collect());
     let functions = list(&|s| s.all_functions().iter().map(|f| format!("\"{f}\"")).collect());
     let _ = writeln!(out, "pub(crate) static STRUCTS: &[&StructInfo] = &[{structs}];");
-    let _ = writeln!(out, "pub(crate) static ENUMS: &[&EnumInfo] = &[{enums}];");
     let _ = writeln!(out, "pub(crate) static FUNCTIONS: &[&str] = &[{functions}];");
     out
 }

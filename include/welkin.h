@@ -219,6 +219,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CELESTIAL 25
 /** wk_ambient */
 #define WK_STRUCT_TYPE_AMBIENT 26
+/** wk_metar */
+#define WK_STRUCT_TYPE_METAR 27
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -1689,6 +1691,80 @@ WK_API wk_status wk_weather_init(wk_weather *out, uint32_t struct_size);
 WK_API
 wk_status wk_weather_overrides_init(wk_weather_overrides *out,
                                     uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Weather reports
+ *
+ * A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
+ * ====================================================================================================
+ */
+
+/** What kind of report it is. */
+typedef uint32_t wk_metar_flags;
+
+/** A special report (SPECI). */
+#define WK_METAR_SPECIAL 1
+/** Made without an observer (AUTO). */
+#define WK_METAR_AUTOMATIC 2
+/** A correction (COR). */
+#define WK_METAR_CORRECTED 4
+/** The report says only that visibility is at least so much (CAVOK, 9999, 10SM). */
+#define WK_METAR_VISIBILITY_IS_MINIMUM 8
+
+/** Where and when a report was made. */
+typedef struct wk_metar {
+    /** sizeof(wk_metar) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_METAR. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** ICAO location indicator, NUL-terminated. */
+    char station[8];
+    /** Day of the month, UTC. */
+    uint32_t day;
+    /** Hour, UTC. */
+    uint32_t hour;
+    /** Minute, UTC. */
+    uint32_t minute;
+    /** What kind of report it is. */
+    wk_metar_flags flags;
+} wk_metar;
+
+/** Every field of `wk_metar` at its default. */
+#define WK_METAR_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_metar), \
+    /* struct_type */ WK_STRUCT_TYPE_METAR, \
+    /* next */ NULL, \
+    /* station */ { 0, 0, 0, 0, 0, 0, 0, 0 }, \
+    /* day */ 0, \
+    /* hour */ 0, \
+    /* minute */ 0, \
+    /* flags */ 0 \
+}
+
+/**
+ * Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`. Its cloud layers go to
+ * `layers`, which has room for `layer_capacity` of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 always
+ * suffice), and out_weather->clouds leads there: keep it as long as the weather. `out_metar` may be NULL.
+ * Thread: any.
+ * Errors: WK_ERROR_PARSE with line and column of the group at fault, what was expected there and what was found;
+ * WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+ */
+WK_API
+wk_status wk_weather_from_metar(const char *report,
+                                wk_cloud_layer *layers,
+                                uint32_t layer_capacity,
+                                uint32_t layer_size,
+                                wk_weather *out_weather,
+                                wk_metar *out_metar);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_METAR_INIT`. `struct_size` is `sizeof(wk_metar)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -49,6 +49,7 @@ pub(crate) struct StructInfo {
 /// An integer type with named values; for `flags` any union of them is accepted.
 #[derive(Debug)]
 pub(crate) struct EnumInfo {
+    #[allow(dead_code, reason = "for those who debug, and the tests")]
     pub name: &'static str,
     pub flags: bool,
     pub wide: bool,
@@ -79,7 +80,7 @@ const MAX_STRUCT_BYTES: usize = 64 * 1024;
 /// Longer chains are a cycle.
 const MAX_CHAIN: usize = 16;
 
-#[allow(clippy::all, clippy::undocumented_unsafe_blocks, reason = "written by build.rs")]
+#[allow(dead_code, clippy::all, clippy::undocumented_unsafe_blocks, reason = "written by build.rs")]
 mod table {
     use super::*;
     include!(concat!(env!("OUT_DIR"), "/abi_table.rs"));

@@ -3,7 +3,6 @@
 //! Each `pub mod` below is one section of `include/welkin.h`, in this order; its `//!` text is the section's article.
 //! `build.rs` writes the header from them (cbindgen does the declarations). The private modules are the machinery
 //! that every call shares.
-#![allow(dead_code, reason = "sections that use the rest of the machinery follow")]
 #![allow(non_camel_case_types, reason = "the names are C's")]
 #![allow(clippy::missing_safety_doc, reason = "the safety rules are the header's: see `manual`")]
 
@@ -25,6 +24,8 @@ pub mod vulkan;
 pub mod weather_kinds;
 
 pub mod weather;
+
+pub mod report;
 
 pub mod context;
 

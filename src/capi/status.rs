@@ -102,6 +102,8 @@ pub const WK_STRUCT_TYPE_CONDITIONS: wk_struct_type = 24;
 pub const WK_STRUCT_TYPE_CELESTIAL: wk_struct_type = 25;
 /// wk_ambient
 pub const WK_STRUCT_TYPE_AMBIENT: wk_struct_type = 26;
+/// wk_metar
+pub const WK_STRUCT_TYPE_METAR: wk_struct_type = 27;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -7,8 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, query::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, query::*, report::*, status::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -86,6 +86,19 @@ fn cases(world: &World) -> Vec<Case> {
             // A list of one: the stride leads nowhere and may be as large as the sizes that are tried.
             let weather = wk_weather { clouds: p.cast(), cloud_count: 1, cloud_stride: 2 << 20, ..init("wk_weather") };
             unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
+        }),
+        case("wk_metar", "out_metar", true, |p| {
+            let mut weather = init("wk_weather");
+            unsafe {
+                wk_weather_from_metar(
+                    c"LBBG 041600Z 12012KT CAVOK 20/10 Q1013".as_ptr(),
+                    null_mut(),
+                    0,
+                    0,
+                    &mut weather,
+                    p.cast(),
+                )
+            }
         }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {

@@ -2,7 +2,7 @@
 
 use std::ptr::null_mut;
 
-use welkin::capi::{context::*, status::*, timeline::*, weather::*, weather_kinds::*};
+use welkin::capi::{context::*, report::*, status::*, timeline::*, weather::*, weather_kinds::*};
 
 use super::world::{World, init, message};
 
@@ -165,5 +165,44 @@ fn a_saved_state_comes_back_whole_or_not_at_all() {
         assert_eq!(hash(&b), before);
         assert_eq!(wk_context_load(b.context, state.as_ptr().cast(), size), WK_OK, "{}", message());
         assert_eq!(hash(&a), hash(&b));
+    }
+}
+
+#[test]
+fn a_metar_report_comes_with_its_clouds_or_says_the_column() {
+    let world = World::new();
+    let report = c"METAR LBBG 041600Z AUTO 12012MPS 1400 R04/P1500N R22/P1500U +SN BKN022 OVC050 M04/M07 Q1020";
+    let mut weather = init::<wk_weather>("wk_weather");
+    let mut metar = init::<wk_metar>("wk_metar");
+    let mut layers = [init::<wk_cloud_layer>("wk_cloud_layer"); 16];
+    let size = size_of::<wk_cloud_layer>() as u32;
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        let read = |text: *const _, capacity, size, w: &mut wk_weather, m: &mut wk_metar, l: &mut [wk_cloud_layer]| {
+            wk_weather_from_metar(text, l.as_mut_ptr(), capacity, size, w, m)
+        };
+        let few = read(report.as_ptr(), 1, size, &mut weather, &mut metar, &mut layers);
+        assert_eq!(few, WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("layer_capacity must be at least 2"), "{}", message());
+        assert_eq!((weather.visibility_m, metar.day, layers[0].cover), (40_000.0, 0, 0.0), "nothing is written");
+        let narrow = read(report.as_ptr(), 16, 12, &mut weather, &mut metar, &mut layers);
+        assert_eq!(narrow, WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("layer_size must be sizeof(wk_cloud_layer)"), "{}", message());
+        let wrong = read(c"METAR LBBG 041600Z 12012QQQ".as_ptr(), 16, size, &mut weather, &mut metar, &mut layers);
+        assert_eq!(wrong, WK_ERROR_PARSE);
+        assert!(message().contains("column"), "{}", message());
+        assert_eq!(read(std::ptr::null(), 16, size, &mut weather, &mut metar, &mut layers), WK_ERROR_INVALID_ARGUMENT);
+        assert_eq!(read(c"\xff".as_ptr(), 16, size, &mut weather, &mut metar, &mut layers), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("report must be UTF-8"), "{}", message());
+        let good = read(report.as_ptr(), 16, size, &mut weather, &mut metar, &mut layers);
+        assert_eq!(good, WK_OK, "{}", message());
+        assert_eq!((weather.visibility_m, weather.cloud_count, weather.temperature_c), (1400.0, 2, -4.0));
+        assert_eq!((weather.wind_speed_m_s, weather.wind_from_deg), (12.0, 120.0));
+        assert_eq!(weather.precipitation_kind, WK_PRECIPITATION_SNOW);
+        assert!(weather.precipitation_rate_mm_h > 0.0 && weather.has & WK_WEATHER_HAS_RUNWAY_VISUAL_RANGE != 0);
+        assert_eq!((metar.day, metar.hour, metar.flags & WK_METAR_AUTOMATIC), (4, 16, WK_METAR_AUTOMATIC));
+        assert_eq!(std::ffi::CStr::from_ptr(metar.station.as_ptr()).to_str(), Ok("LBBG"));
+        assert_eq!(weather.clouds, layers.as_ptr());
+        assert_eq!(wk_context_set_weather(world.context, &weather, 0.0, 0.0), WK_OK, "{}", message());
     }
 }

@@ -1,0 +1,123 @@
+//! Weather reports
+//!
+//! A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
+
+use std::{
+    ffi::{c_char, c_void},
+    ptr::null,
+};
+
+use super::{
+    boundary::guard,
+    input,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    weather::{wk_cloud_layer, wk_weather},
+    weather_convert::weather_out,
+};
+use crate::{
+    error::Status,
+    weather::{MetarReport, Weather},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_report.rs"));
+
+/// What kind of report it is.
+pub type wk_metar_flags = u32;
+/// A special report (SPECI).
+pub const WK_METAR_SPECIAL: wk_metar_flags = 1;
+/// Made without an observer (AUTO).
+pub const WK_METAR_AUTOMATIC: wk_metar_flags = 2;
+/// A correction (COR).
+pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
+/// The report says only that visibility is at least so much (CAVOK, 9999, 10SM).
+pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
+
+/// Where and when a report was made.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_metar {
+    /// sizeof(wk_metar) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_METAR.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// ICAO location indicator, NUL-terminated.
+    pub station: [c_char; 8],
+    /// Day of the month, UTC.
+    pub day: u32,
+    /// Hour, UTC.
+    pub hour: u32,
+    /// Minute, UTC.
+    pub minute: u32,
+    /// What kind of report it is.
+    pub flags: wk_metar_flags,
+}
+
+impl wk_metar {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_METAR,
+        next: null(),
+        station: [0, 0, 0, 0, 0, 0, 0, 0],
+        day: 0,
+        hour: 0,
+        minute: 0,
+        flags: 0,
+    };
+
+    fn of(report: &MetarReport) -> Self {
+        let flags = [
+            (report.special, WK_METAR_SPECIAL),
+            (report.automatic, WK_METAR_AUTOMATIC),
+            (report.corrected, WK_METAR_CORRECTED),
+            (report.visibility_is_minimum, WK_METAR_VISIBILITY_IS_MINIMUM),
+        ];
+        let mut answer = Self {
+            day: report.day,
+            hour: report.hour,
+            minute: report.minute,
+            flags: flags.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
+            ..Self::INIT
+        };
+        for (to, from) in answer.station[..7].iter_mut().zip(report.station.bytes()) {
+            *to = from as c_char;
+        }
+        answer
+    }
+}
+
+/// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`. Its cloud layers go to
+/// `layers`, which has room for `layer_capacity` of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 always
+/// suffice), and out_weather->clouds leads there: keep it as long as the weather. `out_metar` may be NULL.
+/// Thread: any.
+/// Errors: WK_ERROR_PARSE with line and column of the group at fault, what was expected there and what was found;
+/// WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_weather_from_metar(
+    report: *const c_char,
+    layers: *mut wk_cloud_layer,
+    layer_capacity: u32,
+    layer_size: u32,
+    out_weather: *mut wk_weather,
+    out_metar: *mut wk_metar,
+) -> wk_status {
+    guard("wk_weather_from_metar", |_| {
+        // SAFETY: the caller's promises.
+        let (text, weather) =
+            unsafe { (input::text("report", report)?, weather_out(layers, layer_capacity, layer_size, out_weather)?) };
+        let metar = if out_metar.is_null() {
+            None
+        } else {
+            // SAFETY: the caller's promise.
+            Some(unsafe { layout::out_struct(&"out_metar", out_metar)? })
+        };
+        let report = Weather::from_metar(text)?;
+        weather.set(&report.weather)?;
+        if let Some(metar) = metar {
+            metar.set(&wk_metar::of(&report));
+        }
+        Ok(Status::Ok)
+    })
+}
