@@ -2,6 +2,7 @@
 
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::sky::probe::{Probe, Question, Ray};
+use welkin::sky::reference::{Options, Reference, View};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 
 fn golden_planet() -> Planet {
@@ -42,6 +43,76 @@ fn golden_errors(model: SkyModel) -> (f32, f32) {
 fn default_model_meets_the_golden_table() {
     let (day, twilight) = golden_errors(SkyModel::Directional);
     assert!(day < 0.03 && twilight < 0.1, "{day} {twilight}");
+}
+
+/// Places and directions that no table of the model has a node at: altitude, then view zenith angles in degrees.
+const PLACES: [(f64, &[f64]); 4] = [
+    (1.0, &[3.0, 47.0, 76.0, 86.0, 89.6]),
+    (2000.0, &[12.0, 84.0, 90.4, 96.0, 150.0]),
+    (12_000.0, &[33.0, 88.0, 92.5, 97.0, 135.0]),
+    (200_000.0, &[102.8, 103.6, 105.0, 120.0, 175.0]),
+];
+
+/// Relative errors of radiance, sorted, and the largest of transmittance, over sky and aerial rays.
+fn errors(planet: &Planet) -> (Vec<f64>, f64) {
+    let options = Options { disc_strips: 3, ..Default::default() };
+    let truth = Reference::solve(planet, &options).unwrap();
+    let mut probe = probe(SkyModel::Directional, planet);
+    let (mut errors, mut worst) = (Vec::new(), 0.0f64);
+    for (altitude, views) in PLACES {
+        for sun in [14.0, 52.0, 78.0, 87.0, 91.5, 95.0] {
+            for distance in [0.0, 700.0, 15_000.0, 80_000.0] {
+                if altitude > 1e5 && distance > 0.0 {
+                    continue;
+                }
+                let places: Vec<(f64, f64)> =
+                    views.iter().flat_map(|v| [5.0, 70.0, 172.0].map(|azimuth| (*v, azimuth))).collect();
+                let ray = |(v, a): &(f64, f64)| Ray::at(v.to_radians(), a.to_radians(), distance);
+                let rays: Vec<Ray> = places.iter().map(ray).collect();
+                let question = if distance > 0.0 { Question::Aerial } else { Question::Sky };
+                let drawn = probe.under_sun(question, altitude, f64::to_radians(sun), &rays).unwrap();
+                for ((view, azimuth), drawn) in places.iter().zip(drawn) {
+                    let view = View::degrees(altitude, sun, *view, *azimuth);
+                    let along =
+                        if distance > 0.0 { truth.aerial(&view, distance) } else { truth.radiance(&view) }.unwrap();
+                    for c in 0..3 {
+                        errors.push((f64::from(drawn.radiance[c]) / along.radiance[c].max(1e-8) - 1.0).abs());
+                        if along.transmittance[c] > 0.01 {
+                            worst = worst.max((f64::from(drawn.transmittance[c]) / along.transmittance[c] - 1.0).abs());
+                        }
+                    }
+                }
+            }
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    (errors, worst)
+}
+
+fn holds_against_the_reference(name: &str, planet: &Planet) {
+    let (errors, worst) = errors(planet);
+    let at = |share: f64| errors[(errors.len() as f64 * share) as usize];
+    println!("{name}: median {:.4} p95 {:.4} max {:.3}, transmittance {worst:.5}", at(0.5), at(0.95), at(0.9999));
+    assert!(at(0.5) < 0.006 && at(0.95) < 0.03, "{name}: median {} p95 {}", at(0.5), at(0.95));
+    assert!(worst < 1e-3, "{name}: {worst}");
+}
+
+#[test]
+fn default_model_follows_the_reference_in_clear_air() {
+    holds_against_the_reference("golden", &golden_planet());
+}
+
+#[test]
+fn default_model_follows_the_reference_with_ozone() {
+    holds_against_the_reference("earth", &Planet::earth());
+}
+
+#[test]
+fn default_model_follows_the_reference_in_haze() {
+    let mut hazy = golden_planet();
+    hazy.mie.extinction_per_m = [5e-5; 3];
+    hazy.mie.scattering_per_m = [4.5e-5; 3];
+    holds_against_the_reference("haze", &hazy);
 }
 
 #[test]

@@ -18,8 +18,8 @@ struct SkyJob {
 
 @group(0) @binding(0) var<uniform> air: SkyAir;
 @group(0) @binding(1) var<uniform> dims: SkyDims;
-// x: node on (0, 1), y: weight (Gauss and Legendre).
-@group(0) @binding(2) var<uniform> rule: array<vec4f, 16>;
+// x: node on (0, 1), y: weight (Gauss and Legendre); z, w: cosine and sine of an azimuth.
+@group(0) @binding(2) var<uniform> rule: array<vec4f, 24>;
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var<uniform> job: SkyJob;
 // The order's own source, radiance along the quadrature and light; sums of the orders before it.
@@ -47,12 +47,16 @@ fn place_of(position: vec4f) -> Place {
     return Place(altitude_from_coordinate(air, x.y), sun_from_coordinate(air, x.x), at, tile);
 }
 
-// Direction of the quadrature: mu, its weight, azimuth.
-fn rule_at(altitude: Length, m: u32, p: u32) -> vec3f {
+// Zenith cosine of row `m` of the quadrature and its weight for one azimuth of a mirrored pair.
+fn rule_row(altitude: Length, m: u32) -> vec2f {
     let half_size = dims.rule_zeniths;
     let node = rule[select(m - half_size, m, m < half_size)].xy;
-    let mu = rule_direction(air, altitude, m, half_size, node);
-    return vec3f(mu, (f32(p) + 0.5) * SKY_PI / f32(dims.rule_azimuths));
+    return rule_direction(air, altitude, m, half_size, node) * vec2f(1.0, SKY_PI / f32(dims.rule_azimuths));
+}
+
+// Cosine and sine of azimuth `p` of the quadrature, even steps on (0, pi).
+fn rule_azimuth(p: u32) -> vec2f {
+    return rule[p].zw;
 }
 
 fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
@@ -66,12 +70,12 @@ fn norm(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = place_of(position);
     var sum = 0.0;
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        let d = rule_row(here.altitude, m);
         for (var p = 0u; p < dims.rule_azimuths; p++) {
-            let d = rule_at(here.altitude, m, p);
-            sum += d.y * mie_phase(cosine_between(d.x, here.mu_s, cos(d.z)), air.asymmetry_g);
+            sum += d.y * mie_phase(cosine_between(d.x, here.mu_s, rule_azimuth(p).x), air.asymmetry_g);
         }
     }
-    return vec4f(sum * 2.0 * SKY_PI / f32(dims.rule_azimuths), 0.0, 0.0, 1.0);
+    return vec4f(2.0 * sum, 0.0, 0.0, 1.0);
 }
 
 // Light that the ground sends up, per unit irradiance: albedo/pi (sun + sky). The sky of order n is the light of order
@@ -90,8 +94,8 @@ const LIGHT_SCALE: f32 = 4096.0;
 @fragment
 fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = place_of(position);
-    let d = rule_at(here.altitude, here.tile.y, here.tile.x);
-    let nu = cosine_between(d.x, here.mu_s, cos(d.z));
+    let d = rule_row(here.altitude, here.tile.y);
+    let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
     let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
@@ -129,27 +133,31 @@ fn scatter(@builtin(position) position: vec4f) -> Sums {
     let steps = vec2f(f32(dims.azimuths - 1u), f32(dims.zeniths - 1u));
     let angle = source_direction(vec2f(here.tile) / steps);
     let mu = sin(angle.y);
+    let sine = cos(angle.y);
+    let azimuth = vec2f(cos(angle.x), sin(angle.x));
     var gas = vec3f(0.0);
     var haze = vec3f(0.0);
     var peak = 0.0;
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        let d = rule_row(here.altitude, m);
+        let base = mu * d.x;
+        let turn = azimuth * (sine * sqrt(max(1.0 - d.x * d.x, 0.0)));
         for (var p = 0u; p < dims.rule_azimuths; p++) {
-            let d = rule_at(here.altitude, m, p);
             let light = d.y * gathered(here, m, p);
             // The direction and its mirror image.
-            let nu_a = cosine_between(mu, d.x, cos(angle.x - d.z));
-            let nu_b = cosine_between(mu, d.x, cos(angle.x + d.z));
+            let part = turn * rule_azimuth(p);
+            let nu_a = base + part.x + part.y;
+            let nu_b = base + part.x - part.y;
             let phase = mie_phase(nu_a, air.asymmetry_g) + mie_phase(nu_b, air.asymmetry_g);
             gas += light * (rayleigh_phase(nu_a) + rayleigh_phase(nu_b));
             haze += light * phase;
             peak += d.y * phase;
         }
     }
-    let share = SKY_PI / f32(dims.rule_azimuths);
     let density = air_density(air, here.altitude);
     let a = air.rayleigh_scattering * density.x;
     let b = air.mie_scattering * density.y;
-    let mean = (a * gas * share + b * haze / max(peak, 1e-6)) / max(a + b, vec3f(1e-30));
+    let mean = (a * gas + b * haze / max(peak, 1e-6)) / max(a + b, vec3f(1e-30));
     let source = select(vec3f(0.0), mean, a + b > vec3f(0.0)) * f32(here.at.x > 0u);
     let texel = vec2u(position.xy);
     var sum = source;
@@ -170,9 +178,9 @@ fn light(@builtin(position) position: vec4f) -> Sums {
     let here = place_of(position);
     var order = vec3f(0.0);
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        let d = rule_row(here.altitude, m);
         for (var p = 0u; p < dims.rule_azimuths; p++) {
-            let d = rule_at(here.altitude, m, p);
-            let x = sqrt(max(1.0 - d.x * d.x, 0.0)) * cos(d.z);
+            let x = sqrt(max(1.0 - d.x * d.x, 0.0)) * rule_azimuth(p).x;
             let yy = max(1.0 - d.x * d.x - x * x, 0.0);
             var f = max(d.x, 0.0);
             switch here.tile.x {
@@ -187,7 +195,7 @@ fn light(@builtin(position) position: vec4f) -> Sums {
             order += f * d.y * gathered(here, m, p);
         }
     }
-    order *= 2.0 * SKY_PI / f32(dims.rule_azimuths) * LIGHT_SCALE;
+    order *= 2.0 * LIGHT_SCALE;
     let texel = vec2u(position.xy);
     var sum = order;
     if (job.order > 1u) {
@@ -205,8 +213,8 @@ fn light(@builtin(position) position: vec4f) -> Sums {
 @fragment
 fn isotropic_gather(@builtin(position) position: vec4f) -> Sums {
     let here = place_of(position);
-    let d = rule_at(here.altitude, here.tile.y, here.tile.x);
-    let nu = cosine_between(d.x, here.mu_s, cos(d.z));
+    let d = rule_row(here.altitude, here.tile.y);
+    let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
     let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
@@ -224,15 +232,15 @@ fn isotropic_scatter(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var twice = vec3f(0.0);
     var back = vec3f(0.0);
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
+        let weight = rule_row(here.altitude, m).y;
         for (var p = 0u; p < dims.rule_azimuths; p++) {
-            let weight = rule_at(here.altitude, m, p).y;
             let texel = vec2u(p, m) * vec2u(dims.suns, dims.altitudes) + here.at;
             twice += weight * gathered(here, m, p);
             back += weight * sky_decode(textureLoad(sky_sources, texel, 0));
         }
     }
-    // 2 pi/n over azimuths, over 4 pi.
-    let share = 0.5 / f32(dims.rule_azimuths);
+    // Both mirrored azimuths, over 4 pi.
+    let share = 0.5 / SKY_PI;
     let all = twice * share / (1.0 - min(back * share, vec3f(0.98)));
     return sky_encode(all * f32(here.at.x > 0u));
 }

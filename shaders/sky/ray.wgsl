@@ -133,7 +133,7 @@ fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
     let long = columns_to(air, ray, start, h1, side);
     let short = distance / 6.0 * (air_density(air, h0) + 4.0 * air_density(air, hm) + air_density(air, h1));
     let spread = select(abs(h1 - h0), max(h0, h1) - ray.perigee, side != start.side);
-    let is_short = vec2f(spread) < 0.3 * vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
+    let is_short = vec2f(spread) < 0.15 * vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
     return vec3f(select(long.xy, short.xy, is_short), long.z);
 }
 

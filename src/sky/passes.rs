@@ -160,7 +160,7 @@ impl Builder {
         Ok(Self {
             pipelines,
             dims: uniform_buffer(device, "sky dims", bytes_of(&DimsUniform::of(settings))),
-            rule: uniform_buffer(device, "sky rule", bytemuck::cast_slice(&rule(settings.rule_zeniths as usize))),
+            rule: uniform_buffer(device, "sky rule", bytemuck::cast_slice(&rule(settings))),
             jobs: uniform_buffer(device, "sky jobs", &jobs),
             job_stride,
             sampler: linear_sampler(device),
@@ -226,9 +226,20 @@ fn pipeline(
     fullscreen(device, &desc)
 }
 
-/// Gauss and Legendre's rule of `n` nodes on (0, 1): (node, weight, 0, 0), filled up to 16.
-fn rule(n: usize) -> [[f32; 4]; 16] {
-    let mut out = [[0.0; 4]; 16];
+/// Both rules of the sum over directions as the shaders read them.
+fn rule(settings: &SkySettings) -> [[f32; 4]; 24] {
+    let mut out = gauss(settings.rule_zeniths as usize);
+    let n = settings.rule_azimuths as usize;
+    for (i, slot) in out.iter_mut().enumerate().take(n) {
+        let azimuth = std::f64::consts::PI * (i as f64 + 0.5) / n as f64;
+        (slot[2], slot[3]) = (azimuth.cos() as f32, azimuth.sin() as f32);
+    }
+    out
+}
+
+/// Gauss and Legendre's rule of `n` nodes on (0, 1): (node, weight, 0, 0).
+fn gauss(n: usize) -> [[f32; 4]; 24] {
+    let mut out = [[0.0; 4]; 24];
     for (i, slot) in out.iter_mut().enumerate().take(n) {
         // Newton's iteration on P_n from Tricomi's estimate of its root.
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
@@ -254,7 +265,7 @@ mod tests {
     #[test]
     fn rule_integrates_polynomials() {
         for n in [2, 5, 8, 16] {
-            let r = rule(n);
+            let r = gauss(n);
             for k in 0..2 * n as i32 {
                 let sum: f64 = r[..n].iter().map(|a| f64::from(a[1]) * f64::from(a[0]).powi(k)).sum();
                 assert!((sum * f64::from(k + 1) - 1.0).abs() < 2e-5, "n {n} degree {k}: {sum}");

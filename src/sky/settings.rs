@@ -59,15 +59,15 @@ pub struct SkySettings {
     pub orders: u32,
     /// Sun angles of the planet's tables, `[16, 128]`, default 64.
     pub suns: u32,
-    /// Altitudes of the planet's tables, `[8, 64]`, default 20.
+    /// Altitudes of the planet's tables, `[8, 64]`, default 22.
     pub altitudes: u32,
     /// Zenith angles in which a source is known, `[4, 32]`, default 17.
     pub zeniths: u32,
-    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 9.
+    /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 10.
     pub azimuths: u32,
     /// Zenith angles on each side of the horizon that are summed over, `[2, 16]`, default 8.
     pub rule_zeniths: u32,
-    /// Azimuths on `[0, pi]` that are summed over, `[2, 24]`, default 8.
+    /// Azimuths on `[0, pi]` that are summed over, `[2, 24]`, default 12.
     pub rule_azimuths: u32,
     /// Panels (of 4 nodes) of a ray's march while the planet's tables are built, `[1, 16]`, default 3.
     pub build_panels: u32,
@@ -99,11 +99,11 @@ impl Default for SkySettings {
             model: SkyModel::default(),
             orders: 5,
             suns: 64,
-            altitudes: 20,
+            altitudes: 22,
             zeniths: 17,
-            azimuths: 9,
+            azimuths: 10,
             rule_zeniths: 8,
-            rule_azimuths: 8,
+            rule_azimuths: 12,
             build_panels: 3,
             sky_azimuths: 40,
             sky_above: 80,
