@@ -69,3 +69,68 @@ impl Scene {
         FogModel::new(law.unwrap_or(&own), &light, &view)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::fog::{reference::patch_mean, transmittance_between};
+    use crate::weather::{FogKind, PrecipitationKind, Weather, derive};
+
+    /// A reported visibility is total: what air, haze, rain and the drawn layer each take makes 5 % at that distance.
+    #[test]
+    fn nothing_is_counted_twice_at_station_height() {
+        for (kind, visibility) in [
+            (FogKind::None, 20_000.0),
+            (FogKind::Mist, 2500.0),
+            (FogKind::Fog, 150.0),
+            (FogKind::Fog, 50.0),
+            (FogKind::Freezing, 700.0),
+        ] {
+            for (fall, rate) in
+                [(PrecipitationKind::None, 0.0), (PrecipitationKind::Rain, 4.0), (PrecipitationKind::Snow, 1.0)]
+            {
+                let mut w = Weather { visibility_m: visibility, ..Weather::default() };
+                w.fog.kind = kind;
+                w.precipitation.kind = fall;
+                w.precipitation.rate_mm_h = rate;
+                let c = derive(&w).unwrap();
+                let eye = Viewpoint::flat(c.air.station_altitude_m + 0.5);
+                let level = DVec3::X * visibility;
+                let layer = fog_layer(&c, 1).map_or(1.0, |l| transmittance_between(&l, &eye, level).unwrap()[1]);
+                let others =
+                    c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m + c.precipitation.extinction_per_m;
+                let contrast = layer * (-others * visibility).exp();
+                assert!((contrast - 0.05).abs() < 1e-6, "{kind:?} {visibility} m {fall:?}: {contrast}");
+            }
+        }
+    }
+
+    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` takes it to be.
+    #[test]
+    fn patches_hold_the_reported_extinction_inside() {
+        let patches = Patches { amount: 1.0, size_m: 100.0, seed: 5, drift_m: [0.0; 2] };
+        let layer = FogLayer { patches: Some(patches), ..FogLayer::ground_fog(0.02, 10.0, 1.0) };
+        let light =
+            FogLight { to_sun: DVec3::Z, sun_irradiance: [1.0; 3], sky_irradiance: [0.2; 3], ground_albedo: [0.1; 3] };
+        let m = FogModel::new(&Law::Layer(layer), &light, &Viewpoint::flat(1.0)).unwrap();
+        let mut values: Vec<f64> = (0..40_000)
+            .map(|i| DVec3::new(f64::from(i % 200) * 37.0, f64::from(i / 200) * 41.0, 0.0))
+            .map(|p| patch_mean(&m, p, DVec3::X, 0.0, 0.0))
+            .collect();
+        values.sort_by(f64::total_cmp);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        assert!(
+            (mean - 1.0).abs() < 0.03 && values[0] >= 0.0 && values[400] < 0.1,
+            "{mean} {} {}",
+            values[0],
+            values[400]
+        );
+        for coverage in [0.4f64, 0.6] {
+            let dense = &values[((1.0 - coverage) * values.len() as f64) as usize..];
+            let inside = dense.iter().sum::<f64>() / dense.len() as f64;
+            assert!((inside / (1.0 - coverage.ln()) - 1.0).abs() < 0.1, "coverage {coverage}: {inside}");
+        }
+    }
+}
