@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use super::celestial::{earth_to_world, equator_of_date_to_world, nutation_obliquity};
 use super::sun::{SunPosition, Utc, sun_position};
 use crate::{error::Result, scene::Place};
 
@@ -155,23 +156,6 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     )
 }
 
-/// Nutation in longitude and true obliquity of the ecliptic, rad (Meeus chapter 22, the two leading terms: 0.5").
-fn nutation_obliquity(t: f64) -> (f64, f64) {
-    let node = (125.044_52 - 1_934.136_261 * t).to_radians();
-    let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
-    let arc_seconds = -17.20 * node.sin() - 1.32 * (2.0 * sun).sin();
-    let obliquity = 23.439_291_1 - 0.013_004_2 * t + (9.20 * node.cos() + 0.57 * (2.0 * sun).cos()) / 3600.0;
-    ((arc_seconds / 3600.0).to_radians(), obliquity.to_radians())
-}
-
-/// Apparent sidereal time at Greenwich, rad (Meeus eq. 12.4 with the equation of the equinoxes).
-fn sidereal_time(utc: Utc, nutation: f64, obliquity: f64) -> f64 {
-    let days = utc.julian_date() - 2_451_545.0;
-    let t = days / 36_525.0;
-    let mean = 280.460_618_37 + 360.985_647_366_29 * days + t * t * (0.000_387_933 - t / 38_710_000.0);
-    (mean.rem_euclid(360.0)).to_radians() + nutation * obliquity.cos()
-}
-
 /// The moon over `place` at `utc`, to 0.01 degrees.
 ///
 /// # Errors
@@ -185,14 +169,8 @@ pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
     let (sl, cl) = (longitude + nutation).sin_cos();
     let ecliptic = DVec3::new(cl * cb, sl * cb, sb) * distance;
     let equatorial = glam::DMat3::from_rotation_x(obliquity) * ecliptic;
-    let fixed = glam::DMat3::from_rotation_z(-sidereal_time(utc, nutation, obliquity)) * equatorial;
-    let seen = enu_of(place) * (fixed - place.to_ecef());
+    let seen = equator_of_date_to_world(utc, place) * equatorial - earth_to_world(place) * place.to_ecef();
     Ok(lit(seen, &sun))
-}
-
-fn enu_of(place: &Place) -> glam::DMat3 {
-    let frame = crate::scene::WorldFrame { kind: crate::scene::WorldKind::Ecef, ..Default::default() };
-    frame.frame_at(place.to_ecef()).world_to_enu
 }
 
 fn lit(seen: DVec3, sun: &SunPosition) -> MoonPosition {
