@@ -100,5 +100,8 @@ accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90
 	$(MAKE) --no-print-directory bench
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
+gallery: setup ## draw the README's pictures anew into docs/gallery
+	cargo run --locked --release --example native -- docs/gallery
+
 bench: setup-build ## speed, as ratios measured within one run
 	$(if $(wildcard benches/*.rs benches/*/main.rs),cargo bench --locked --bench '*',@echo "bench: none yet")

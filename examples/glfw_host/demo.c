@@ -1,0 +1,126 @@
+/* The state of the demonstration and its frame: host's world, then weather, then the display. */
+#include "demo.h"
+
+#include <stdio.h>
+#include <time.h>
+
+#include "objects.h"
+
+/* Without weather there is no sky that lights the scene: a made-up afternoon. */
+static light bare_light(void)
+{
+    light l = {.sun_direction = direction(200.0, 40.0), .illuminance = {92e3f, 86e3f, 78e3f}, .cd_m2_per_unit = 3e4};
+    const float sky[3] = {4500.0f, 5500.0f, 7500.0f};
+    for (int c = 0; c < 3; c++) {
+        l.ambient[0][c] = sky[c] / 0.282095f;
+        l.ambient[2][c] = 0.4f * sky[c] / 0.488603f;
+    }
+    return l;
+}
+
+static const char *const CAMERA_NAMES[CAMERA_COUNT] = {"hillside", "beside the excavator", "towards the north", "from 3 km up"};
+
+static camera view_from(const demo *d)
+{
+    const ground *g = &d->scene.ground;
+    camera c = {objects_survey_eye(g), direction(SITE_VIEW_AZIMUTH_DEG + 4.0, 1.5), RAD(50.0)};
+    double x, y;
+    if (d->camera == 1) {
+        ground_pad(&x, &y);
+        vec3 off = direction(SITE_VIEW_AZIMUTH_DEG + 205.0, 0.0);
+        x += 14.0 * off.x, y += 14.0 * off.y;
+        c.position = vec(x, y, ground_z(g, x, y) + 2.0);
+        c.ahead = direction(SITE_VIEW_AZIMUTH_DEG + 22.0, 4.0);
+    } else if (d->camera == 2) {
+        c.ahead = direction(10.0, 3.0);
+    } else if (d->camera == 3) {
+        c.position.z = 3000.0;
+        c.ahead = direction(SITE_VIEW_AZIMUTH_DEG + 10.0, -8.0);
+    }
+    return c;
+}
+
+double demo_clock_ms(void)
+{
+    struct timespec t;
+    timespec_get(&t, TIME_UTC);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+bool demo_open(demo *d, const platform *p, const char *data, int width, int height)
+{
+    char path[1024];
+    *d = (demo){.platform = p, .cut = true, .started_ms = demo_clock_ms()};
+    snprintf(path, sizeof path, "%s/jacksboro_dem.png", data);
+    if (!scene_create(&d->scene, path))
+        return false;
+    snprintf(path, sizeof path, "%s/metar.txt", data);
+    if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height))
+        return false;
+    return weather_open(&d->weather, p) && demo_next_report(d, 0) && demo_next_hour(d, 0);
+}
+
+void demo_close(demo *d)
+{
+    weather_close(&d->weather);
+    picture_destroy(&d->picture);
+    scene_destroy(&d->scene);
+}
+
+bool demo_next_report(demo *d, int step)
+{
+    d->report = (d->report + step + d->reports.count) % d->reports.count;
+    return weather_report(&d->weather, d->reports.items[d->report].metar, d->moving ? 5.0 : 0.0);
+}
+
+bool demo_next_hour(demo *d, int step)
+{
+    d->hour = (d->hour + step + HOUR_COUNT) % HOUR_COUNT;
+    return weather_clock(&d->weather, HOURS[d->hour].utc_s);
+}
+
+void demo_next_camera(demo *d, int step)
+{
+    d->camera = (d->camera + step + CAMERA_COUNT) % CAMERA_COUNT;
+    d->cut = true;
+}
+
+const char *demo_camera_name(const demo *d)
+{
+    return CAMERA_NAMES[d->camera];
+}
+
+bool demo_resize(demo *d, int width, int height)
+{
+    if (width == d->picture.width && height == d->picture.height)
+        return true;
+    picture_destroy(&d->picture);
+    weather_resized(&d->weather);
+    return picture_create(&d->picture, width, height);
+}
+
+bool demo_draw(demo *d)
+{
+    camera c = view_from(d);
+    light l = bare_light();
+    bool weather = !d->bare;
+    double start = demo_clock_ms();
+    double time_s = d->moving ? (start - d->started_ms) * 1e-3 : 0.0;
+    if (weather && !weather_light(&d->weather, &c, time_s, &l))
+        return false;
+    picture *p = &d->picture;
+    scene_draw(&d->scene, &c, &l, p->width, p->height, p->reversed, p->frame);
+    glFinish(); /* for the figures only: a simulator would not wait here */
+    double drawn = demo_clock_ms();
+    if (weather && !weather_draw(&d->weather, p, &c, l.cd_m2_per_unit, d->frame, d->cut))
+        return false;
+    glFinish();
+    double end = demo_clock_ms();
+    /* Welkin's TONE stage leaves the picture tone-mapped; without it the host maps its own. */
+    picture_present(p, weather ? 0.0f : 1.6f);
+    d->weather_ms = end - drawn;
+    d->ms = end - start;
+    d->frame++;
+    d->cut = false;
+    return true;
+}

@@ -1,0 +1,48 @@
+/* What is shown at the moment: which report, hour and camera; draws one frame of it. */
+#ifndef DEMO_H
+#define DEMO_H
+
+#include "picture.h"
+#include "platform.h"
+#include "reports.h"
+#include "scene.h"
+#include "weather_link.h"
+
+#define CAMERA_COUNT 4
+
+typedef struct demo {
+    const platform *platform;
+    scene scene;
+    picture picture;
+    report_list reports;
+    weather_link weather;
+    int report, hour, camera;
+    bool bare; /* without weather: what the host draws by itself */
+    bool cut;  /* the camera jumped */
+    bool moving; /* time runs, and weather changes over some seconds */
+    double started_ms;
+    uint64_t frame;
+    double ms; /* the last frame, GPU included */
+    double weather_ms; /* Welkin's part of it */
+} demo;
+
+/* `data` is the folder with the terrain and the reports. The host's context is current. */
+bool demo_open(demo *d, const platform *p, const char *data, int width, int height);
+void demo_close(demo *d);
+
+/* Each goes round. `step` is 1 or -1. */
+bool demo_next_report(demo *d, int step);
+bool demo_next_hour(demo *d, int step);
+void demo_next_camera(demo *d, int step);
+
+bool demo_resize(demo *d, int width, int height);
+
+/* Draws the world and its weather into the picture and encodes it for the display. */
+bool demo_draw(demo *d);
+
+const char *demo_camera_name(const demo *d);
+
+/* Milliseconds of a steady clock. */
+double demo_clock_ms(void);
+
+#endif

@@ -1,0 +1,16 @@
+/* What people put there: an excavator, a row of posts at known distances, and a wood. */
+#ifndef OBJECTS_H
+#define OBJECTS_H
+
+#include "ground.h"
+#include "mesh.h"
+
+#define POST_COUNT 7
+extern const double POST_DISTANCES_M[POST_COUNT];
+
+/* The eye from which the posts' distances are measured. */
+vec3 objects_survey_eye(const ground *g);
+
+void objects_mesh(const ground *g, mesh *m);
+
+#endif

@@ -1,0 +1,77 @@
+/* PNG files by libpng. libpng reports faults by longjmp, so nothing is allocated between setjmp and the work. */
+#include "png_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <png.h>
+
+static void on_fault(png_structp png, png_const_charp message)
+{
+    fprintf(stderr, "%s: %s\n", (const char *)png_get_error_ptr(png), message);
+    png_longjmp(png, 1);
+}
+
+static bool fail(const char *path, const char *why)
+{
+    fprintf(stderr, "%s: %s\n", path, why);
+    return false;
+}
+
+bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *height)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return fail(path, "cannot be read");
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, (png_voidp)path, on_fault, NULL);
+    png_infop info = png_create_info_struct(png);
+    uint16_t *volatile data = NULL;
+    volatile bool ok = false;
+    if (!setjmp(png_jmpbuf(png))) {
+        png_init_io(png, file);
+        png_read_info(png, info);
+        *width = (int)png_get_image_width(png, info);
+        *height = (int)png_get_image_height(png, info);
+        if (png_get_bit_depth(png, info) != 16 || png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY)
+            png_error(png, "is not a 16-bit grey picture");
+        png_set_swap(png); /* PNG is big-endian; the machines that this runs on are little-endian */
+        int passes = png_set_interlace_handling(png);
+        data = malloc((size_t)*width * (size_t)*height * sizeof *data);
+        if (!data)
+            png_error(png, "is too large");
+        for (int pass = 0; pass < passes; pass++)
+            for (int row = 0; row < *height; row++)
+                png_read_row(png, (png_bytep)(data + (size_t)row * (size_t)*width), NULL);
+        ok = true;
+    }
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(file);
+    if (!ok) {
+        free(data);
+        return false;
+    }
+    *pixels = data;
+    return true;
+}
+
+bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return fail(path, "cannot be written");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, (png_voidp)path, on_fault, NULL);
+    png_infop info = png_create_info_struct(png);
+    volatile bool ok = false;
+    if (!setjmp(png_jmpbuf(png))) {
+        png_init_io(png, file);
+        png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_write_info(png, info);
+        for (int row = 0; row < height; row++)
+            png_write_row(png, (png_const_bytep)(pixels + (size_t)row * (size_t)width * 3));
+        png_write_end(png, info);
+        ok = true;
+    }
+    png_destroy_write_struct(&png, &info);
+    return fclose(file) == 0 && ok;
+}

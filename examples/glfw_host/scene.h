@@ -1,0 +1,41 @@
+/* The host's world on the GPU and how it is drawn: what a simulator has before it has weather. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "gl.h"
+#include "ground.h"
+#include "light.h"
+
+typedef struct camera {
+    vec3 position; /* m, world */
+    vec3 ahead;    /* unit vector */
+    double fov_y;  /* rad */
+} camera;
+
+typedef struct scene {
+    ground ground;
+    mesh mesh;
+    GLsizei ground_indices, object_indices;
+    GLuint array, vertices, indices, sunlit;
+    GLuint shadow_texture, shadow_frame;
+    GLuint program, shadow_program;
+    vec3 shaded_for; /* the sun's direction for which terrain shadows were worked out */
+    float *lit;
+} scene;
+
+bool scene_create(scene *s, const char *terrain_png);
+void scene_destroy(scene *s);
+
+/* World to eye, without translation. */
+mat4 camera_view(const camera *c);
+
+/*
+ * Eye to clip, far plane at infinity. Reversed (near 1, far 0) with zero-to-one clip space where OpenGL can do so,
+ * else as OpenGL has always done.
+ */
+mat4 camera_projection(const camera *c, double aspect, bool reversed);
+
+/* Draws the world into the bound framebuffer, which it clears. */
+void scene_draw(scene *s, const camera *c, const light *l, int width, int height, bool reversed, GLuint framebuffer);
+
+#endif

@@ -1,0 +1,136 @@
+/* The link: set up once, told the weather and the time, asked for the light, and called after the host has drawn. */
+#include "weather_link.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool check(wk_status status)
+{
+    if (status >= WK_OK)
+        return true;
+    fprintf(stderr, "%s: %s\n", wk_status_name(status), wk_last_error_message());
+    return false;
+}
+
+bool weather_open(weather_link *w, const platform *p)
+{
+    wk_opengl_host_desc host = WK_OPENGL_HOST_DESC_INIT;
+    host.get_proc = p->get_proc;
+    host.make_current = p->make_current;
+    host.user = p->user;
+
+    /* Where the host's coordinates lie on the planet: east, north, up of the site, up from sea level. */
+    wk_context_desc place = WK_CONTEXT_DESC_INIT;
+    place.world_kind = WK_WORLD_TANGENT;
+    place.latitude_deg = SITE_LATITUDE_DEG;
+    place.longitude_deg = SITE_LONGITUDE_DEG;
+
+    *w = (weather_link){.caps = WK_CAPS_INIT};
+    return check(wk_device_create_opengl(&host, &w->device)) &&
+           check(wk_context_create(w->device, &place, &w->context)) &&
+           check(wk_view_create(w->context, NULL, &w->view));
+}
+
+void weather_close(weather_link *w)
+{
+    check(wk_view_destroy(w->view));
+    check(wk_context_destroy(w->context));
+    check(wk_device_destroy(w->device));
+    *w = (weather_link){0};
+}
+
+bool weather_report(weather_link *w, const char *metar, double transition_s)
+{
+    wk_weather weather = WK_WEATHER_INIT;
+    wk_cloud_layer layers[16];
+    if (!check(wk_weather_from_metar(metar, layers, 16, sizeof layers[0], &weather, NULL)))
+        return false;
+    weather.station_altitude_m = SITE_ALTITUDE_M; /* reports do not carry it */
+    return check(wk_context_set_weather(w->context, &weather, w->time_s, transition_s));
+}
+
+bool weather_clock(weather_link *w, double utc_s)
+{
+    return check(wk_context_set_clock(w->context, utc_s, w->time_s));
+}
+
+bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
+{
+    const double at[3] = {c->position.x, c->position.y, c->position.z};
+    wk_celestial sun = WK_CELESTIAL_INIT, moon = WK_CELESTIAL_INIT;
+    wk_ambient sky = WK_AMBIENT_INIT;
+    wk_ground_light arriving;
+    w->time_s = time_s;
+    if (!check(wk_context_update(w->context, time_s)) || !check(wk_context_get_sun(w->context, &at, &sun)) ||
+        !check(wk_context_get_moon(w->context, &at, &moon)) || !check(wk_context_get_ambient(w->context, &at, &sky)) ||
+        !check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))
+        return false;
+
+    /* This host's shaders have one lamp: whichever of the two gives more. */
+    bool by_day = arriving.sun_lux[1] >= arriving.moon_lux[1];
+    const double *lux = by_day ? arriving.sun_lux : arriving.moon_lux, *to = by_day ? sun.apparent : moon.apparent;
+    l->sun_direction = vec(to[0], to[1], to[2]);
+    for (int channel = 0; channel < 3; channel++) {
+        l->illuminance[channel] = (float)lux[channel];
+        for (int k = 0; k < 9; k++)
+            l->ambient[k][channel] = (float)sky.sh9[3 * k + channel];
+    }
+    /* A white card on the ground has the value 1, by day and by night. */
+    l->cd_m2_per_unit = fmax(arriving.total_lux, 1e-4) / PI;
+    return true;
+}
+
+bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool cut)
+{
+    wk_opengl_target target = WK_OPENGL_TARGET_INIT;
+    target.color.kind = target.depth.kind = WK_OPENGL_TEXTURE;
+    target.color.name = p->color;
+    target.depth.name = p->depth;
+    target.width = (uint32_t)p->width;
+    target.height = (uint32_t)p->height;
+    target.generation = w->generation;
+
+    wk_frame f = WK_FRAME_INIT;
+    mat4 view = camera_view(c), projection = camera_projection(c, (double)p->width / p->height, p->reversed);
+    f.frame_id = frame;
+    f.position_m[0] = c->position.x;
+    f.position_m[1] = c->position.y;
+    f.position_m[2] = c->position.z;
+    memcpy(f.view, view.m, sizeof f.view);
+    memcpy(f.projection, projection.m, sizeof f.projection);
+    f.clip_space = p->reversed ? WK_CLIP_ZERO_TO_ONE : WK_CLIP_MINUS_ONE_TO_ONE;
+    f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | (cut ? WK_FRAME_CUT : 0);
+    f.color_space = WK_COLOR_SCENE_LINEAR;
+    f.cd_m2_per_unit = cd_m2_per_unit;
+    f.target = &target;
+    return check(wk_view_record(w->view, &f, WK_STAGE_ALL));
+}
+
+void weather_resized(weather_link *w)
+{
+    w->generation++; /* OpenGL gives old names to new textures */
+}
+
+const char *weather_adapter(weather_link *w)
+{
+    return check(wk_device_get_caps(w->device, &w->caps)) ? w->caps.adapter_name : "unknown";
+}
+
+const char *weather_summary(weather_link *w)
+{
+    const double site[3] = {0.0, 0.0, SITE_ALTITUDE_M};
+    wk_conditions now = WK_CONDITIONS_INIT;
+    if (!check(wk_context_get_conditions(w->context, &site, w->time_s, &now)))
+        return "";
+    snprintf(w->summary, sizeof w->summary, "visibility %.0f m, %.0f %% humid, %.1f hPa", now.visibility_m,
+             100.0 * now.relative_humidity, now.pressure_hpa);
+    return w->summary;
+}
+
+void weather_print_costs(weather_link *w)
+{
+    wk_report report = WK_REPORT_INIT;
+    if (check(wk_view_get_report(w->view, &report)))
+        printf("last frame: %u full-screen passes, %u tables rebuilt, %.1f MiB of the view's own\n",
+               (unsigned)report.passes, (unsigned)report.tables_rebuilt, (double)report.bytes / 1048576.0);
+}

@@ -1,0 +1,16 @@
+/* A window with keys, by GLFW. */
+#ifndef WINDOW_H
+#define WINDOW_H
+
+#include <stdbool.h>
+
+/* Whether there is a display to open a window on. */
+bool window_possible(void);
+
+/*
+ * Runs until the window is closed, or for `frames` frames if that is not 0, beginning with report `first` (from 1).
+ * Answers the process's exit code.
+ */
+int window_run(const char *data, int width, int height, int frames, int first);
+
+#endif

@@ -1,0 +1,149 @@
+//! The C OpenGL host as its users meet it: compiled without a warning, run without a display, its pictures looked at;
+//! and its window on an X server without a screen. `WELKIN_LIB` names a ready library; without it the tests build one.
+#![cfg(target_os = "linux")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::{fs, io::BufRead, io::BufReader};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn run(command: &mut Command) -> String {
+    let shown = format!("{command:?}");
+    let output = command.output().unwrap_or_else(|e| panic!("{shown}: {e}"));
+    let (out, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{shown}: {}\n{out}\n{errors}", output.status);
+    out.into_owned()
+}
+
+/// The shared library, built in the tests' own profile if none is named.
+fn library() -> PathBuf {
+    if let Some(named) = std::env::var_os("WELKIN_LIB") {
+        return named.into();
+    }
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    run(Command::new(cargo).current_dir(root()).args(["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]));
+    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
+}
+
+/// The host in a folder of one test's own, removed with the value.
+struct Host(PathBuf);
+
+impl Host {
+    fn build(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("glfw_host-{name}"));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("the target directory is writable");
+        let library = library();
+        for link in ["libwelkin.so", "libwelkin.so.1"] {
+            std::os::unix::fs::symlink(&library, folder.join(link)).expect("the folder is writable");
+        }
+        let packages = ["glfw3", "egl", "libpng"];
+        let flags = run(Command::new("pkg-config").args(["--cflags", "--libs"]).args(packages));
+        let sources = fs::read_dir(root().join("examples/glfw_host")).expect("the example is there");
+        let sources = sources.map(|e| e.expect("a file").path()).filter(|p| p.extension().is_some_and(|e| e == "c"));
+        let mut cc = Command::new("gcc");
+        cc.args(["-std=c11", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]).arg(root().join("include"));
+        cc.args(sources).arg("-o").arg(folder.join("glfw_host")).arg("-L").arg(&folder).arg("-lwelkin");
+        run(cc.args(flags.split_whitespace()).arg("-lm").arg(format!("-Wl,-rpath,{}", folder.display())));
+        Self(folder)
+    }
+
+    fn command(&self) -> Command {
+        let mut host = Command::new(self.0.join("glfw_host"));
+        host.arg("--data").arg(root().join("examples/data")).arg("--out").arg(&self.0).args(["--size", "640x360"]);
+        host.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        host
+    }
+
+    /// One of the pictures it wrote.
+    fn picture(&self, name: &str) -> image::RgbImage {
+        image::open(self.0.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).into_rgb8()
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Mean of red, green and blue over a rectangle.
+fn mean(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for y in y0..y1 {
+        for x in x0..x1 {
+            (0..3).for_each(|c| sum[c] += f64::from(picture.get_pixel(x, y)[c]));
+        }
+    }
+    sum.map(|s| s / f64::from((x1 - x0) * (y1 - y0)))
+}
+
+/// Largest difference of green along a row: what can still be told apart there.
+fn contrast(picture: &image::RgbImage, y: u32) -> u8 {
+    let row = (0..picture.width()).map(|x| picture.get_pixel(x, y)[1]);
+    let (lo, hi) = row.fold((255, 0), |(lo, hi): (u8, u8), v| (lo.min(v), hi.max(v)));
+    hi - lo
+}
+
+const SKY: [u32; 4] = [0, 0, 200, 60];
+const MEADOW: [u32; 4] = [440, 260, 640, 350];
+
+#[test]
+fn clear_weather_is_blue_at_noon_red_at_sunset_and_dark_by_the_moon() {
+    let host = Host::build("clear");
+    let said = run(host.command().args(["--report", "1"]));
+    assert!(said.contains("adapter: ") && said.contains("ms a frame") && said.contains("contact_sheet.png"), "{said}");
+    let sheet = host.picture("contact_sheet.png");
+    assert!(sheet.width() > 1600 && sheet.height() > 200);
+
+    let (noon, sunset, night) =
+        (host.picture("01_noon.png"), host.picture("01_sunset.png"), host.picture("01_moonlight.png"));
+    let (sky, low, dark) = (mean(&noon, SKY), mean(&sunset, [250, 120, 640, 160]), mean(&night, SKY));
+    assert!(sky[2] > sky[0] + 20.0 && sky[2] > 120.0, "a blue sky, got {sky:?}");
+    assert!(low[0] > low[2] + 20.0, "a red horizon, got {low:?}");
+    assert!(dark[2] > 1.0 && dark[2] < 0.5 * sky[2], "a night that is dark and not black, got {dark:?}");
+    // The host's own ground is lit by what Welkin answered: darker at sunset than at noon, in shape all the same.
+    let (day, evening) = (mean(&noon, MEADOW), mean(&sunset, MEADOW));
+    assert!(day[1] > 60.0 && day[1] > day[2] && evening[1] > 5.0 && evening[1] < 0.8 * day[1], "{day:?} {evening:?}");
+    // Hills some ten kilometres off are paler than the meadow, and are seen.
+    assert!(mean(&noon, [0, 172, 200, 186])[2] > day[2] + 20.0);
+}
+
+#[test]
+fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
+    let host = Host::build("fog");
+    run(host.command().args(["--report", "7"]));
+    let fog = host.picture("07_noon.png");
+    // The excavator is 45 m away, the reported visibility 150 m.
+    assert!(contrast(&fog, 285) > 40, "the excavator shows: {}", contrast(&fog, 285));
+    // Hills and the posts from 1 km on are gone: what is left is the fog's own slow change.
+    let far = mean(&fog, [380, 165, 400, 175]);
+    for x in [300, 340, 420, 460] {
+        let beside = mean(&fog, [x, 165, x + 20, 175]);
+        assert!((0..3).all(|c| (far[c] - beside[c]).abs() < 6.0), "{x}: {beside:?} against {far:?}");
+    }
+    assert!(far[1] > 100.0, "fog at noon is bright, got {far:?}");
+}
+
+#[test]
+fn a_window_opens_draws_and_closes() {
+    let host = Host::build("window");
+    let mut server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("Xvfb is installed");
+    let mut line = String::new();
+    BufReader::new(server.stdout.take().expect("piped")).read_line(&mut line).expect("Xvfb names its display");
+    let mut window = host.command();
+    window.env("DISPLAY", format!(":{}", line.trim())).args(["--frames", "3"]);
+    let output = window.output();
+    let _ = (server.kill(), server.wait());
+    let output = output.expect("the host runs");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("adapter: ") && said.contains("last frame: "), "{output:?}");
+}
