@@ -37,6 +37,13 @@ impl LightTable {
         Ok(Self { air, suns: width / LIGHT_TILES as usize, altitudes: height, values })
     }
 
+    /// Between this and another of the same sizes.
+    pub(crate) fn mix(&self, other: &Self, t: f32) -> Self {
+        let between = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|c| a[c] + (b[c] - a[c]) * t);
+        let values = self.values.iter().zip(&other.values).map(between).collect();
+        Self { air: self.air.mix(&other.air, t), values, ..*self }
+    }
+
     /// Irradiance of the sky on a level surface facing up, per unit irradiance of the lamp. `mu_s`: cosine of the lamp's
     /// geometric zenith angle. Thread-safe.
     pub fn irradiance(&self, altitude_m: f64, mu_s: f64) -> [f32; 3] {

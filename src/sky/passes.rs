@@ -198,6 +198,67 @@ impl Builder {
     }
 }
 
+/// Draws over what is there by a share: out = share * new + (1 - share) * old.
+pub(crate) fn fade_blend() -> wgpu::BlendState {
+    let over = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Constant,
+        dst_factor: wgpu::BlendFactor::OneMinusConstant,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::BlendState { color: over, alpha: over }
+}
+
+/// One table shown out of two, faded.
+pub(crate) struct Fader {
+    pub shown: Table,
+    pipeline: wgpu::RenderPipeline,
+    groups: [wgpu::BindGroup; 2],
+}
+
+impl Fader {
+    pub fn new(device: &Device, label: &str, size: (u32, u32), from: [&Table; 2]) -> Result<Self> {
+        let layout = layout(device, label, &[Slot::Table]);
+        let target = wgpu::ColorTargetState {
+            format: TABLE_FORMAT,
+            blend: Some(fade_blend()),
+            write_mask: wgpu::ColorWrites::ALL,
+        };
+        let desc = FullscreenDesc {
+            shader: "sky/copy.wgsl",
+            entry: "copy",
+            layouts: &[&layout],
+            targets: &[target],
+            constants: &[],
+            samples: 1,
+        };
+        let groups = from.map(|t| bind(device, &layout, &[tex(&t.view)]));
+        Ok(Self { shown: Table::new(device, label, size), pipeline: fullscreen(device, &desc)?, groups })
+    }
+
+    /// Shows table `first`, and `share` of the other over it.
+    pub fn show(&self, encoder: &mut wgpu::CommandEncoder, first: usize, share: f32) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("sky fade"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.shown.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        for (index, t) in [(first, 1.0), (1 - first, share.clamp(0.0, 1.0))] {
+            if t > 0.0 {
+                let t = f64::from(t);
+                pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
+                pass.set_bind_group(0, &self.groups[index], &[]);
+                pass.draw(0..3, 0..1);
+            }
+        }
+    }
+}
+
 fn pipeline(
     device: &Device,
     settings: &SkySettings,

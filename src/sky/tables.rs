@@ -1,12 +1,12 @@
 //! The tables over a planet: built at once or by parts, and followed through a change of its air without a jump.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use bytemuck::bytes_of;
 
 use super::Planet;
 use super::light::LightTable;
-use super::passes::{Builder, Table, uniform_buffer};
+use super::passes::{Builder, Fader, Table, uniform_buffer};
 use super::recipe::{Name, Pass, passes};
 use super::settings::{SkyModel, SkySettings};
 use super::uniforms::AirUniform;
@@ -21,6 +21,8 @@ pub(crate) struct TableSet {
     results: Vec<(Name, Table)>,
     /// Tables that each pass reads.
     reads: Vec<wgpu::BindGroup>,
+    /// Its light on the CPU, once it was asked for.
+    light: OnceLock<LightTable>,
 }
 
 impl TableSet {
@@ -71,6 +73,7 @@ pub struct SkyTables {
     total_cost: f64,
     scratch: Vec<(Name, Table)>,
     sets: [TableSet; 2],
+    pub(crate) lights: Fader,
     shown: usize,
     state: State,
     revision: u64,
@@ -100,10 +103,19 @@ impl SkyTables {
                 &known.unwrap_or(&scratch[0]).1.view
             };
             let reads = passes.iter().map(|p| builder.tables_group(device, p.reads.map(find))).collect();
-            TableSet { planet: None, shared: builder.shared_group(device, &air), air, results, reads }
+            TableSet {
+                planet: None,
+                shared: builder.shared_group(device, &air),
+                air,
+                results,
+                reads,
+                light: OnceLock::new(),
+            }
         };
         let sets = [set(), set()];
         let (strips, total_cost) = strips(settings, &passes);
+        let from = sets.each_ref().map(|s| s.result(Name::Lights));
+        let lights = Fader::new(device, "sky light", Name::Lights.size(settings), from)?;
         device.check()?;
         Ok(Self {
             device: device.clone(),
@@ -114,6 +126,7 @@ impl SkyTables {
             total_cost,
             scratch,
             sets,
+            lights,
             shown: 0,
             state: State::Idle,
             revision: 0,
@@ -175,20 +188,35 @@ impl SkyTables {
                 self.revision += 1;
                 self.state = State::Fading(t);
                 if t >= 1.0 - 1e-4 {
-                    self.show_other();
+                    self.show_other(encoder);
+                } else {
+                    self.lights.show(encoder, self.shown, t);
                 }
                 Ok(TablesProgress { work: 0.0, done: t.min(1.0) })
             }
         }
     }
 
-    /// The light of the sky over altitudes and sun angles, read back from what is shown. Waits for the GPU: call it after
-    /// [`SkyTables::revision`] has changed, not in every frame; its answers need no GPU.
+    /// The light of the sky over altitudes and sun angles as it is shown. Each build is read back once, when it is first
+    /// asked for, which waits for the GPU; later calls, and all look-ups in the answer, do not.
     ///
     /// # Errors
     /// GPU faults.
     pub fn read_light(&self) -> Result<LightTable> {
-        LightTable::read(&self.device, self.sets[self.shown].result(Name::Lights), self.air())
+        let of = |i: usize| -> Result<&LightTable> {
+            let set = &self.sets[i];
+            if let Some(known) = set.light.get() {
+                return Ok(known);
+            }
+            let air = AirUniform::of(set.planet.as_ref().unwrap_or(&Planet::earth()));
+            let read = LightTable::read(&self.device, set.result(Name::Lights), air)?;
+            Ok(set.light.get_or_init(|| read))
+        };
+        let shown = of(self.shown)?;
+        Ok(match self.fade() {
+            Some(t) => shown.mix(of(1 - self.shown)?, t),
+            None => shown.clone(),
+        })
     }
 
     /// Both sets.
@@ -220,6 +248,7 @@ impl SkyTables {
     fn begin(&mut self, planet: &Planet) {
         let set = &mut self.sets[1 - self.shown];
         set.planet = Some(*planet);
+        set.light = OnceLock::new();
         self.device.queue.write_buffer(&set.air, 0, bytes_of(&AirUniform::of(planet)));
         self.state = State::Building(0);
     }
@@ -231,13 +260,14 @@ impl SkyTables {
             work = self.build_some(encoder, 2.0).work;
         }
         if self.state != State::Idle {
-            self.show_other();
+            self.show_other(encoder);
         }
         TablesProgress { work, done: 1.0 }
     }
 
-    fn show_other(&mut self) {
+    fn show_other(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.shown = 1 - self.shown;
+        self.lights.show(encoder, self.shown, 0.0);
         self.state = State::Idle;
         self.revision += 1;
     }

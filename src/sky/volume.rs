@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Zeroable as _, bytes_of};
 
 use super::observer::{Lamp, Observer};
-use super::passes::{Builder, Slot, TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
+use super::passes::{Builder, Slot, TABLE_FORMAT, bind, fade_blend, layout, table_texture, tex, uniform_buffer};
 use super::recipe::Name;
 use super::settings::{SkyModel, SkySettings};
 use super::tables::{SkyTables, TableSet};
@@ -105,7 +105,7 @@ impl SkyVolume {
         let planet_groups = sets.map(|set| planet_group(&device, &planet_layout, &tables.builder, set));
         let view_groups = sets.map(|set| {
             let sampler = wgpu::BindingResource::Sampler(&tables.builder.sampler);
-            let lights = tex(&set.result(Name::Lights).view);
+            let lights = tex(&tables.lights.shown.view);
             let sources = tex(&set.result(Name::Sources).view);
             bind(
                 &device,
@@ -260,11 +260,6 @@ fn planet_group(device: &Device, layout: &wgpu::BindGroupLayout, builder: &Build
 }
 
 fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGroupLayout]) -> Result<Pair> {
-    let over = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Constant,
-        dst_factor: wgpu::BlendFactor::OneMinusConstant,
-        operation: wgpu::BlendOperation::Add,
-    };
     let make = |blend| {
         let target = wgpu::ColorTargetState { format: TABLE_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL };
         let desc = FullscreenDesc {
@@ -277,5 +272,5 @@ fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGro
         };
         fullscreen(device, &desc)
     };
-    Ok(Pair([make(None)?, make(Some(wgpu::BlendState { color: over, alpha: over }))?]))
+    Ok(Pair([make(None)?, make(Some(fade_blend()))?]))
 }

@@ -113,7 +113,7 @@ fn eight_bit_skies_do_not_band() {
 #[test]
 fn a_change_of_the_air_is_followed_without_a_jump_and_arrives() {
     let mut host = Host::new(FLOAT);
-    let camera = look(DVec3::ZERO, 60.0, 35.0);
+    let camera = look(DVec3::ZERO, 60.0, 8.0);
     let mean = |p: &[[f32; 4]]| p.iter().map(|v| f64::from(v[1])).sum::<f64>() / p.len() as f64;
     let before = mean(&shoot(&mut host, 0, camera, FrameFlags(0)));
     let haze = Weather { visibility_m: 6000.0, aerosol: Aerosol::of(AerosolKind::Haze), ..Weather::default() };

@@ -1,0 +1,212 @@
+//! Where skies fail: odd air, the horizon, twilight, the mirror plane, heights, teleports, changing air.
+
+use std::sync::Arc;
+
+use welkin::gpu::{Device, DeviceOptions};
+use welkin::sky::probe::{Answer, Probe, Question, Ray};
+use welkin::sky::{Observer, Planet, SkyModel, SkySettings, SkyTables, SkyVolume};
+
+fn golden_planet() -> Planet {
+    Planet::from_toml(include_str!("../examples/data/planet_golden.toml")).unwrap()
+}
+
+fn device() -> Arc<Device> {
+    Device::headless(&DeviceOptions::default()).unwrap()
+}
+
+/// Coarse tables: these tests ask for shape, not for percents.
+fn coarse(model: SkyModel) -> SkySettings {
+    let base = SkySettings::with_model(model);
+    SkySettings { suns: 40, altitudes: 12, zeniths: 9, azimuths: 6, rule_azimuths: 6, orders: 4, ..base }
+}
+
+fn sane(a: &Answer) -> bool {
+    a.radiance.iter().all(|v| v.is_finite() && *v >= 0.0) && a.transmittance.iter().all(|v| (0.0..=1.0).contains(v))
+}
+
+#[test]
+fn odd_media_give_neither_nan_nor_infinity_nor_less_than_nothing() {
+    let base = golden_planet();
+    let with = |f: &dyn Fn(&mut Planet)| {
+        let mut p = base;
+        f(&mut p);
+        p
+    };
+    let none = with(&|p| *p = p.with_air_scaled(0.0));
+    let ozone_only = with(&|p| {
+        *p = p.with_air_scaled(0.0);
+        p.absorption.extinction_per_m = [1e-5; 3];
+    });
+    let heights = [0.0, 0.01, 1.0, 1e6].map(|h| {
+        with(&|p| {
+            (p.rayleigh.scale_height_m, p.mie.scale_height_m) = (h, h);
+        })
+    });
+    let shell = with(&|p| {
+        p.top_radius_m = p.bottom_radius_m + 1e6;
+        p.rayleigh.scale_height_m = 1e6;
+    });
+    let bright = with(&|p| {
+        *p = p.with_air_scaled(100.0);
+        p.ground_albedo = [1.0; 3];
+        p.mie.scattering_per_m = p.mie.extinction_per_m;
+        p.mie.asymmetry_g = 0.9999;
+    });
+    let mut media = vec![none, ozone_only, base.with_air_scaled(1e4), shell, bright];
+    media.extend(heights);
+    let device = device();
+    for (i, planet) in media.iter().enumerate() {
+        let others = if i < 3 { 3 } else { 1 };
+        for model in [SkyModel::Directional, SkyModel::IsotropicTables, SkyModel::Table3d].into_iter().take(others) {
+            let settings =
+                SkySettings { suns: 16, altitudes: 8, zeniths: 5, azimuths: 4, rule_azimuths: 3, ..coarse(model) };
+            let mut probe = Probe::new(&device, &settings, planet).unwrap();
+            for altitude in [-100.0, 1.7, 5e4, 1e7] {
+                for sun in [0.0f64, 91.0, 180.0] {
+                    let mut rays = Vec::new();
+                    for view in [0.0f64, 60.0, 89.99, 90.0, 90.01, 135.0, 157.2, 180.0] {
+                        for distance in [0.0, 1e-3, 50.0, 1e5, 1e9] {
+                            rays.push(Ray::at(view.to_radians(), 0.7, distance));
+                        }
+                    }
+                    for q in [Question::Sky, Question::Aerial, Question::Ground] {
+                        for (ray, a) in rays.iter().zip(probe.under_sun(q, altitude, sun.to_radians(), &rays).unwrap())
+                        {
+                            let fine = if q == Question::Ground {
+                                a.radiance.iter().chain(&a.transmittance).all(|v| v.is_finite() && *v >= 0.0)
+                            } else {
+                                sane(&a)
+                            };
+                            assert!(fine, "{model:?} h {altitude} sun {sun} {q:?} {ray:?} {a:?}\n{planet:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn horizon_twilight_mirror_and_height_are_smooth() {
+    let planet = golden_planet();
+    let mut probe = Probe::new(&device(), &coarse(SkyModel::Directional), &planet).unwrap();
+    // Sky and ground together hardly jump at the horizon: 0.1 degrees beside it, in steps of 0.002.
+    for altitude in [1.7f64, 2000.0, 12_000.0] {
+        let horizon = 90.0 + (6.36e6 / (6.36e6 + altitude)).acos().to_degrees();
+        let scan = |q, probe: &mut Probe| {
+            let at = |i: i32| Ray::at((horizon + 0.002 * f64::from(i)).to_radians(), 0.5, 0.0);
+            let rays: Vec<Ray> = (-50..=50).map(at).collect();
+            probe.under_sun(q, altitude, 1.0, &rays).unwrap()
+        };
+        let sky = scan(Question::Sky, &mut probe);
+        let ground = scan(Question::Ground, &mut probe);
+        let sum: Vec<f32> = sky.iter().zip(&ground).map(|(a, b)| a.radiance[1] + b.radiance[1]).collect();
+        let whole = sum.iter().fold(0.0f32, |m, v| m.max(*v));
+        for (i, pair) in sum.windows(2).enumerate() {
+            // At the edge the whole air's light gives way to that of ground 5 km off from 1.7 m (a dark line, as it is in
+            // nature), of ground in haze from aloft.
+            let edge = (49..=51).contains(&i);
+            let limit = match (edge, altitude < 10.0) {
+                (true, true) => 0.85,
+                (true, false) => 0.3,
+                (false, true) => 0.1,
+                (false, false) => 0.02,
+            };
+            assert!((pair[1] - pair[0]).abs() < limit * whole, "h {altitude} at {i}: {pair:?}");
+        }
+    }
+    // Zenith light falls without a step from sun 85 to 105.
+    let up = [Ray::at(0.0, 0.0, 0.0)];
+    let mut last = f32::MAX;
+    for tenth in 850..=1050 {
+        let a = probe.under_sun(Question::Sky, 1.0, (f64::from(tenth) * 0.1).to_radians(), &up).unwrap()[0];
+        assert!(a.radiance[1] < last, "sun {} {} {last}", f64::from(tenth) * 0.1, a.radiance[1]);
+        last = a.radiance[1];
+    }
+    // Mirror plane, and continuous across it.
+    let around: Vec<Ray> = (0..=60).map(|i| Ray::at(1.3, (f64::from(i) - 30.0) * 0.002, 0.0)).collect();
+    let seen = probe.under_sun(Question::Sky, 1.0, 1.4, &around).unwrap();
+    for i in 0..=60 {
+        assert!((seen[i].radiance[2] / seen[60 - i].radiance[2] - 1.0).abs() < 2e-3, "{i}");
+        assert!(i == 0 || (seen[i].radiance[2] / seen[i - 1].radiance[2] - 1.0).abs() < 0.01, "{i}");
+    }
+    // From below the ground's level to space, the zenith darkens without a step.
+    let heights: Vec<f64> = (0..60).map(|i| 1e7 * (f64::from(i) / 59.0).powi(8) - 100.0).collect();
+    let mut last = f32::MAX;
+    for h in heights {
+        let a = probe.under_sun(Question::Sky, h, 0.8, &up).unwrap()[0];
+        assert!(a.radiance[0] <= last * 1.001, "{h}");
+        last = a.radiance[0];
+    }
+    assert_eq!(last, 0.0, "no air is above space");
+}
+
+#[test]
+fn brute_force_converges_and_a_teleport_leaves_nothing() {
+    let planet = golden_planet();
+    let device = device();
+    let rays: Vec<Ray> = [0.2f64, 0.8, 1.3, 1.5].map(|z| Ray::at(z, 0.6, 0.0)).to_vec();
+    let mut last: Option<Vec<Answer>> = None;
+    let mut gap = f32::MAX;
+    for march_cells in [4, 16, 64, 256] {
+        let settings = SkySettings { march_cells, ..coarse(SkyModel::BruteForce) };
+        let mut probe = Probe::new(&device, &settings, &planet).unwrap();
+        let seen = probe.under_sun(Question::Sky, 1.0, 1.45, &rays).unwrap();
+        if let Some(last) = &last {
+            let off = |(a, b): (&Answer, &Answer)| (a.radiance[0] / b.radiance[0] - 1.0).abs();
+            let now = seen.iter().zip(last).map(off).fold(0.0f32, f32::max);
+            assert!(now < gap * 0.7 || now < 1e-4, "{march_cells}: {now} after {gap}");
+            gap = now;
+        }
+        last = Some(seen);
+    }
+    assert!(gap < 1e-3, "{gap}");
+    let mut probe = Probe::new(&device, &coarse(SkyModel::Directional), &planet).unwrap();
+    let fresh = probe.under_sun(Question::Sky, 12_000.0, 1.55, &rays).unwrap();
+    probe.under_sun(Question::Sky, 1e6, 0.1, &rays).unwrap();
+    assert_eq!(probe.under_sun(Question::Sky, 12_000.0, 1.55, &rays).unwrap(), fresh);
+}
+
+#[test]
+fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
+    let device = device();
+    let settings = coarse(SkyModel::Directional);
+    let mut tables = SkyTables::new(&device, &settings).unwrap();
+    let mut volume = SkyVolume::new(&tables).unwrap();
+    let planet = golden_planet();
+    let mut hazy = planet;
+    hazy.mie.extinction_per_m = [1e-4; 3];
+    hazy.mie.scattering_per_m = [9e-5; 3];
+    let observer = Observer::under_sun(&planet, 10.0, 1.2);
+    let light = |tables: &SkyTables| tables.read_light().unwrap().irradiance(0.0, 0.4)[1];
+    let mut frame = |tables: &mut SkyTables, planet: &Planet, share: f32| {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let progress = tables.update(&mut encoder, planet, share).unwrap();
+        let drawn = volume.prepare(&mut encoder, tables, &observer).unwrap();
+        device.submit_and_wait(encoder).unwrap();
+        (progress, drawn)
+    };
+    assert_eq!(frame(&mut tables, &planet, 1.0 / 16.0).0.done, 1.0, "the first planet is shown at once");
+    assert!(!frame(&mut tables, &planet, 1.0 / 16.0).1, "nothing changed, nothing is drawn");
+    let before = light(&tables);
+    let mut values = vec![before];
+    let mut frames = 0;
+    loop {
+        let (progress, _) = frame(&mut tables, &hazy, 1.0 / 16.0);
+        assert!(progress.work <= 1.0 / 16.0 + 1e-4, "{progress:?}");
+        values.push(light(&tables));
+        frames += 1;
+        if progress.done >= 1.0 {
+            break;
+        }
+        assert!(frames < 60);
+    }
+    assert!(frames >= 32, "16 frames to build, 16 to fade: {frames}");
+    let mut fresh = SkyTables::new(&device, &settings).unwrap();
+    frame(&mut fresh, &hazy, 1.0);
+    let after = light(&fresh);
+    assert!((after / before - 1.0).abs() > 0.02, "haze shows: {before} {after}");
+    assert_eq!(*values.last().unwrap(), after, "it arrives where a fresh build is");
+    let largest = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+    assert!(largest < (after - before).abs() / 12.0, "{values:?}");
+}
