@@ -77,6 +77,8 @@ fn header_compiles_under_every_standard_without_a_warning() {
                 .arg(dir.join("all.c")));
         }
         for std in ["c++11", "c++17", "c++20"] {
+            let hpp = root().join("tests/c/raii.cpp");
+            run(Command::new(cpp).arg(format!("-std={std}")).args(strict).arg(root().join("include")).arg(hpp));
             run(Command::new(cpp)
                 .arg(format!("-std={std}"))
                 .args(strict)

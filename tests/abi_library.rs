@@ -29,14 +29,17 @@ fn library() -> PathBuf {
 }
 
 /// Compiles one of the C programs beside these tests.
-fn program(name: &str, library: Option<&Path>) -> PathBuf {
+fn program(name: &str, options: &[&str], library: Option<&Path>) -> PathBuf {
     // The tests run at the same time: each has a folder of its own.
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("library-{}", std::process::id()));
     fs::create_dir_all(&dir).expect("the target directory is writable");
-    let out = dir.join(name);
-    let mut cc = Command::new("gcc");
-    cc.args(["-std=c99", "-g", "-Wall", "-Wextra", "-Werror", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
-    cc.arg(root().join(format!("tests/c/{name}.c"))).arg("-o").arg(&out);
+    let source = root().join(name);
+    let cpp = name.ends_with(".cpp");
+    let out = dir.join(source.file_stem().expect("a file"));
+    let mut cc = Command::new(if cpp { "g++" } else { "gcc" });
+    cc.arg(if cpp { "-std=c++11" } else { "-std=c99" }).args(options);
+    cc.args(["-g", "-Wall", "-Wextra", "-Werror", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
+    cc.arg(&source).arg("-o").arg(&out);
     if let Some(library) = library {
         // A library with a SONAME is looked for under that name, which only an installed one has.
         for link in ["libwelkin.so", "libwelkin.so.1"] {
@@ -69,7 +72,7 @@ fn the_library_exports_the_committed_list_and_nothing_else() {
 
 #[test]
 fn the_library_loads_at_run_time() {
-    let program = program("dlopen", None);
+    let program = program("tests/c/dlopen.c", &[], None);
     let out = run(Command::new(&program).arg(library()).args(committed_symbols()));
     tidy(&program);
     assert_eq!(out, format!("{} functions\n", committed_symbols().len()));
@@ -77,15 +80,41 @@ fn the_library_loads_at_run_time() {
 
 #[test]
 fn a_c_host_makes_uses_and_destroys_everything() {
-    let noop = program("noop", Some(&library()));
+    let noop = program("tests/c/noop.c", &[], Some(&library()));
     assert_eq!(run(&mut Command::new(&noop)), "ok\n");
     tidy(&noop);
 }
 
 #[test]
 fn valgrind_finds_no_error_and_no_leak() {
-    let noop = program("noop", Some(&library()));
+    let noop = program("tests/c/noop.c", &[], Some(&library()));
     let options = ["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect"];
     assert_eq!(run(Command::new("valgrind").args(options).arg(&noop)), "ok\n");
     tidy(&noop);
+}
+
+#[test]
+fn a_cpp_host_with_and_without_exceptions() {
+    for options in [&["-pedantic"][..], &["-pedantic", "-fno-exceptions"]] {
+        let raii = program("tests/c/raii.cpp", options, Some(&library()));
+        assert_eq!(run(&mut Command::new(&raii)), "ok\n");
+        tidy(&raii);
+    }
+}
+
+#[test]
+fn the_minimal_example_draws_a_sky() {
+    let minimal = program("examples/minimal.c", &[], Some(&library()));
+    let output = Command::new(&minimal).output().expect("it runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let header = b"P6 320 180 255\n";
+    assert_eq!(&output.stdout[..header.len()], header);
+    let pixels: Vec<&[u8]> = output.stdout[header.len()..].chunks_exact(3).collect();
+    assert_eq!(pixels.len(), 320 * 180);
+    // By day the sky is bluer than it is red high up, and brighter than the ground is below the horizon.
+    let row = |y: usize| &pixels[y * 320..(y + 1) * 320];
+    let mean = |y: usize, c: usize| row(y).iter().map(|p| f64::from(p[c])).sum::<f64>() / 320.0;
+    assert!(mean(5, 2) > mean(5, 0) + 20.0, "red {}, blue {}", mean(5, 0), mean(5, 2));
+    assert!(mean(80, 1) > 60.0, "{}", mean(80, 1));
+    tidy(&minimal);
 }

@@ -1,0 +1,185 @@
+/*
+ * Welkin for C++11 and later: handles that end themselves. Everything else is welkin.h, whose structs and constants are
+ * used as they are; `device.get()` is the C handle for calls that have no method here.
+ *
+ * Errors: with exceptions every method throws welkin::error on a failure; without them (-fno-exceptions, or
+ * WELKIN_NO_EXCEPTIONS defined before the include) it answers the status. Both ways WK_OK and WK_PENDING come back.
+ *
+ * Declare children after their parents: they are destroyed in reverse order, as the API asks.
+ */
+#ifndef WELKIN_HPP
+#define WELKIN_HPP
+
+#include "welkin.h"
+
+#if !defined(WELKIN_NO_EXCEPTIONS) && !defined(__cpp_exceptions) && !defined(__EXCEPTIONS) && !defined(_CPPUNWIND)
+#define WELKIN_NO_EXCEPTIONS
+#endif
+#ifndef WELKIN_NO_EXCEPTIONS
+#include <stdexcept>
+#endif
+
+namespace welkin {
+
+#ifndef WELKIN_NO_EXCEPTIONS
+/* A failed call: what() is the sentence of wk_last_error_message. */
+class error : public std::runtime_error {
+public:
+    explicit error(wk_status status) : std::runtime_error(wk_last_error_message()), status_(status) {}
+    wk_status status() const noexcept { return status_; }
+
+private:
+    wk_status status_;
+};
+#endif
+
+/* Throws on a failure if exceptions are in use; answers the status. */
+inline wk_status check(wk_status status)
+{
+#ifndef WELKIN_NO_EXCEPTIONS
+    if (status < 0) throw error(status);
+#endif
+    return status;
+}
+
+/* Owns a handle: moves, never copies. */
+template <class T, wk_status (*Destroy)(T *)>
+class handle {
+public:
+    handle() noexcept : raw_(nullptr) {}
+    explicit handle(T *raw) noexcept : raw_(raw) {}
+    handle(handle &&other) noexcept : raw_(other.release()) {}
+    handle(const handle &) = delete;
+    handle &operator=(const handle &) = delete;
+    handle &operator=(handle &&other) noexcept
+    {
+        if (this != &other) reset(other.release());
+        return *this;
+    }
+    ~handle() { reset(); }
+
+    T *get() const noexcept { return raw_; }
+    explicit operator bool() const noexcept { return raw_ != nullptr; }
+    /* Gives the handle up without destroying it. */
+    T *release() noexcept
+    {
+        T *raw = raw_;
+        raw_ = nullptr;
+        return raw;
+    }
+    /* Destroys what is owned and owns `raw` instead. */
+    void reset(T *raw = nullptr) noexcept
+    {
+        if (raw_) (void)Destroy(raw_);
+        raw_ = raw;
+    }
+
+protected:
+    /* Takes what a wk_x_create made. */
+    wk_status adopt(wk_status status, T *made)
+    {
+        if (status >= 0) reset(made);
+        return check(status);
+    }
+
+private:
+    T *raw_;
+};
+
+class device : public handle<wk_device, wk_device_destroy> {
+public:
+    wk_status create(const wk_device_desc *desc = nullptr)
+    {
+        wk_device *made = nullptr;
+        const wk_status status = wk_device_create(desc, &made);
+        return adopt(status, made);
+    }
+    wk_status create_for_window(const wk_window &window, const wk_device_desc *desc = nullptr)
+    {
+        wk_device *made = nullptr;
+        const wk_status status = wk_device_create_for_window(desc, &window, &made);
+        return adopt(status, made);
+    }
+    wk_status create_opengl(const wk_opengl_host_desc &desc)
+    {
+        wk_device *made = nullptr;
+        const wk_status status = wk_device_create_opengl(&desc, &made);
+        return adopt(status, made);
+    }
+    wk_status create_vulkan(const wk_vulkan_host_desc &desc)
+    {
+        wk_device *made = nullptr;
+        const wk_status status = wk_device_create_vulkan(&desc, &made);
+        return adopt(status, made);
+    }
+    wk_status get_caps(wk_caps &caps) const { return check(wk_device_get_caps(get(), &caps)); }
+};
+
+class texture : public handle<wk_texture, wk_texture_destroy> {
+public:
+    wk_status create(const device &parent, const wk_texture_desc &desc)
+    {
+        wk_texture *made = nullptr;
+        const wk_status status = wk_texture_create(parent.get(), &desc, &made);
+        return adopt(status, made);
+    }
+    wk_status write(const void *data, size_t size, uint32_t bytes_per_row)
+    {
+        return check(wk_texture_write(get(), data, size, bytes_per_row));
+    }
+    wk_status read(void *data, size_t size, uint32_t bytes_per_row)
+    {
+        return check(wk_texture_read(get(), data, size, bytes_per_row));
+    }
+};
+
+class surface : public handle<wk_surface, wk_surface_destroy> {
+public:
+    wk_status create(const device &parent, const wk_window &window)
+    {
+        wk_surface *made = nullptr;
+        const wk_status status = wk_surface_create(parent.get(), &window, &made);
+        return adopt(status, made);
+    }
+    wk_status configure(const wk_surface_config &config) { return check(wk_surface_configure(get(), &config)); }
+    /* WK_PENDING and WK_ERROR_SURFACE_OUTDATED are daily life of a window: neither throws. */
+    wk_status acquire() { return unless_outdated(wk_surface_acquire(get())); }
+    wk_status present() { return unless_outdated(wk_surface_present(get())); }
+
+private:
+    static wk_status unless_outdated(wk_status s) { return s == WK_ERROR_SURFACE_OUTDATED ? s : check(s); }
+};
+
+class context : public handle<wk_context, wk_context_destroy> {
+public:
+    wk_status create(const device &parent, const wk_context_desc *desc = nullptr)
+    {
+        wk_context *made = nullptr;
+        const wk_status status = wk_context_create(parent.get(), desc, &made);
+        return adopt(status, made);
+    }
+    wk_status set_weather(const wk_weather &weather, double start_time_s, double transition_s)
+    {
+        return check(wk_context_set_weather(get(), &weather, start_time_s, transition_s));
+    }
+    wk_status set_clock(double utc_s, double time_s) { return check(wk_context_set_clock(get(), utc_s, time_s)); }
+    wk_status update(double time_s) { return check(wk_context_update(get(), time_s)); }
+};
+
+class view : public handle<wk_view, wk_view_destroy> {
+public:
+    wk_status create(const context &parent, const wk_view_desc *desc = nullptr)
+    {
+        wk_view *made = nullptr;
+        const wk_status status = wk_view_create(parent.get(), desc, &made);
+        return adopt(status, made);
+    }
+    wk_status record(const wk_frame &frame, wk_stage_flags stages = WK_STAGE_ALL)
+    {
+        return check(wk_view_record(get(), &frame, stages));
+    }
+};
+
+} // namespace welkin
+
+#endif /* WELKIN_HPP */

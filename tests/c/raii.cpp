@@ -1,0 +1,52 @@
+/* The C++ wrapper: objects move and end themselves, failures throw or answer. Built both ways. */
+#include "welkin.hpp"
+
+#include <cstdio>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+static_assert(!std::is_copy_constructible<welkin::device>::value, "handles never copy");
+static_assert(std::is_nothrow_move_constructible<welkin::device>::value, "handles move");
+static_assert(sizeof(welkin::view) == sizeof(wk_view *), "a handle is all there is");
+
+static int fails(welkin::device &device)
+{
+    wk_texture_desc desc = WK_TEXTURE_DESC_INIT;
+    welkin::texture texture;
+    desc.width = 0;
+#ifdef WELKIN_NO_EXCEPTIONS
+    return texture.create(device, desc) == WK_ERROR_INVALID_ARGUMENT && !texture;
+#else
+    try {
+        texture.create(device, desc);
+    } catch (const welkin::error &e) {
+        return e.status() == WK_ERROR_INVALID_ARGUMENT && std::strstr(e.what(), "desc.width") && !texture;
+    }
+    return 0;
+#endif
+}
+
+int main()
+{
+    wk_device *raw = nullptr;
+    {
+        wk_device_desc desc = WK_DEVICE_DESC_INIT;
+        wk_frame frame = WK_FRAME_INIT;
+        welkin::device first;
+        desc.backends = WK_BACKEND_NOOP;
+        if (first.create(&desc) != WK_OK) return 1;
+        welkin::device device(std::move(first));
+        if (first || !device) return 2;
+        raw = device.get();
+        welkin::context context;
+        welkin::view view;
+        if (context.create(device) != WK_OK || view.create(context) != WK_OK) return 3;
+        if (context.update(1.0) != WK_OK || view.record(frame, WK_STAGE_PREPARE) != WK_OK) return 4;
+        if (!fails(device)) return 5;
+    }
+    /* Everything ended in the right order, or the device would still be alive. */
+    if (wk_device_get_status(raw) != WK_ERROR_BAD_HANDLE) return 6;
+    std::puts("ok");
+    return 0;
+}
