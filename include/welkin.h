@@ -1694,7 +1694,7 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
 
 /*
  * ====================================================================================================
- * Weather reports
+ * Weather reports and presets
  *
  * A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
  * ====================================================================================================
@@ -1759,6 +1759,29 @@ wk_status wk_weather_from_metar(const char *report,
                                 uint32_t layer_size,
                                 wk_weather *out_weather,
                                 wk_metar *out_metar);
+
+/**
+ * The weather of a named preset into `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the names.
+ * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
+ */
+WK_API
+wk_status wk_weather_from_preset(const char *name,
+                                 wk_cloud_layer *layers,
+                                 uint32_t layer_capacity,
+                                 uint32_t layer_size,
+                                 wk_weather *out_weather);
+
+/**
+ * Name and one-line description of the preset `index`, from 0 in the order of a menu; both live as long as the process,
+ * and either place may be NULL.
+ * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
+ */
+WK_API
+wk_status wk_get_preset(uint32_t index,
+                        const char **out_name,
+                        const char **out_description);
 
 /**
  * Writes the default of every field: the same bytes as `WK_METAR_INIT`. `struct_size` is `sizeof(wk_metar)`

@@ -1,10 +1,11 @@
-//! Weather reports
+//! Weather reports and presets
 //!
 //! A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
 
 use std::{
-    ffi::{c_char, c_void},
+    ffi::{CString, c_char, c_void},
     ptr::null,
+    sync::OnceLock,
 };
 
 use super::{
@@ -16,7 +17,7 @@ use super::{
     weather_convert::weather_out,
 };
 use crate::{
-    error::Status,
+    error::{Error, Status},
     weather::{MetarReport, Weather},
 };
 
@@ -117,6 +118,57 @@ pub unsafe extern "C" fn wk_weather_from_metar(
         weather.set(&report.weather)?;
         if let Some(metar) = metar {
             metar.set(&wk_metar::of(&report));
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// The weather of a named preset into `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the names.
+/// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_weather_from_preset(
+    name: *const c_char,
+    layers: *mut wk_cloud_layer,
+    layer_capacity: u32,
+    layer_size: u32,
+    out_weather: *mut wk_weather,
+) -> wk_status {
+    guard("wk_weather_from_preset", |_| {
+        // SAFETY: the caller's promises.
+        let (name, weather) =
+            unsafe { (input::text("name", name)?, weather_out(layers, layer_capacity, layer_size, out_weather)?) };
+        weather.set(&Weather::preset(name)?)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Name and one-line description of the preset `index`, from 0 in the order of a menu; both live as long as the process,
+/// and either place may be NULL.
+/// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_get_preset(
+    index: u32,
+    out_name: *mut *const c_char,
+    out_description: *mut *const c_char,
+) -> wk_status {
+    static TEXTS: OnceLock<Vec<[CString; 2]>> = OnceLock::new();
+    guard("wk_get_preset", |_| {
+        let texts = TEXTS.get_or_init(|| {
+            let both = |name| [name, Weather::preset_description(name).unwrap_or_default()];
+            Weather::preset_names().map(|n| both(n).map(|t| CString::new(t).unwrap_or_default())).collect()
+        });
+        let Some(found) = texts.get(index as usize) else {
+            return Err(Error::range("index", &format!("below {}", texts.len()), index));
+        };
+        for (param, place, text) in [("out_name", out_name, &found[0]), ("out_description", out_description, &found[1])]
+        {
+            if !place.is_null() {
+                layout::check_pointer(&param, place)?;
+                // SAFETY: checked, and the caller's.
+                unsafe { place.write(text.as_ptr()) };
+            }
         }
         Ok(Status::Ok)
     })

@@ -151,6 +151,8 @@ const WITHOUT: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
     "wk_version",
+    "wk_weather_from_preset",
+    "wk_get_preset",
     "wk_weather_from_metar",
     "wk_fog_law_cull_distance",
     "wk_visibility_cull_distance",

@@ -206,3 +206,27 @@ fn a_metar_report_comes_with_its_clouds_or_says_the_column() {
         assert_eq!(wk_context_set_weather(world.context, &weather, 0.0, 0.0), WK_OK, "{}", message());
     }
 }
+
+#[test]
+fn every_preset_has_a_name_and_is_a_weather() {
+    let world = World::new();
+    let mut layers = [init::<wk_cloud_layer>("wk_cloud_layer"); 16];
+    let size = size_of::<wk_cloud_layer>() as u32;
+    let mut weather = init::<wk_weather>("wk_weather");
+    let (mut name, mut what, mut count) = (std::ptr::null(), std::ptr::null(), 0);
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        while wk_get_preset(count, &mut name, &mut what) == WK_OK {
+            assert!(!std::ffi::CStr::from_ptr(what).is_empty());
+            let status = wk_weather_from_preset(name, layers.as_mut_ptr(), 16, size, &mut weather);
+            assert_eq!(status, WK_OK, "{}", message());
+            assert_eq!(wk_context_set_weather(world.context, &weather, 0.0, 0.0), WK_OK, "{}", message());
+            count += 1;
+        }
+        assert!(count > 10 && message().contains(&format!("index must be below {count}")), "{count} {}", message());
+        let unknown = wk_weather_from_preset(c"nice".as_ptr(), layers.as_mut_ptr(), 16, size, &mut weather);
+        assert_eq!(unknown, WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("clear"), "{}", message());
+        assert_eq!(wk_get_preset(0, null_mut(), null_mut()), WK_OK);
+    }
+}
