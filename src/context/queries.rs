@@ -29,7 +29,7 @@ pub struct LightAt {
 /// What lies between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
-    /// Share of light that gets through, per channel (680, 550, 440 nm of the default planet).
+    /// Share of light that gets through, per channel (620, 550, 450 nm of the default planet).
     pub transmittance: [f64; 3],
     /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way were
     /// like this part of it; infinite where nothing stops light.

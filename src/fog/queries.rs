@@ -10,7 +10,7 @@ use crate::error::{Error, Result, check_range};
 const NO_LIGHT: FogLight =
     FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
 
-/// Transmittance of the layer per channel (680, 550, 440 nm) from the viewpoint to the point `offset` metres away, in
+/// Transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset` metres away, in
 /// the host's axes. Multiply by those of air, haze and precipitation.
 ///
 /// # Errors

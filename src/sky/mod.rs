@@ -35,6 +35,7 @@ mod probe_csv;
 mod recipe;
 pub mod reference;
 pub mod settings;
+pub mod sight;
 pub mod spectral;
 pub mod sun;
 pub mod tables;

@@ -6,6 +6,7 @@
 mod edges;
 mod golden;
 mod laws;
+mod spectrum;
 
 use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};

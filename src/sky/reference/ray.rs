@@ -190,12 +190,35 @@ impl Ray {
         density * sum
     }
 
-    /// Integral of the ozone tent over u in [a, b]: panels end at its kinks.
+    /// Integral of the ozone tent over u in [a, b], in closed form: with t the distance from the perigee, the integral of
+    /// r dt is (t r + r_p^2 asinh(t / r_p)) / 2.
     fn ozone_leg(&self, medium: &Medium, a: f64, b: f64) -> f64 {
         let (center, half_width) = medium.ozone_m;
-        let marks = [center - half_width, center, center + half_width].map(|h| self.u_of_altitude(h).clamp(a, b));
-        let base = self.perigee_altitude_m();
-        marks.windows(2).map(|m| self.panel(m[0], m[1], &|u: f64| medium.ozone(base + u * u))).sum()
+        if half_width <= 0.0 {
+            return 0.0;
+        }
+        let rp = self.perigee_radius_m;
+        let at = |altitude: f64| {
+            let u = self.u_of_altitude(altitude).clamp(a, b);
+            let (t, r) = (u * (2.0 * rp + u * u).sqrt(), rp + u * u);
+            // Below a millimetre the second term is nothing and its logarithm no number.
+            let bend = if rp > 1e-3 { rp * rp * (t / rp).asinh() } else { 0.0 };
+            (t, 0.5 * (t * r + bend))
+        };
+        let (low, middle, high) = (at(center - half_width), at(center), at(center + half_width));
+        let rise = (middle.1 - low.1) - (self.bottom_m + center - half_width) * (middle.0 - low.0);
+        let fall = (self.bottom_m + center + half_width) * (high.0 - middle.0) - (high.1 - middle.1);
+        ((rise + fall) / half_width).max(0.0)
+    }
+
+    /// Column of the ozone tent from the origin to the end of the air in a direction that misses the ground, m.
+    pub fn ozone_to_space(&self, medium: &Medium) -> f64 {
+        let u0 = self.above_perigee_m.sqrt();
+        let u_top = self.u_of_altitude(medium.top_m);
+        if self.mu >= 0.0 {
+            return self.ozone_leg(medium, u0.min(u_top), u_top);
+        }
+        self.ozone_leg(medium, 0.0, u0.min(u_top)) + self.ozone_leg(medium, 0.0, u_top)
     }
 
     /// Gauss integral of `density` ds over u in [a, b], cut where the path element itself bends: near a perigee that
