@@ -2,7 +2,7 @@
 
 use welkin::{
     context::{Context, GivenDirection},
-    weather::{Fog, FogKind, Weather},
+    weather::{Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
 
 pub struct Shot {
@@ -42,6 +42,43 @@ pub fn shots() -> Vec<Shot> {
         Shot { name: "low_sun", caption: "Low sun", weather: |c, _| sun(c, 40.0, 10.0), ..GROUND },
         Shot { name: "sunset", caption: "Sunset", weather: |c, _| sun(c, 15.0, 0.5), ..GROUND },
         Shot { name: "twilight", caption: "Civil twilight", weather: |c, _| sun(c, 15.0, -5.0), ..GROUND },
+        Shot {
+            name: "night",
+            caption: "Night with a gibbous moon",
+            elevation_deg: 12.0,
+            weather: |c, _| {
+                sun(c, 300.0, -35.0)?;
+                c.set_moon(Some(GivenDirection { azimuth_deg: 15.0, elevation_deg: 18.0 }))
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "haze",
+            caption: "Haze, visibility 5 km",
+            weather: |c, _| {
+                sun(c, 70.0, 30.0)?;
+                let aerosol = Aerosol::of(AerosolKind::Haze);
+                c.set_weather(&Weather { visibility_m: 5000.0, aerosol, ..Weather::default() }, 0.0, 0.0)
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "overcast",
+            caption: "Overcast, light rain, visibility 4 km",
+            weather: |c, ground| {
+                sun(c, 70.0, 35.0)?;
+                let weather = Weather {
+                    visibility_m: 4000.0,
+                    relative_humidity: 0.95,
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 400.0)],
+                    precipitation: Precipitation::of(PrecipitationKind::Rain, 2.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            ..GROUND
+        },
         Shot {
             name: "fog",
             caption: "Fog, visibility 150 m",
@@ -87,6 +124,17 @@ pub fn shots() -> Vec<Shot> {
             above_ground: false,
             elevation_deg: -14.0,
             weather: |c, _| sun(c, 30.0, 5.0),
+            ..GROUND
+        },
+        Shot {
+            name: "shadow",
+            caption: "200 km up at the terminator: the Earth's shadow",
+            height_m: 200e3,
+            above_ground: false,
+            elevation_deg: -16.0,
+            azimuth_deg: 60.0,
+            fov_y_deg: 60.0,
+            weather: |c, _| sun(c, 10.0, -9.0),
             ..GROUND
         },
     ]

@@ -6,7 +6,11 @@ use super::Context;
 use crate::{
     error::Result,
     scene::Place,
-    sky::{Planet, moon, sun},
+    sky::{
+        Planet, moon,
+        spectral::{Conversion, luminance, sun_rec709},
+        sun,
+    },
     weather::Conditions,
 };
 
@@ -38,16 +42,19 @@ pub struct Light {
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
 const SUN_LUX: f64 = 133_334.0;
-/// Colour of unscattered sunlight in linear Rec. 709 of luminance 1: ASTM G173's extraterrestrial spectrum seen by the
-/// CIE 1931 observer (chromaticity 0.3234, 0.3333).
-pub(super) const SUN_COLOR: [f64; 3] = [1.0937, 0.9784, 0.9390];
 /// Colour of moonlight over sunlight: the moon's albedo rises towards red (Velikodsky et al. 2011), luminance kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 /// Linear Rec. 709 colours, lux, of unscattered sunlight's parts at each of the planet's wavelengths: what a transfer of
-/// light at these wavelengths looks like is their sum weighted by it.
-pub(super) fn color_columns(_planet: &Planet) -> [[f64; 3]; 3] {
-    let lux = SUN_COLOR.map(|v| v * SUN_LUX);
-    [[lux[0], 0.0, 0.0], [0.0, lux[1], 0.0], [0.0, 0.0, lux[2]]]
+/// light at these wavelengths looks like is their sum weighted by it ([`Conversion::fitted`]; each wavelength as one
+/// channel where two of them are too close to tell colours apart).
+///
+/// Adapted (von Kries) to unscattered sunlight as white, as daylight film and eyes are: on a D65 display it would look
+/// yellow.
+pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
+    let conversion = Conversion::fitted(&planet.wavelengths_nm).unwrap_or_else(|_| Conversion::per_channel());
+    let white = sun_rec709();
+    let lux = luminance(&white);
+    [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))
 }
 
 /// Colour of a transfer at the planet's wavelengths.
@@ -68,7 +75,6 @@ impl Context {
         let (apparent, flattening) = see(to_sun);
         let clouds = c.cloud_light(to_sun.z, 0.2);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
-        let color = color_columns(&self.desc.planet);
         let sun = Light {
             direction: to_sun,
             apparent,
@@ -76,7 +82,7 @@ impl Context {
             angular_radius: (self.desc.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
             lit: 1.0,
             spectrum: [strength; 3],
-            illuminance_lux: color_of(&color, [strength; 3]),
+            illuminance_lux: color_of(&self.color, [strength; 3]),
             flattening,
             direct_share: clouds.direct,
             matters: true,
@@ -115,7 +121,7 @@ impl Context {
             angular_radius: at.angular_radius,
             lit: at.illuminated,
             spectrum,
-            illuminance_lux: color_of(&color_columns(&self.desc.planet), spectrum),
+            illuminance_lux: color_of(&self.color, spectrum),
             flattening,
             direct_share: c.cloud_light(at.direction.z, 0.2).direct,
             matters: dark && above,

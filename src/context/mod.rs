@@ -96,6 +96,8 @@ pub struct Context {
     device: Arc<Device>,
     shared: Arc<Shared>,
     sky: Mutex<FollowedSky>,
+    /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
+    color: [[f64; 3]; 3],
     desc: ContextDesc,
     timeline: Timeline,
     given_sun: Option<GivenDirection>,
@@ -116,7 +118,19 @@ impl Context {
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
         let sky = Mutex::new(FollowedSky::new(&device, &desc.sky)?);
-        Ok(Self { device, shared, sky, desc, timeline, given_sun: None, given_moon: None, fog_law: None, time_s: 0.0 })
+        let color = lights::color_columns(&desc.planet);
+        Ok(Self {
+            device,
+            shared,
+            sky,
+            color,
+            desc,
+            timeline,
+            given_sun: None,
+            given_moon: None,
+            fog_law: None,
+            time_s: 0.0,
+        })
     }
 
     /// The device it was made on.

@@ -4,11 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::{
-    Context, Light,
-    air::planet_under,
-    lights::{color_columns, color_of},
-};
+use super::{Context, Light, air::planet_under, lights::color_of};
 use crate::{
     error::Result,
     scene::Place,
@@ -109,11 +105,18 @@ fn air_mass(elevation_deg: f64) -> f64 {
 ///
 /// The sky's share by day is what the two-stream slab (Meador & Weaver 1980) lets through diffusely, within 10 % of the
 /// scattering tables' irradiance; below 5 degrees it is led over to measured twilight.
-fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, spectrum: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+fn clear_light(
+    (planet, color): (&Planet, &[[f64; 3]; 3]),
+    altitude_m: f64,
+    elevation_deg: f64,
+    spectrum: [f64; 3],
+) -> ([f64; 3], [f64; 3]) {
     let (depth, ozone) = zenith_depths(planet, altitude_m);
     let mass = air_mass(elevation_deg);
-    let up = smooth(-0.9, -0.25, elevation_deg);
-    let color = color_columns(planet);
+    // From a height the horizon lies deeper and the sun sets later.
+    let h = altitude_m.max(0.0);
+    let dip = ((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).atan().to_degrees();
+    let up = smooth(-0.9, -0.25, elevation_deg + dip);
     let lux = map(spectrum, ozone, |l, t| l * (-t * mass).exp());
     let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
     let mu = elevation_deg.to_radians().sin().max(0.08);
@@ -125,7 +128,7 @@ fn clear_light(planet: &Planet, altitude_m: f64, elevation_deg: f64, spectrum: [
     let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
     let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * spectrum[1]);
     let t = smooth(-0.8, 5.0, elevation_deg);
-    (color_of(&color, direct).map(|v| v.max(0.0)), map(dusk, color_of(&color, day), |n, d| n + (d.max(0.0) - n) * t))
+    (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
 /// What is looked at: grey ground under `total` lux and a share of the sky. With the sun near the horizon the part of
@@ -191,7 +194,7 @@ impl Context {
             place: local.place,
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position),
-            color: color_columns(&planet),
+            color: self.color,
             planet,
             sun,
             moon,
@@ -236,16 +239,22 @@ impl Context {
         moon: &Light,
         below: f64,
     ) -> GroundLight {
+        let tops = c.cloud_slabs().map(|s| s.top_m() + c.air.station_altitude_m);
+        let cloud_top_m = tops.fold(0.0, f64::max);
         let one = |light: &Light| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
-            let (direct, sky) = clear_light(planet, place.altitude_m, elevation.to_degrees(), light.spectrum);
+            let at =
+                |altitude_m| clear_light((planet, &self.color), altitude_m, elevation.to_degrees(), light.spectrum);
+            let (direct, sky) = at(place.altitude_m);
+            // What clouds pass on diffusely fell on their tops, through less air.
+            let (on_top, _) = at(place.altitude_m.max(cloud_top_m));
             let clouds = c.cloud_light(light.direction.z, 0.2);
             let share = |v: f64| 1.0 + (v - 1.0) * below;
             let level = light.direction.z.max(0.0);
             let from_clouds = clouds.diffuse * below;
             (
                 direct.map(|d| d * share(clouds.direct)),
-                map(direct, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
+                map(on_top, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
             )
         };
         let (sun_lux, sun_sky) = one(sun);
@@ -262,10 +271,14 @@ impl Context {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lights::color_columns;
     use super::*;
 
     fn lux(elevation_deg: f64) -> f64 {
-        let (direct, sky) = clear_light(&Planet::earth(), 0.0, elevation_deg, [1.0; 3]);
+        static EARTH: std::sync::LazyLock<(Planet, [[f64; 3]; 3])> =
+            std::sync::LazyLock::new(|| (Planet::earth(), color_columns(&Planet::earth())));
+        let (planet, color) = &*EARTH;
+        let (direct, sky) = clear_light((planet, color), 0.0, elevation_deg, [1.0; 3]);
         luminance(direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(sky)
     }
 
