@@ -104,3 +104,14 @@ fn a_consumer_builds_by_find_package() {
     assert_runs(&build.join("consumer-static"));
     tidy(&tree);
 }
+
+#[test]
+fn the_readme_s_c_program_compiles() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("the README");
+    let code = readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a C program in it");
+    let dir = scratch("readme");
+    fs::write(dir.join("readme.c"), code).expect("the folder is ours");
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-I"];
+    run(Command::new("gcc").args(strict).arg(root().join("include")).arg(dir.join("readme.c")));
+    fs::remove_dir_all(dir).expect("the folder is ours");
+}

@@ -80,7 +80,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     return true;
 }
 
-bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool cut)
+bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still)
 {
     wk_opengl_target target = WK_OPENGL_TARGET_INIT;
     target.color.kind = target.depth.kind = WK_OPENGL_TEXTURE;
@@ -99,7 +99,7 @@ bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_
     memcpy(f.view, view.m, sizeof f.view);
     memcpy(f.projection, projection.m, sizeof f.projection);
     f.clip_space = p->reversed ? WK_CLIP_ZERO_TO_ONE : WK_CLIP_MINUS_ONE_TO_ONE;
-    f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | (cut ? WK_FRAME_CUT : 0);
+    f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | (still ? WK_FRAME_CUT | WK_FRAME_NO_HISTORY : 0);
     f.color_space = WK_COLOR_SCENE_LINEAR;
     f.cd_m2_per_unit = cd_m2_per_unit;
     f.target = &target;

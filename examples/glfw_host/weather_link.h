@@ -38,8 +38,11 @@ bool weather_clock(weather_link *w, double utc_s);
 /* Every frame, before the host draws: moves time on and answers the light that the host's own objects stand in. */
 bool weather_light(weather_link *w, const camera *c, double time_s, light *l);
 
-/* Every frame, after the host has drawn: sky, air and fog into its picture, which is tone-mapped then. */
-bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool cut);
+/*
+ * Every frame, after the host has drawn: sky, air and fog into its picture, which is tone-mapped then. `still` is for a
+ * picture that stands alone and has no frames before it.
+ */
+bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still);
 
 /* After the picture's textures were made anew. */
 void weather_resized(weather_link *w);
