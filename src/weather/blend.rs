@@ -196,3 +196,87 @@ impl SurfaceCover {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CloudKind, CloudLayer, Fog, FogKind, LN_20, Weather, derive};
+    use super::*;
+
+    fn clear() -> Conditions {
+        derive(&Weather { visibility_m: 10_000.0, ..Weather::default() }).unwrap()
+    }
+
+    fn fog() -> Conditions {
+        derive(&Weather { visibility_m: 150.0, fog: Fog::of(FogKind::Fog), ..Weather::default() }).unwrap()
+    }
+
+    #[test]
+    fn ends_are_exact_and_beyond_them_nothing_moves() {
+        let (a, b) = (clear(), fog());
+        assert_eq!((a.lerp(&b, 0.0), a.lerp(&b, 1.0)), (a, b));
+        assert_eq!((a.lerp(&b, -3.0), a.lerp(&b, f64::NAN), a.lerp(&b, 7.0)), (a, a, b));
+        assert_eq!(a.lerp(&a, 0.37), a, "nothing changes between equals");
+    }
+
+    #[test]
+    fn visibility_falls_by_equal_factors_and_its_parts_stay_its_parts() {
+        let (a, b) = (clear(), fog());
+        for i in 0..=10 {
+            let t = f64::from(i) / 10.0;
+            let c = a.lerp(&b, t);
+            let expected = 10_000.0 * (150.0f64 / 10_000.0).powf(t);
+            assert!((c.visibility_m() / expected - 1.0).abs() < 1e-9, "{t}: {} against {expected}", c.visibility_m());
+            let parts = c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m + c.fog.extinction_per_m;
+            assert!((parts / c.extinction_per_m - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_weight_is_geometric_and_survives_equal_ends() {
+        for (a, b) in [(1e-5, 0.05), (0.05, 1e-5), (1.0, 1.0 + 1e-7), (2.0, 2.0), (1.0, 1.0 + 1e-12)] {
+            for t in [0.0, 0.1, 0.5, 0.9, 1.0] {
+                let w = geometric_weight(a, b, t);
+                let expected = a * f64::powf(b / a, t);
+                assert!((mix(a, b, w) / expected - 1.0).abs() < 1e-9 && (0.0..=1.0).contains(&w), "{a} {b} {t}: {w}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_layer_that_fades_in_stands_where_it_will_stay() {
+        let (a, b) = (clear(), fog());
+        let early = a.lerp(&b, 0.01).fog;
+        assert!(early.extinction_per_m > 0.0 && early.top_m == b.fog.top_m && early.coverage == 1.0);
+        let cloudy = Weather { clouds: vec![CloudLayer::of(CloudKind::Stratus, 1.0, 250.0)], ..Weather::default() };
+        let c = derive(&cloudy).unwrap();
+        let half = a.lerp(&c, 0.5).clouds[0];
+        assert_eq!((half.cover, half.base_m), (0.5, 250.0));
+        assert!((half.optical_depth / c.clouds[0].optical_depth - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn low_cloud_and_high_cloud_do_not_turn_into_each_other() {
+        let of = |kind, base| {
+            derive(&Weather { clouds: vec![CloudLayer::of(kind, 1.0, base)], ..Weather::default() }).unwrap()
+        };
+        let (low, high) = (of(CloudKind::Stratus, 300.0), of(CloudKind::Cirrus, 9000.0));
+        let half = low.lerp(&high, 0.5);
+        let seen: Vec<(f64, f64)> = half.cloud_slabs().map(|s| (s.cover, s.base_m)).collect();
+        assert_eq!(seen, [(0.5, 300.0), (0.5, 9000.0)]);
+    }
+
+    #[test]
+    fn a_turn_of_the_wind_passes_through_a_lull() {
+        let of = |from| derive(&Weather { wind: super::super::Wind::of(8.0, from), ..Weather::default() }).unwrap();
+        let half = of(90.0).lerp(&of(270.0), 0.5).wind;
+        assert!(half.speed_m_s() < 1e-9);
+        let quarter = of(0.0).lerp(&of(90.0), 0.5).wind;
+        assert!((quarter.from_deg() - 45.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn shares_of_nothing_are_the_time() {
+        assert_eq!((share(0.0, 0.0, 0.3), share(0.0, 2.0, 0.3), share(2.0, 0.0, 0.3)), (0.3, 1.0, 0.0));
+        assert!(LN_20 > 2.99);
+    }
+}

@@ -68,10 +68,15 @@ pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: 
     1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
 }
 
-/// Water that a cloud must hold for the rate it lets fall, kg/m^2: rate over the 1e-3 1/s at which cloud water turns into
-/// rain (Kessler 1969).
+/// Water that a cloud must hold for the rate it lets fall, kg/m^2: the rate over the pace at which cloud water turns into rain
+/// (Kessler 1969), 1e-3 1/s by drops growing together and 2.2 q^0.875 1/s by falling rain sweeping droplets up. q, rain water
+/// in air (kg/kg, density 1.2 kg/m^3), follows the rate by Marshall and Palmer's 0.072 R^0.88 g/m^3.
 pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
-    rate_mm_h / 3600.0 / 1e-3
+    if rate_mm_h <= 0.0 {
+        return 0.0;
+    }
+    let rain_water = 0.072e-3 * libm::pow(rate_mm_h, 0.88) / 1.2;
+    rate_mm_h / 3600.0 / (1e-3 + 2.2 * libm::pow(rain_water, 0.875))
 }
 
 /// One layer as a slab, with `least_water_kg_m2` of water at least where there is cloud.
@@ -278,6 +283,15 @@ mod tests {
         // 3 LWC / (2 rho r): congestus 2.5 g/m^3 in 10 um droplets is 0.375 1/m.
         assert!((cloud_optical_depth(2.5e-3, 10.0, 0.0) - 0.375).abs() < 1e-12);
         assert!((cloud_optical_depth(0.2e-3, 7.0, 0.0) - 0.042_857).abs() < 1e-6);
+    }
+
+    #[test]
+    fn rain_clouds_hold_about_a_kilogram_a_square_metre() {
+        // The order that microwave radiometers retrieve in rain: 0.2 kg/m^2 in light to about 1.5 in heavy rain.
+        let paths = [0.1, 1.0, 5.0, 20.0, 100.0].map(water_path_for_rate_kg_m2);
+        assert!(paths.windows(2).all(|p| p[1] > p[0]), "{paths:?}");
+        assert!((0.1..0.3).contains(&paths[1]) && (0.7..1.5).contains(&paths[3]) && paths[4] < 3.0, "{paths:?}");
+        assert_eq!(water_path_for_rate_kg_m2(0.0), 0.0);
     }
 
     #[test]

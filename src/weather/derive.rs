@@ -188,7 +188,7 @@ mod tests {
         let thin = CloudLayer { water_g_m3: Some(0.01), ..CloudLayer::of(CloudKind::Stratus, 1.0, 500.0) };
         let c = derive(&Weather { clouds: vec![thin], ..w }).unwrap();
         let water = c.clouds[0].optical_depth * 7e-6 * 1000.0 / 1.5;
-        assert!((water - 6.0 / 3.6).abs() < 1e-9, "{water} kg/m^2");
+        assert!((water - water_path_for_rate_kg_m2(6.0)).abs() < 1e-9, "{water} kg/m^2");
     }
 
     #[test]

@@ -28,10 +28,10 @@ const PRESETS: &[Preset] = &[
     Preset { name: "drizzle", what: "drizzle from low stratus, 4 km", make: drizzle },
     Preset { name: "rain", what: "steady rain of 5 mm/h, 3 km", make: rain },
     Preset { name: "heavy_rain", what: "rain of 20 mm/h, 1200 m", make: heavy_rain },
-    Preset { name: "showers", what: "rain showers from towering cumulus", make: showers },
+    Preset { name: "showers", what: "rain showers of 3 mm/h from towering cumulus, 4500 m", make: showers },
     Preset { name: "thunderstorm", what: "thunderstorm, 40 mm/h with hail, gusts, 900 m", make: thunderstorm },
     Preset { name: "freezing_rain", what: "rain that freezes on the ground, 3 km", make: freezing_rain },
-    Preset { name: "sleet", what: "rain and snow together, 2 km", make: sleet },
+    Preset { name: "sleet", what: "rain and snow together, 850 m", make: sleet },
     Preset { name: "light_snow", what: "light snow, 3 km", make: light_snow },
     Preset { name: "snow", what: "snow of 1.5 mm/h, 600 m", make: snow },
     Preset { name: "blizzard", what: "heavy snow in a gale, 150 m", make: blizzard },
@@ -163,9 +163,9 @@ fn heavy_rain() -> Weather {
 
 fn showers() -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::ToweringCumulus, 0.6, 800.0)];
-    let precipitation = Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 6.0) };
+    let precipitation = Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 3.0) };
     let wind = Wind { gust_m_s: Some(14.0), ..Wind::of(8.0, 280.0) };
-    Weather { clouds, precipitation, wind, ..day(8000.0, 11.0, 0.8) }
+    Weather { clouds, precipitation, wind, ..day(4500.0, 11.0, 0.8) }
 }
 
 /// A cumulonimbus overhead with its anvil.
@@ -197,7 +197,7 @@ fn freezing_rain() -> Weather {
 }
 
 fn sleet() -> Weather {
-    let w = Weather { wind: Wind::of(6.0, 40.0), pressure_hpa: 1002.0, ..day(2000.0, 1.0, 0.95) };
+    let w = Weather { wind: Wind::of(6.0, 40.0), pressure_hpa: 1002.0, ..day(850.0, 1.0, 0.95) };
     under_nimbostratus(w, PrecipitationKind::Sleet, 2.0, 400.0)
 }
 
@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn precipitation_does_not_hide_what_the_preset_is_about() {
-        for name in ["rain", "heavy_rain", "thunderstorm", "snow", "light_snow", "blizzard"] {
+        for name in Weather::preset_names() {
             let w = Weather::preset(name).unwrap();
             let c = derive(&w).unwrap();
             let alone = super::super::hydrometeors::falling(&w.precipitation).extinction_per_m;
