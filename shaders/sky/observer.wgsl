@@ -37,7 +37,9 @@ fn view_texel(texel: vec2u, azimuths: u32, above: u32, below: u32) -> ViewTexel 
     let is_below = texel.y >= above;
     let row = select(texel.y, texel.y - above, is_below);
     let rows = select(above, below, is_below);
-    let mu = view_mu(observer.edges, f32(row) / f32(rows - 1u), is_below);
+    // From space, the row at the air's edge looks up: what lies beyond it is exactly dark.
+    let beyond = !is_below && row == rows - 1u && observer.edges.top > 0.0;
+    let mu = select(view_mu(observer.edges, f32(row) / f32(rows - 1u), is_below), 1.0, beyond);
     let azimuth = SKY_PI * f32(texel.x) / f32(azimuths - 1u);
     let sines = sqrt(max((1.0 - mu * mu) * (1.0 - observer.mu_s * observer.mu_s), 0.0));
     return ViewTexel(mu, clamp(mu * observer.mu_s + sines * cos(azimuth), -1.0, 1.0), is_below);
