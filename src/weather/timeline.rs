@@ -107,12 +107,14 @@ impl Timeline {
         }
     }
 
-    /// The timeline as text (TOML), for [`Timeline::load`]; numbers come back bit for bit.
+    /// The timeline as text (a seal, then TOML), for [`Timeline::load`]; numbers come back bit for bit.
     ///
     /// # Errors
     /// [`Status::Internal`] if a number cannot be written.
     pub fn save(&self) -> Result<String> {
-        toml::to_string(self).map_err(|e| Error::new(Status::Internal, format!("the timeline cannot be written: {e}")))
+        let body = toml::to_string(self);
+        let body = body.map_err(|e| Error::new(Status::Internal, format!("the timeline cannot be written: {e}")))?;
+        Ok(sealed(&body))
     }
 
     /// A timeline from the text of [`Timeline::save`].
@@ -125,11 +127,16 @@ impl Timeline {
         struct Head {
             version: u32,
         }
-        let head: Head = toml::from_str(text).map_err(|e| parse(&e))?;
+        let body = text.split_once('\n').map_or("", |(_, body)| body);
+        let head: Head = toml::from_str(body).map_err(|e| parse(&e))?;
         if head.version != VERSION {
             return Err(parse(&format!("version must be {VERSION}, got {}", head.version)));
         }
-        let timeline: Self = toml::from_str(text).map_err(|e| parse(&e))?;
+        // A text cut between two changes, or inside its last number, is still TOML.
+        if sealed(body) != text {
+            return Err(parse(&"the text is cut short or changed: its seal does not fit"));
+        }
+        let timeline: Self = toml::from_str(body).map_err(|e| parse(&e))?;
         if let Some(line) = text.lines().position(|l| l.ends_with("nan") || l.ends_with("inf")) {
             return Err(parse(&format!("line {}: numbers must be finite", line + 1)));
         }
@@ -143,6 +150,12 @@ impl Timeline {
         }
         Ok(timeline)
     }
+}
+
+/// `body` under a line with its FNV-1a hash, which tells a whole text from a cut one.
+fn sealed(body: &str) -> String {
+    let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    format!("# timeline {:016x}\n{body}", body.bytes().fold(0xcbf2_9ce4_8422_2325, fold))
 }
 
 #[cfg(test)]
@@ -218,10 +231,14 @@ mod tests {
         assert_eq!(again.at(33.3), timeline.at(33.3));
         let other = text.replacen("version = 1", "version = 2", 1);
         assert!(Timeline::load(&other).unwrap_err().message.contains("version must be 1"));
-        for cut in [0, 10, text.len() / 2, text.len() - 30] {
-            assert_eq!(Timeline::load(&text[..cut]).unwrap_err().status, Status::Parse, "cut at {cut}");
+        for cut in 0..text.len() {
+            let e = Timeline::load(&text[..cut]).expect_err("cut short");
+            assert_eq!(e.status, Status::Parse, "cut at {cut}");
         }
-        let broken = text.replacen("transition_s = 60.0", "transition_s = nan", 1);
+        let changed = text.replacen("transition_s = 60.0", "transition_s = 61.0", 1);
+        assert!(Timeline::load(&changed).unwrap_err().message.contains("seal"));
+        let body = text.split_once('\n').unwrap().1;
+        let broken = sealed(&body.replacen("transition_s = 60.0", "transition_s = nan", 1));
         assert!(Timeline::load(&broken).unwrap_err().message.contains("finite"));
     }
 }
