@@ -2,8 +2,10 @@
 
 mod fog;
 mod record;
+mod sky;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     record::run()?;
-    fog::run()
+    fog::run()?;
+    sky::run()
 }

@@ -1,0 +1,21 @@
+//!include "common/fullscreen.wgsl"
+//!include "sky/disc.wgsl"
+// A plain perspective picture of sky and planet at 90 degrees across, with aerial perspective on a plain of things 3 km
+// away below the horizon: what benchmarks time.
+
+struct PictureCamera {
+    forward: vec3f,
+    aspect: f32,
+}
+
+@group(0) @binding(0) var<uniform> camera: PictureCamera;
+
+@fragment
+fn picture(in: FullscreenVarying) -> @location(0) vec4f {
+    let right = normalize(cross(camera.forward, vec3f(0.0, 0.0, 1.0)));
+    let up = cross(right, camera.forward);
+    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * camera.aspect);
+    let dir = normalize(camera.forward + ndc.x * right + ndc.y * up);
+    let near = aerial(dir, 3000.0);
+    return vec4f(select(near.radiance + near.transmittance * 0.05, sky_radiance(dir), in.uv.y < 0.5), 1.0);
+}
