@@ -210,3 +210,37 @@ fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
     let largest = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
     assert!(largest < (after - before).abs() / 12.0, "{values:?}");
 }
+
+#[test]
+fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
+    let device = device();
+    let settings = coarse(SkyModel::Directional);
+    let directory = std::env::temp_dir().join(format!("welkin-sky-tables-{}", std::process::id()));
+    let planet = golden_planet();
+    let mut tables = SkyTables::new(&device, &settings).unwrap();
+    let mut told = Vec::new();
+    let mut stop = |share: f32| {
+        told.push(share);
+        told.len() < 3
+    };
+    let e = tables.build(&planet, Some(&directory), &mut stop).unwrap_err();
+    assert_eq!(e.status, welkin::Status::Aborted);
+    assert!(told.len() == 3 && tables.planet().is_none() && !directory.exists());
+    let mut shares = Vec::new();
+    let mut go = |share: f32| {
+        shares.push(share);
+        true
+    };
+    tables.build(&planet, Some(&directory), &mut go).unwrap();
+    assert!(shares.len() >= 16 && shares.windows(2).all(|w| w[0] < w[1]) && shares.last() == Some(&1.0), "{shares:?}");
+    let built = tables.read_light().unwrap().irradiance(100.0, 0.5);
+    let mut again = SkyTables::new(&device, &settings).unwrap();
+    let mut never = |_: f32| panic!("a cached planet is not built");
+    again.build(&planet, Some(&directory), &mut never).unwrap();
+    assert_eq!(again.read_light().unwrap().irradiance(100.0, 0.5), built);
+    let rays = [Ray::at(0.3, 0.2, 0.0), Ray::at(1.5, 2.0, 0.0)];
+    let ask =
+        |t: SkyTables| Probe::with_tables(t, &planet).unwrap().under_sun(Question::Sky, 10.0, 1.3, &rays).unwrap();
+    assert_eq!(ask(again), ask(tables), "bit for bit");
+    std::fs::remove_dir_all(&directory).unwrap();
+}

@@ -23,6 +23,7 @@
 //! [`SkyModel`] names them with their errors. Transmittance is a closed form (`columns_along` in `shaders/sky/ray.wgsl`),
 //! not a table.
 
+mod cache;
 pub mod celestial;
 pub mod light;
 pub mod moon;

@@ -1,17 +1,19 @@
 //! The tables over a planet: built at once or by parts, and followed through a change of its air without a jump.
 
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use bytemuck::bytes_of;
 
 use super::Planet;
+use super::cache;
 use super::light::LightTable;
 use super::passes::{Builder, Fader, Table, uniform_buffer};
 use super::recipe::{Name, Pass, passes};
 use super::settings::{SkyModel, SkySettings};
 use super::uniforms::AirUniform;
-use crate::error::{Error, Result};
-use crate::gpu::Device;
+use crate::error::{Error, Result, Status};
+use crate::gpu::{Device, readback};
 
 /// One planet's finished or growing tables.
 pub(crate) struct TableSet {
@@ -217,6 +219,70 @@ impl SkyTables {
             Some(t) => shown.mix(of(1 - self.shown)?, t),
             None => shown.clone(),
         })
+    }
+
+    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each, or reads them from
+    /// `cache`, a directory in which the tables are kept afterwards. `progress` is told the share done after each part;
+    /// when it answers false the build ends, and what was shown before stays.
+    ///
+    /// # Errors
+    /// [`Status::Aborted`]; [`Status::InvalidArgument`] for the planet; [`Status::Io`] if the cache cannot be written (the
+    /// tables are shown nonetheless); GPU faults.
+    pub fn build(
+        &mut self,
+        planet: &Planet,
+        cache: Option<&Path>,
+        progress: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<()> {
+        planet.check()?;
+        let device = self.device.clone();
+        let key = cache::key(planet, &self.settings)?;
+        let known = cache.and_then(|directory| cache::read(directory, key, &self.settings));
+        let from_cache = known.is_some();
+        self.begin(planet);
+        if let Some(tables) = known {
+            self.fill(&tables);
+        } else {
+            while let State::Building(_) = self.state {
+                let mut encoder = device.device.create_command_encoder(&Default::default());
+                let done = self.build_some(&mut encoder, 1.0 / 16.0).done;
+                device.submit_and_wait(encoder)?;
+                if !progress((2.0 * done).min(1.0)) {
+                    self.sets[1 - self.shown].planet = None;
+                    self.state = State::Idle;
+                    return Err(Error::new(Status::Aborted, "building the sky's tables was aborted by the host"));
+                }
+            }
+        }
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        self.show_other(&mut encoder);
+        device.submit_and_wait(encoder)?;
+        match cache {
+            Some(directory) if !from_cache => self.keep(directory, key),
+            _ => Ok(()),
+        }
+    }
+
+    /// Fills the set that is not shown.
+    fn fill(&mut self, tables: &[Vec<u8>]) {
+        let set = &self.sets[1 - self.shown];
+        for (name, bytes) in Name::RESULTS.iter().zip(tables) {
+            let texture = &set.result(*name).texture;
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texture.width() * 8),
+                rows_per_image: None,
+            };
+            self.device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+        }
+    }
+
+    /// Writes what is shown to a cache.
+    fn keep(&self, directory: &Path, key: u64) -> Result<()> {
+        let set = &self.sets[self.shown];
+        let read = |name: &Name| readback::bytes(&self.device, &set.result(*name).texture, 0);
+        let tables = Name::RESULTS.iter().map(read).collect::<Result<Vec<_>>>()?;
+        cache::write(directory, key, &tables).map(|_| ())
     }
 
     /// Both sets.
