@@ -58,7 +58,8 @@ fn opening(version: &str) -> String {
 /// A C block comment of plain lines.
 fn comment(lines: &[String]) -> String {
     let mut out = String::from("/*\n");
-    for line in lines {
+    // Fences say to rustdoc that what they hold is no Rust.
+    for line in lines.iter().filter(|l| !l.trim_start().starts_with("```")) {
         let line = line.strip_prefix(' ').unwrap_or(line).replace("*/", "* /");
         let _ = writeln!(out, "{}", format!(" * {line}").trim_end());
     }

@@ -11,11 +11,6 @@ override TONE: bool = true;
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
-// Mean luminance of an overcast sky over elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
-fn overcast_gradation(sin_elevation: f32) -> f32 {
-    return (1.0 + 2.0 * max(sin_elevation, 0.0)) / 3.0;
-}
-
 fn sky_behind(d: vec3f) -> vec3f {
     var spectrum = sky_radiance(d);
     if d.z < 0.0 {

@@ -12,10 +12,18 @@ struct Veil {
     transmittance: vec3f,
 }
 
+// Mean luminance of an overcast sky over elevation (CIE S 011, the standard overcast sky), 1 at the zenith.
+fn overcast_gradation(sin_elevation: f32) -> f32 {
+    return (1.0 + 2.0 * max(sin_elevation, 0.0)) / 3.0;
+}
+
 fn air_between(d: vec3f, distance: f32) -> Veil {
     let air = aerial(d, distance);
     let night = frame.night_floor * (1.0 - air.transmittance);
-    return Veil(color_of(air.radiance) * frame.medium_share + night, air.transmittance);
+    let clear = color_of(air.radiance) * frame.medium_share;
+    // No beam reaches the air below a deck: it is lit by the deck, and far things fade to the deck at the horizon.
+    let overcast = frame.deck * overcast_gradation(0.0) * (1.0 - air.transmittance);
+    return Veil(mix(clear, overcast, frame.deck_cover) + night, air.transmittance);
 }
 
 // `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air

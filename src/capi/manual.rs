@@ -5,6 +5,7 @@
 //!
 //! IN SHORT
 //!
+//! ```text
 //!     wk_device *device = NULL; wk_context *context = NULL; wk_view *view = NULL;
 //!     wk_device_create(NULL, &device);                       or ..._create_opengl, ..._create_vulkan
 //!     wk_context_create(device, NULL, &context);             weather, time and place
@@ -14,6 +15,7 @@
 //!         wk_context_update(context, time_s);
 //!         ... the host draws its world ...
 //!         wk_view_record(view, &frame, WK_STAGE_ALL);        sky behind it, fog and air before it
+//! ```
 //!
 //! OWNERSHIP
 //!

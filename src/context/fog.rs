@@ -7,8 +7,36 @@ use crate::{
     weather::Conditions,
 };
 
-/// The layer that the weather leaves to the fog; altitudes above the sea.
+/// What the fog draws: the weather's low layer, and what falls from the clouds as long as nothing else draws it.
+/// Altitudes above the sea.
+///
+/// One layer holds both, so that a reported visibility is the drawn one at the station: rain or snow alone fills the air
+/// up to the lowest cloud; with fog, the denser of the two gives the shape.
 pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
+    let falling = c.precipitation.extinction_per_m;
+    let fog = ground_layer(c, seed);
+    if falling <= 0.0 {
+        return fog;
+    }
+    let mut layer = match fog {
+        Some(fog) if fog.extinction_per_m >= falling => fog,
+        denser => FogLayer {
+            extinction_per_m: denser.map_or(0.0, |f| f.extinction_per_m),
+            phase: Phase::HenyeyGreenstein { g: 0.85 },
+            ..FogLayer::ground_fog(0.0, falling_top_m(c), 100.0)
+        },
+    };
+    layer.extinction_per_m = (layer.extinction_per_m + falling).min(crate::fog::MAX_EXTINCTION_PER_M);
+    Some(layer)
+}
+
+/// Where the falling begins: the lowest cloud's base, at least 100 m up; 2 km if no cloud is known.
+fn falling_top_m(c: &Conditions) -> f64 {
+    let lowest = c.cloud_slabs().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
+    c.air.station_altitude_m + if lowest.is_finite() { lowest.max(100.0) } else { 2000.0 }
+}
+
+fn ground_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
     let f = &c.fog;
     if f.extinction_per_m <= 0.0 {
         return None;

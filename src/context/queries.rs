@@ -71,8 +71,6 @@ impl Context {
             let fog = transmittance_between(&layer, &view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
-        let falling = (-scene.conditions.precipitation.extinction_per_m * distance).exp();
-        through = through.map(|t| t * falling);
         let mean = -through[1].max(f64::MIN_POSITIVE).ln() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }

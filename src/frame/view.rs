@@ -171,7 +171,7 @@ impl View {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<()> {
         let mut tables = context.sky()?;
-        let pure = frame.flags.has(FrameFlags::NO_HISTORY);
+        let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
         let work = tables.follow(&self.device, encoder, &scene.planet, frame.frame_id, pure)?;
         let drawn = self.sky.prepare(encoder, &tables, &scene.observer(pure))?;
         self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
