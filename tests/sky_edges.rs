@@ -244,3 +244,32 @@ fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
     assert_eq!(ask(again), ask(tables), "bit for bit");
     std::fs::remove_dir_all(&directory).unwrap();
 }
+
+/// Tier 0 on OpenGL, where every table is built by the same passes, draws the same.
+#[test]
+fn opengl_draws_the_same() {
+    let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };
+    let Ok(gl) = Device::headless(&options) else {
+        eprintln!("no OpenGL here");
+        return;
+    };
+    let planet = Planet::earth();
+    let settings = coarse(SkyModel::Directional);
+    let mut probes = [gl, device()].map(|d| Probe::new(&d, &settings, &planet).unwrap());
+    let mut rays = Vec::new();
+    for view in [10.0f64, 70.0, 88.0, 92.0, 120.0] {
+        rays.extend([0.1, 1.5, 3.0].map(|azimuth| Ray::at(view.to_radians(), azimuth, 5000.0)));
+    }
+    for (altitude, sun) in [(2.0, 0.5), (3000.0, 1.5), (2e5, 1.4)] {
+        for question in [Question::Sky, Question::Aerial, Question::Irradiance] {
+            let [a, b] = probes.each_mut().map(|p| p.under_sun(question, altitude, sun, &rays).unwrap());
+            for ((ray, a), b) in rays.iter().zip(a).zip(b) {
+                for c in 0..3 {
+                    let off = (a.radiance[c] - b.radiance[c]).abs() / b.radiance[c].max(1e-7);
+                    let t = (a.transmittance[c] - b.transmittance[c]).abs();
+                    assert!(off < 2e-3 && t < 1e-3, "{question:?} {altitude} {sun} {ray:?} {a:?} {b:?}");
+                }
+            }
+        }
+    }
+}

@@ -12,6 +12,7 @@ use super::passes::{Builder, Fader, Table, uniform_buffer};
 use super::recipe::{Name, Pass, passes};
 use super::settings::{SkyModel, SkySettings};
 use super::uniforms::AirUniform;
+use super::volume::ObserverPasses;
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
 
@@ -76,6 +77,7 @@ pub struct SkyTables {
     scratch: Vec<(Name, Table)>,
     sets: [TableSet; 2],
     pub(crate) lights: Fader,
+    observers: OnceLock<Arc<ObserverPasses>>,
     shown: usize,
     state: State,
     revision: u64,
@@ -129,6 +131,7 @@ impl SkyTables {
             scratch,
             sets,
             lights,
+            observers: OnceLock::new(),
             shown: 0,
             state: State::Idle,
             revision: 0,
@@ -283,6 +286,15 @@ impl SkyTables {
         let read = |name: &Name| readback::bytes(&self.device, &set.result(*name).texture, 0);
         let tables = Name::RESULTS.iter().map(read).collect::<Result<Vec<_>>>()?;
         cache::write(directory, key, &tables).map(|_| ())
+    }
+
+    /// Pipelines of the observers' tables, made for the first of them.
+    pub(crate) fn observer_passes(&self) -> Result<Arc<ObserverPasses>> {
+        if let Some(known) = self.observers.get() {
+            return Ok(known.clone());
+        }
+        let made = Arc::new(ObserverPasses::new(&self.device, &self.settings)?);
+        Ok(self.observers.get_or_init(|| made).clone())
     }
 
     /// Both sets.

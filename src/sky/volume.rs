@@ -43,6 +43,31 @@ impl Layered {
 /// Plain and blending variant of a pass.
 struct Pair([wgpu::RenderPipeline; 2]);
 
+/// What all observers of the same tables share.
+pub(crate) struct ObserverPasses {
+    planet_layout: wgpu::BindGroupLayout,
+    observer_layout: wgpu::BindGroupLayout,
+    view_layout: wgpu::BindGroupLayout,
+    sky: Pair,
+    air: Pair,
+}
+
+impl ObserverPasses {
+    pub fn new(device: &Device, settings: &SkySettings) -> Result<Self> {
+        use Slot::{Sampler, Table, Uniform};
+        let planet_layout = layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]);
+        let observer_layout = layout(device, "sky observer", &[Uniform]);
+        let layouts = [&planet_layout, &observer_layout];
+        let (sky, air) = match settings.model {
+            SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
+            _ => ("sky", "volume"),
+        };
+        let sky = pair(device, settings, sky, &layouts)?;
+        let air = pair(device, settings, air, &layouts)?;
+        Ok(Self { planet_layout, observer_layout, view_layout: SkyVolume::view_layout(device), sky, air })
+    }
+}
+
 /// What an observer's table was drawn for.
 #[derive(Clone, Copy, PartialEq)]
 struct Drawn {
@@ -59,8 +84,7 @@ pub struct SkyVolume {
     settings: SkySettings,
     sky: Layered,
     air: Layered,
-    sky_pass: Pair,
-    air_pass: Pair,
+    passes: Arc<ObserverPasses>,
     /// Tables over the planet, for each of its two sets.
     planet_groups: [wgpu::BindGroup; 2],
     observer_groups: Vec<wgpu::BindGroup>,
@@ -84,25 +108,17 @@ impl SkyVolume {
         let sky = Layered::new(&device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
         let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
         let air = Layered::new(&device, "air of an observer", air_size);
-        use Slot::{Sampler, Table, Uniform};
-        let planet_layout = layout(&device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]);
-        let observer_layout = layout(&device, "sky observer", &[Uniform]);
-        let view_layout = Self::view_layout(&device);
-        let layouts = [&planet_layout, &observer_layout];
-        let (sky_entry, air_entry) = match s.model {
-            SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
-            _ => ("sky", "volume"),
-        };
-        let sky_pass = pair(&device, &s, sky_entry, &layouts)?;
-        let air_pass = pair(&device, &s, air_entry, &layouts)?;
+        let passes = tables.observer_passes()?;
+        let (planet_layout, observer_layout) = (&passes.planet_layout, &passes.observer_layout);
+        let view_layout = passes.view_layout.clone();
         let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
         let observers: Vec<_> = (0..LAMPS).map(|_| uniform_buffer(&device, "sky observer", &zero)).collect();
         let observer_groups =
-            observers.iter().map(|b| bind(&device, &observer_layout, &[b.as_entire_binding()])).collect();
+            observers.iter().map(|b| bind(&device, observer_layout, &[b.as_entire_binding()])).collect();
         let written = ViewUniform::zeroed();
         let view = uniform_buffer(&device, "sky view", bytes_of(&written));
         let sets = tables.sets();
-        let planet_groups = sets.map(|set| planet_group(&device, &planet_layout, &tables.builder, set));
+        let planet_groups = sets.map(|set| planet_group(&device, planet_layout, &tables.builder, set));
         let view_groups = sets.map(|set| {
             let sampler = wgpu::BindingResource::Sampler(&tables.builder.sampler);
             let lights = tex(&tables.lights.shown.view);
@@ -120,8 +136,7 @@ impl SkyVolume {
             settings: s,
             sky,
             air,
-            sky_pass,
-            air_pass,
+            passes,
             planet_groups,
             observer_groups,
             observers,
@@ -220,7 +235,7 @@ impl SkyVolume {
             return;
         }
         let (shown, next) = (tables.shown_index(), tables.fade());
-        for (pass, target) in [(&self.sky_pass, &self.sky), (&self.air_pass, &self.air)] {
+        for (pass, target) in [(&self.passes.sky, &self.sky), (&self.passes.air, &self.air)] {
             let layer = |k: usize| {
                 Some(wgpu::RenderPassColorAttachment {
                     view: &target.layers[LAYERS as usize * i + k],
