@@ -1971,7 +1971,7 @@ typedef struct wk_sky_settings {
     uint32_t orders;
     /** Sun angles of the planet's tables. Range [16, 128], default 64. */
     uint32_t suns;
-    /** Altitudes of the planet's tables. Range [8, 64], default 20. */
+    /** Altitudes of the planet's tables. Range [8, 64], default 22. */
     uint32_t altitudes;
     /** Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40. */
     uint32_t sky_azimuths;
@@ -1995,7 +1995,7 @@ typedef struct wk_sky_settings {
     /* model */ WK_SKY_DIRECTIONAL, \
     /* orders */ 5, \
     /* suns */ 64, \
-    /* altitudes */ 20, \
+    /* altitudes */ 22, \
     /* sky_azimuths */ 40, \
     /* sky_above */ 80, \
     /* sky_below */ 40, \

@@ -42,7 +42,7 @@ pub struct wk_sky_settings {
     pub orders: u32,
     /// Sun angles of the planet's tables. Range [16, 128], default 64.
     pub suns: u32,
-    /// Altitudes of the planet's tables. Range [8, 64], default 20.
+    /// Altitudes of the planet's tables. Range [8, 64], default 22.
     pub altitudes: u32,
     /// Azimuths on [0, pi] of an observer's sky. Range [8, 256], default 40.
     pub sky_azimuths: u32,
@@ -66,7 +66,7 @@ impl wk_sky_settings {
         model: WK_SKY_DIRECTIONAL,
         orders: 5,
         suns: 64,
-        altitudes: 20,
+        altitudes: 22,
         sky_azimuths: 40,
         sky_above: 80,
         sky_below: 40,
