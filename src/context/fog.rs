@@ -22,7 +22,8 @@ pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
         Some(fog) if fog.extinction_per_m >= falling => fog,
         denser => FogLayer {
             extinction_per_m: denser.map_or(0.0, |f| f.extinction_per_m),
-            phase: Phase::HenyeyGreenstein { g: 0.85 },
+            // Under the deck that it falls from, light comes from all sides: where the drops send it does not show.
+            phase: Phase::HenyeyGreenstein { g: 0.0 },
             ..FogLayer::ground_fog(0.0, falling_top_m(c), 100.0)
         },
     };

@@ -50,7 +50,8 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
         let _ = done.send(r);
     });
     device.wait()?;
-    match answer.try_recv() {
+    // Another thread's poll may have taken our callback and be about to run it.
+    match answer.recv_timeout(std::time::Duration::from_secs(30)) {
         Ok(Ok(())) => {}
         _ => return Err(Error::new(Status::DeviceLost, "the GPU did not give a texture back")),
     }
