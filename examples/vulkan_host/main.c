@@ -197,7 +197,7 @@ static void check_pixels(const uint16_t *pixels)
         const int x = r.offset.x + (int)r.extent.width / 2, y = r.offset.y + 35;
         const double seen = luminance(pixels, x, y), sky = luminance(pixels, r.offset.x - 8, y);
         printf("board at %6.0f m: %.4f of the sky's %.4f\n", BOARD_M[i], seen / sky, sky);
-        EXPECT(seen > nearer && seen < 1.02 * sky, "board %d", i); /* far enough away it is the sky, to rounding */
+        EXPECT(seen > nearer && seen < 1.04 * sky, "board %d", i); /* far enough away it is the sky, to the tables' error in haze */
         nearer = seen;
     }
     for (int y = 0; y < HUD; y++) {

@@ -38,9 +38,10 @@ struct FrameUniform {
     pad1: f32,
 }
 
-// Colour of light at the planet's three wavelengths.
+// Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.
 fn color_of(spectrum: vec3f) -> vec3f {
-    return frame.color[0].xyz * spectrum.x + frame.color[1].xyz * spectrum.y + frame.color[2].xyz * spectrum.z;
+    let c = frame.color[0].xyz * spectrum.x + frame.color[1].xyz * spectrum.y + frame.color[2].xyz * spectrum.z;
+    return max(c, vec3f(0.0));
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;

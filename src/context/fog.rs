@@ -128,8 +128,7 @@ mod tests {
                 let eye = Viewpoint::flat(c.air.station_altitude_m + 0.5);
                 let level = DVec3::X * visibility;
                 let layer = fog_layer(&c, 1).map_or(1.0, |l| transmittance_between(&l, &eye, level).unwrap()[1]);
-                let others =
-                    c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m + c.precipitation.extinction_per_m;
+                let others = c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m;
                 let contrast = layer * (-others * visibility).exp();
                 assert!((contrast - 0.05).abs() < 1e-6, "{kind:?} {visibility} m {fall:?}: {contrast}");
             }

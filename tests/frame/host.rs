@@ -47,14 +47,14 @@ pub fn camera() -> Camera {
 /// A coarse sky, built in an instant: these tests ask how frames are composed, not how right the sky is.
 pub fn coarse() -> ContextDesc {
     let sky = SkySettings {
-        orders: 2,
-        suns: 24,
-        altitudes: 8,
-        zeniths: 6,
-        azimuths: 4,
-        rule_zeniths: 4,
-        rule_azimuths: 4,
-        build_panels: 1,
+        orders: 4,
+        suns: 32,
+        altitudes: 14,
+        zeniths: 11,
+        azimuths: 7,
+        rule_zeniths: 6,
+        rule_azimuths: 8,
+        build_panels: 2,
         ..SkySettings::default()
     };
     ContextDesc { sky, ..ContextDesc::default() }

@@ -149,14 +149,3 @@ fn every_sample_of_a_multisampled_host_is_composed_by_its_own_depth() {
     assert!(sky[2] > 500.0, "{sky:?}");
     assert!((wall[2] - 100.0).abs() < 20.0, "a wall 10 m away keeps its colour: {wall:?}");
 }
-
-#[test]
-fn zz_near() {
-    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
-    for (i, d) in [0.1f32, 0.01, 0.001, 1e-4, 1e-5].into_iter().enumerate() {
-        host.clear([0.0; 4], d);
-        let frame = Frame::new(i as u64, camera(), &host.color, Some(&host.depth));
-        host.view.record(&host.context, &frame, Stages::MEDIUM).unwrap();
-        println!("DBG {} m: {:?} {:?}", 0.1 / d, host.pixels()[320], host.pixels()[45 * 160 + 80]);
-    }
-}
