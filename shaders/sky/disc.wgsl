@@ -35,7 +35,8 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
         let lamp = sky_view.lamps[i];
         let place = disc_place(lamp, real, pixel_angle);
         let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
-        var law = pow(vec3f(mu), lamp.limb);
+        // The mean of mu^a over the disc is 2/(2 + a): disc_scale has the second wavelength's, each gets its own.
+        var law = pow(vec3f(mu), lamp.limb) * (2.0 + lamp.limb) / (2.0 + lamp.limb.y);
         if (lamp.kind == 1u) {
             // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
             let offset = (real - lamp.toward * dot(real, lamp.toward)) / max(lamp.angular_radius, 1e-6);
