@@ -121,9 +121,10 @@ struct Sums {
     @location(1) sum: vec4f,
 }
 
-// What a geometric series adds to its last term.
+// What a geometric series adds to its last term. In thick haze two small neighbouring orders can have any ratio, which a
+// series near 1 would turn into colours out of nothing: no air of the acceptance range has a true one above 0.8.
 fn tail(before: vec3f, term: vec3f) -> vec3f {
-    let ratio = clamp(term / max(before, vec3f(1e-12)), vec3f(0.0), vec3f(0.98));
+    let ratio = clamp(term / max(before, vec3f(1e-12)), vec3f(0.0), vec3f(0.8));
     return term * ratio / (1.0 - ratio);
 }
 
