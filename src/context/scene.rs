@@ -142,6 +142,13 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     ground + (0.15 * direct / PI - ground).max(0.0) * smooth(10e3, 80e3, altitude_m)
 }
 
+/// Part of the sky hidden by cloud that one cannot see through: a thin layer counts for what it takes of the light.
+fn opaque_cover(c: &Conditions) -> f64 {
+    1.0 - c
+        .cloud_slabs()
+        .fold(1.0, |clear, slab| clear * (1.0 - slab.cover * (1.0 - (-0.25 * slab.optical_depth).exp())))
+}
+
 impl Scene {
     /// Whichever of sun and moon gives more light here.
     pub fn brighter(&self) -> &Light {
@@ -189,7 +196,7 @@ impl Context {
         let below = smooth(0.0, 300.0, lowest + 150.0 - local.place.altitude_m);
         let ground = self.ground_light(&planet, &local.place, &conditions, &sun, &moon, below);
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
-        let deck_cover = smooth(0.55, 0.95, conditions.cloud_cover()) * below;
+        let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;
         Ok(Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
