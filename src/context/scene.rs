@@ -7,8 +7,8 @@ use glam::{DMat3, DVec3};
 use super::{Context, Light, air::planet_under, lights::color_of};
 use crate::{
     error::Result,
-    scene::Place,
-    sky::{Disc, Lamp, Observer, Planet},
+    scene::{LocalFrame, Place},
+    sky::{Disc, Lamp, Observer, Planet, spectral::luminance},
     weather::{Conditions, slab_reflectance},
 };
 
@@ -69,10 +69,6 @@ const TWILIGHT_LN_LUX: [(f64, f64); 6] =
     [(-18.0, -7.34), (-15.0, -6.3), (-12.0, -4.82), (-9.0, -1.9), (-6.0, 1.227), (-0.8, 6.116)];
 /// Colour of twilight's light in linear Rec. 709 of luminance 1: about 11 000 K (Lee & Hernandez-Andres 2003).
 const TWILIGHT_COLOR: [f64; 3] = [0.83, 1.0, 1.5];
-
-fn luminance(rgb: [f64; 3]) -> f64 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
-}
 
 fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
     [0, 1, 2].map(|i| f(a[i], b[i]))
@@ -200,7 +196,7 @@ impl Context {
         Ok(Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
-            map_m: self.map_place(position),
+            map_m: self.map_place(position, &local),
             color: self.color,
             planet,
             sun,
@@ -214,12 +210,12 @@ impl Context {
         })
     }
 
-    fn map_place(&self, position: DVec3) -> [f64; 2] {
-        let p = self.desc.world.frame_at(position).place;
+    fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
+        let p = &local.place;
         let o = &self.desc.world.origin;
         match self.desc.world.kind {
             crate::scene::WorldKind::Flat => {
-                let enu = self.desc.world.frame_at(DVec3::ZERO).world_to_enu * position;
+                let enu = local.world_to_enu * position;
                 [enu.x, enu.y]
             }
             _ => {
@@ -266,12 +262,12 @@ impl Context {
         };
         let (sun_lux, sun_sky) = one(sun);
         let (moon_lux, moon_sky) = one(moon);
-        let floor = NIGHT_CD_M2.map(|v| v / luminance(NIGHT_CD_M2) * NIGHT_LUX);
+        let floor = NIGHT_CD_M2.map(|v| v / luminance(&NIGHT_CD_M2) * NIGHT_LUX);
         let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + floor[i]);
-        let total_lux = luminance(sky_lux)
-            + luminance(sun_lux) * sun.direction.z.max(0.0)
-            + luminance(moon_lux) * moon.direction.z.max(0.0);
-        let adaptation_cd_m2 = adaptation(total_lux, luminance(sky_lux), luminance(sun_lux), sun, place.altitude_m);
+        let total_lux = luminance(&sky_lux)
+            + luminance(&sun_lux) * sun.direction.z.max(0.0)
+            + luminance(&moon_lux) * moon.direction.z.max(0.0);
+        let adaptation_cd_m2 = adaptation(total_lux, luminance(&sky_lux), luminance(&sun_lux), sun, place.altitude_m);
         GroundLight { sun_lux, moon_lux, sky_lux, total_lux, adaptation_cd_m2 }
     }
 }
@@ -286,7 +282,7 @@ mod tests {
             std::sync::LazyLock::new(|| (Planet::earth(), color_columns(&Planet::earth())));
         let (planet, color) = &*EARTH;
         let (direct, sky) = clear_light((planet, color), 0.0, elevation_deg, [1.0; 3]);
-        luminance(direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(sky)
+        luminance(&direct) * elevation_deg.to_radians().sin().max(0.0) + luminance(&sky)
     }
 
     #[test]
