@@ -28,6 +28,7 @@
 //! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude of the
 //! camera, planet and ground. Extinctions of air, haze and precipitation at the station.
 
+pub mod candidates;
 pub mod laws;
 pub mod light;
 pub mod phase;

@@ -32,6 +32,7 @@
 //! not a table.
 
 mod cache;
+pub mod candidates;
 pub mod celestial;
 pub mod light;
 pub mod moon;

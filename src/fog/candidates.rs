@@ -1,0 +1,118 @@
+//! The ways to draw a layer of fog that are charted against each other, with what they cost.
+
+use super::laws::{CompatibilityLaw, Curve, DistanceKind};
+use super::{CONTRAST_THRESHOLD, FogLayer, Law};
+use crate::plan::{Candidate, Effect, Method, Units, Work};
+
+/// Which of the older simulators' curves stands in for a layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FogCurve {
+    /// [`Curve::Linear`] from the eye.
+    Linear,
+    /// [`Curve::Exponential`] of the layer's extinction.
+    Exponential,
+    /// [`Curve::ExponentialSquared`].
+    ExponentialSquared,
+}
+
+/// A way to draw fog.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FogMethod {
+    /// The closed form at every pixel, by the pipeline that can do just what the law needs.
+    #[default]
+    Exact,
+    /// The same by the pipeline for all laws.
+    ExactForAll,
+    /// The closed form without the layer's patches.
+    Even,
+    /// The closed form in cells over (picture, distance), looked up at every pixel; as hosts' transparent shaders do.
+    Froxels {
+        /// Cells across the picture, up, and in distance.
+        cells: [u32; 3],
+    },
+    /// A curve of distance, fitted so that a layer that fills the air has the same visibility.
+    Curve(FogCurve),
+}
+
+impl FogMethod {
+    /// The law with which this method draws `layer`.
+    pub fn law(self, layer: &FogLayer) -> Law {
+        let sigma = layer.extinction_per_m;
+        // The distance at which the visibility's contrast is left.
+        let visibility = -CONTRAST_THRESHOLD.ln() / sigma.max(1e-12);
+        let curve = match self {
+            Self::Even => return Law::Layer(FogLayer { patches: None, ..*layer }),
+            Self::Exact | Self::ExactForAll | Self::Froxels { .. } => return Law::Layer(*layer),
+            Self::Curve(FogCurve::Linear) => {
+                Curve::Linear { start_m: 0.0, end_m: (visibility / (1.0 - CONTRAST_THRESHOLD)).min(1e9) }
+            }
+            Self::Curve(FogCurve::Exponential) => Curve::Exponential { density_per_m: sigma },
+            Self::Curve(FogCurve::ExponentialSquared) => {
+                Curve::ExponentialSquared { density_per_m: (-CONTRAST_THRESHOLD.ln()).sqrt() / visibility }
+            }
+        };
+        // The older simulators measured from the camera's plane and left the sky's upper part free.
+        Law::Compatibility(CompatibilityLaw { curve, distance: DistanceKind::Plane, colour: None, sky_band: 0.35 })
+    }
+
+    fn work(self) -> Work {
+        let sample = |samples: f64| Work { pixel: Units { samples, texels: 0.0, bytes: 8.0 }, ..Work::default() };
+        match self {
+            // 12 exponentials and as many roots: about what 6 nodes of a march take.
+            Self::Exact | Self::Even => sample(6.0),
+            Self::ExactForAll => sample(10.0),
+            Self::Curve(_) => sample(1.0),
+            Self::Froxels { cells } => {
+                let count = cells.iter().map(|n| f64::from(*n)).product::<f64>();
+                Work {
+                    // Follows the camera: drawn anew every frame.
+                    view: Units { samples: 6.0 * count, texels: 0.0, bytes: 16.0 * count },
+                    pixel: Units { samples: 0.5, texels: 4.0, bytes: 8.0 },
+                    view_bytes: (16.0 * count) as u64,
+                    ..Work::default()
+                }
+            }
+        }
+    }
+}
+
+/// All candidates.
+pub fn candidates() -> Vec<Candidate> {
+    let froxels = |x, y, z| FogMethod::Froxels { cells: [x, y, z] };
+    let named = [
+        ("exact", FogMethod::Exact, true),
+        ("exact-for-all", FogMethod::ExactForAll, true),
+        ("even", FogMethod::Even, true),
+        ("froxels-16", froxels(16, 9, 16), false),
+        ("froxels-32", froxels(32, 18, 32), false),
+        ("froxels-64", froxels(64, 36, 64), false),
+        ("linear", FogMethod::Curve(FogCurve::Linear), true),
+        ("exponential", FogMethod::Curve(FogCurve::Exponential), true),
+        ("exponential-squared", FogMethod::Curve(FogCurve::ExponentialSquared), true),
+    ];
+    let candidate = |(name, method, offered): (&'static str, FogMethod, bool)| Candidate {
+        effect: Effect::Fog,
+        name,
+        method: Method::Fog(method),
+        work: method.work(),
+        offered,
+    };
+    named.into_iter().map(candidate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_curve_leaves_the_same_contrast_at_the_visibility() {
+        let layer = FogLayer::ground_fog(0.02, 50.0, 10.0);
+        let v = -CONTRAST_THRESHOLD.ln() / 0.02;
+        for curve in [FogCurve::Linear, FogCurve::Exponential, FogCurve::ExponentialSquared] {
+            let Law::Compatibility(law) = FogMethod::Curve(curve).law(&layer) else { panic!("{curve:?}") };
+            assert!((law.visibility(v) - CONTRAST_THRESHOLD).abs() < 1e-9, "{curve:?}: {}", law.visibility(v));
+            law.validate().unwrap();
+        }
+        assert_eq!(FogMethod::Exact.law(&layer), Law::Layer(layer));
+    }
+}

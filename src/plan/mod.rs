@@ -1,0 +1,23 @@
+//! What could draw each effect, what that costs, and how wrong the picture becomes.
+//!
+//! A [`Candidate`] is one way to draw an effect: a model at a setting, with its [`Work`], a deterministic model of its cost
+//! in samples, texels and bytes. The lab (`examples/lab`) draws every candidate, measures cost and [`Difference`] from
+//! the f64 reference, and charts them; of what is [`Candidate::offered`], only those on the front ([`front::pareto`])
+//! are worth a choice.
+//!
+//! ```
+//! use welkin::plan::{Effect, Method, candidate, candidates};
+//!
+//! let half = candidate(Effect::Sky, "directional-half").unwrap();
+//! let Method::Sky(settings) = half.method else { panic!() };
+//! let default = candidates(Effect::Sky).into_iter().find(|c| c.is_default()).unwrap();
+//! assert!(half.work.view.samples < default.work.view.samples);
+//! settings.check().unwrap(); // ready for `SkyTables::new`
+//! ```
+
+mod candidate;
+pub mod difference;
+pub mod front;
+
+pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
+pub use difference::{Difference, difference};

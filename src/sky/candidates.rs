@@ -1,0 +1,281 @@
+//! The ways to draw a sky that are charted against each other, with what they cost.
+
+use super::recipe::{Kind, Name, passes};
+use super::settings::{SkyModel, SkySettings};
+use crate::plan::{Candidate, Effect, Method, Units, Work};
+
+/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal axes,
+/// half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple scattering.
+/// The lab builds and draws it, to show what was gained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElekTable {
+    /// Texels along each axis; 128 and 256 were delivered.
+    pub side: u32,
+    /// Equal steps of every integral: 15 was called acceptable, 50 enough.
+    pub samples: u32,
+}
+
+impl ElekTable {
+    /// What it costs: a march to the sun at every step of every texel's march.
+    pub fn work(&self) -> Work {
+        let texels = f64::from(self.side).powi(3);
+        let flat = f64::from(self.side).powi(2);
+        let n = f64::from(self.samples + 1);
+        Work {
+            rebuild: Units { samples: texels * n * (n + 1.0) + flat * n, texels: 0.0, bytes: 8.0 * (texels + flat) },
+            view: Units::default(),
+            // One of the 3-D table; two of the optical depth where the ray meets the ground.
+            pixel: Units { samples: 1.0, texels: 2.0, bytes: 8.0 },
+            shared_bytes: (8.0 * (texels + flat)) as u64,
+            view_bytes: 0,
+        }
+    }
+}
+
+/// All candidates, each model from coarse to fine.
+pub fn candidates() -> Vec<Candidate> {
+    let mut out = Vec::new();
+    let mut add = |name, settings| {
+        let method = Method::Sky(settings);
+        out.push(Candidate { effect: Effect::Sky, name, method, work: work(&settings), offered: true });
+    };
+    use SkyModel::{BruteForce, Directional, IsotropicTables, Table3d};
+    add("directional-eighth", coarsest(Directional));
+    add("directional-quarter", coarse(Directional));
+    add("directional-half", half(Directional));
+    add("directional", SkySettings::default());
+    add("directional-double", double(Directional));
+    // What of the doubling pays: the planet's tables, or the observer's.
+    add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
+    add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
+    add("isotropic-eighth", coarsest(IsotropicTables));
+    add("isotropic-quarter", coarse(IsotropicTables));
+    add("isotropic-half", half(IsotropicTables));
+    add("isotropic", SkySettings::with_model(IsotropicTables));
+    add("isotropic-double", double(IsotropicTables));
+    add("table3d-half", half(Table3d));
+    add("table3d", SkySettings::with_model(Table3d));
+    add("table3d-double", double(Table3d));
+    for (name, march_cells) in [("march-16", 16), ("march-32", 32), ("march-64", 64), ("march-128", 128)] {
+        add(name, SkySettings { march_cells, ..SkySettings::with_model(BruteForce) });
+    }
+    for (name, samples) in [("elek-15", 15), ("elek-50", 50)] {
+        let table = ElekTable { side: 128, samples };
+        let method = Method::SkyElek(table);
+        out.push(Candidate { effect: Effect::Sky, name, method, work: table.work(), offered: false });
+    }
+    out
+}
+
+fn coarsest(model: SkyModel) -> SkySettings {
+    SkySettings {
+        orders: 2,
+        suns: 24,
+        altitudes: 10,
+        zeniths: 6,
+        azimuths: 4,
+        rule_zeniths: 3,
+        rule_azimuths: 4,
+        build_panels: 1,
+        sky_azimuths: 14,
+        sky_above: 24,
+        sky_below: 12,
+        sky_panels: 2,
+        air_azimuths: 8,
+        air_above: 8,
+        air_below: 8,
+        air_slices: 6,
+        air_panels: 1,
+        ..SkySettings::with_model(model)
+    }
+}
+
+fn coarse(model: SkyModel) -> SkySettings {
+    SkySettings {
+        orders: 3,
+        suns: 32,
+        altitudes: 14,
+        zeniths: 9,
+        azimuths: 6,
+        rule_zeniths: 4,
+        rule_azimuths: 6,
+        build_panels: 2,
+        sky_azimuths: 20,
+        sky_above: 40,
+        sky_below: 20,
+        sky_panels: 3,
+        air_azimuths: 12,
+        air_above: 12,
+        air_below: 12,
+        air_slices: 8,
+        air_panels: 1,
+        ..SkySettings::with_model(model)
+    }
+}
+
+fn half(model: SkyModel) -> SkySettings {
+    SkySettings {
+        orders: 4,
+        suns: 48,
+        altitudes: 18,
+        zeniths: 13,
+        azimuths: 8,
+        rule_zeniths: 6,
+        rule_azimuths: 8,
+        build_panels: 2,
+        sky_azimuths: 28,
+        sky_above: 56,
+        sky_below: 28,
+        sky_panels: 4,
+        air_azimuths: 16,
+        air_above: 16,
+        air_below: 16,
+        air_slices: 12,
+        air_panels: 1,
+        ..SkySettings::with_model(model)
+    }
+}
+
+fn double(model: SkyModel) -> SkySettings {
+    SkySettings {
+        orders: 6,
+        suns: 96,
+        altitudes: 32,
+        zeniths: 21,
+        azimuths: 14,
+        rule_zeniths: 10,
+        rule_azimuths: 16,
+        build_panels: 4,
+        sky_azimuths: 64,
+        sky_above: 120,
+        sky_below: 60,
+        sky_panels: 8,
+        air_azimuths: 32,
+        air_above: 32,
+        air_below: 32,
+        air_slices: 24,
+        air_panels: 3,
+        ..SkySettings::with_model(model)
+    }
+}
+
+/// The default with the planet's tables of `s`.
+fn planet_sizes(s: SkySettings) -> SkySettings {
+    SkySettings {
+        suns: s.suns,
+        altitudes: s.altitudes,
+        zeniths: s.zeniths,
+        azimuths: s.azimuths,
+        rule_zeniths: s.rule_zeniths,
+        rule_azimuths: s.rule_azimuths,
+        build_panels: s.build_panels,
+        ..SkySettings::default()
+    }
+}
+
+/// The default with the observer's tables of `s`.
+fn view_sizes(s: SkySettings) -> SkySettings {
+    SkySettings {
+        sky_azimuths: s.sky_azimuths,
+        sky_above: s.sky_above,
+        sky_below: s.sky_below,
+        sky_panels: s.sky_panels,
+        air_azimuths: s.air_azimuths,
+        air_above: s.air_above,
+        air_below: s.air_below,
+        air_slices: s.air_slices,
+        air_panels: s.air_panels,
+        ..SkySettings::default()
+    }
+}
+
+/// Bytes of a texel of every table.
+const TEXEL_BYTES: f64 = 8.0;
+/// Look-ups of a source that knows directions, and of one that does not.
+fn source_texels(s: &SkySettings) -> f64 {
+    match s.model {
+        SkyModel::Table3d => 0.0,
+        SkyModel::IsotropicTables => 1.0,
+        _ => 4.0,
+    }
+}
+
+/// The cost of a setting: its planet's tables, its observer's, and a pixel.
+pub fn work(s: &SkySettings) -> Work {
+    let texels = |name: Name| f64::from(name.size(s).0) * f64::from(name.size(s).1);
+    let mut rebuild = Units::default();
+    for pass in passes(s) {
+        let count = texels(pass.draws[0]);
+        let per_texel = pass.texel_cost(s);
+        let marches = matches!(pass.kind, Kind::Gather | Kind::IsotropicGather | Kind::Once);
+        let lookups = match pass.kind {
+            Kind::Gather if s.model.is_directional() && pass.order > 1 => 4.0 * per_texel,
+            Kind::Gather if pass.order > 1 => per_texel,
+            Kind::Scatter | Kind::Light => f64::from(2 * s.rule_zeniths * s.rule_azimuths),
+            _ => 0.0,
+        };
+        let samples = if marches { per_texel } else { 0.0 };
+        let bytes = TEXEL_BYTES * pass.draws.len() as f64;
+        rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
+    }
+    let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
+        + 2.0 * Name::RESULTS.iter().map(|n| texels(*n)).sum::<f64>()
+        + texels(Name::Lights);
+    let sky = f64::from(s.sky_azimuths * (s.sky_above + s.sky_below));
+    let air = f64::from(s.air_azimuths * s.air_slices * (s.air_above + s.air_below));
+    let nodes = match s.model {
+        SkyModel::BruteForce => 0.0,
+        SkyModel::Table3d => sky + air,
+        _ => 4.0 * (sky * f64::from(s.sky_panels) + air * f64::from(s.air_panels)),
+    };
+    let drawn = if s.model == SkyModel::BruteForce { 0.0 } else { sky + air };
+    let view = Units { samples: nodes, texels: nodes * source_texels(s).max(1.0), bytes: 2.0 * TEXEL_BYTES * drawn };
+    let pixel = if s.model == SkyModel::BruteForce {
+        let nodes = f64::from(s.march_cells.next_multiple_of(4));
+        Units { samples: nodes, texels: nodes * source_texels(s), bytes: TEXEL_BYTES }
+    } else {
+        // Sky 2 look-ups, air 4 and a column: half of the pixels each.
+        Units { samples: 1.0, texels: 3.0, bytes: TEXEL_BYTES }
+    };
+    Work {
+        rebuild,
+        view,
+        pixel,
+        shared_bytes: (TEXEL_BYTES * shared) as u64,
+        // Two layers for each of two lamps.
+        view_bytes: (4.0 * TEXEL_BYTES * (sky + air)) as u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_model_has_its_ladder_and_each_step_costs_more() {
+        let all = candidates();
+        for (model, least) in [
+            (SkyModel::Directional, 4),
+            (SkyModel::IsotropicTables, 4),
+            (SkyModel::BruteForce, 4),
+            (SkyModel::Table3d, 3),
+        ] {
+            let of = |c: &&Candidate| matches!(c.method, Method::Sky(s) if s.model == model);
+            let ladder: Vec<_> = all.iter().filter(of).filter(|c| !c.name.contains("fine")).collect();
+            assert!(ladder.len() >= least, "{model:?}");
+            for pair in ladder.windows(2) {
+                let cost = |c: &Candidate| c.work.frame(640 * 360, true).at(&Default::default());
+                assert!(cost(pair[1]) > cost(pair[0]), "{} {}", pair[0].name, pair[1].name);
+            }
+        }
+        assert!(all.iter().any(|c| matches!(c.method, Method::SkyElek(ElekTable { samples: 15, .. }))));
+    }
+
+    #[test]
+    fn bytes_are_those_of_the_textures() {
+        let s = SkySettings::default();
+        // 40 x 120 of the sky and 24 x 16 x 40 of the air, two layers a lamp, two lamps, 8 bytes.
+        assert_eq!(work(&s).view_bytes, (40 * 120 + 24 * 16 * 40) * 4 * 8);
+        assert!(work(&s).shared_bytes > 2 * 64 * 22 * 17 * 10 * 8);
+    }
+}
