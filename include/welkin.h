@@ -1966,7 +1966,7 @@ typedef struct wk_sky_settings {
     /** Which model draws. Default WK_SKY_DIRECTIONAL. */
     wk_sky_model model;
     /**
-     * Orders of scattering that are carried one by one; the rest is a geometric series. Range [2, 16], default 5.
+     * Orders of scattering that are carried one by one; the rest is a geometric series. Range [3, 16], default 5.
      */
     uint32_t orders;
     /** Sun angles of the planet's tables. Range [16, 128], default 64. */

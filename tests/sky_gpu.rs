@@ -54,10 +54,11 @@ const PLACES: [(f64, &[f64]); 4] = [
 ];
 
 /// Relative errors of radiance, sorted, and the largest of transmittance, over sky and aerial rays.
-fn errors(planet: &Planet) -> (Vec<f64>, f64) {
+fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<f64>, f64) {
     let options = Options { disc_strips: 3, ..Default::default() };
     let truth = Reference::solve(planet, &options).unwrap();
-    let mut probe = probe(SkyModel::Directional, planet);
+    let device = Device::headless(&DeviceOptions::default()).unwrap();
+    let mut probe = Probe::new(&device, settings, planet).unwrap();
     let (mut errors, mut worst) = (Vec::new(), 0.0f64);
     for (altitude, views) in PLACES {
         for sun in [14.0, 52.0, 78.0, 87.0, 91.5, 95.0] {
@@ -90,7 +91,7 @@ fn errors(planet: &Planet) -> (Vec<f64>, f64) {
 }
 
 fn holds_against_the_reference(name: &str, planet: &Planet) {
-    let (errors, worst) = errors(planet);
+    let (errors, worst) = errors(planet, &SkySettings::default());
     let at = |share: f64| errors[(errors.len() as f64 * share) as usize];
     println!("{name}: median {:.4} p95 {:.4} max {:.3}, transmittance {worst:.5}", at(0.5), at(0.95), at(0.9999));
     assert!(at(0.5) < 0.006 && at(0.95) < 0.03, "{name}: median {} p95 {}", at(0.5), at(0.95));
@@ -107,12 +108,76 @@ fn default_model_follows_the_reference_with_ozone() {
     holds_against_the_reference("earth", &Planet::earth());
 }
 
-#[test]
-fn default_model_follows_the_reference_in_haze() {
+fn hazy_planet() -> Planet {
     let mut hazy = golden_planet();
     hazy.mie.extinction_per_m = [5e-5; 3];
     hazy.mie.scattering_per_m = [4.5e-5; 3];
-    holds_against_the_reference("haze", &hazy);
+    hazy
+}
+
+#[test]
+fn default_model_follows_the_reference_in_haze() {
+    holds_against_the_reference("haze", &hazy_planet());
+}
+
+/// Every number of [`SkySettings`] at its least.
+const LEAST: SkySettings = SkySettings {
+    model: SkyModel::Directional,
+    orders: 3,
+    suns: 16,
+    altitudes: 8,
+    zeniths: 4,
+    azimuths: 3,
+    rule_zeniths: 3,
+    rule_azimuths: 3,
+    build_panels: 1,
+    sky_azimuths: 8,
+    sky_above: 8,
+    sky_below: 8,
+    sky_panels: 1,
+    air_azimuths: 4,
+    air_above: 4,
+    air_below: 4,
+    air_slices: 4,
+    air_panels: 1,
+    march_cells: 1,
+};
+
+#[test]
+fn coarsest_settings_still_draw_a_sky_and_coarser_ones_are_refused() {
+    for planet in [golden_planet(), Planet::earth(), hazy_planet()] {
+        let (errors, worst) = errors(&planet, &LEAST);
+        let at = |share: f64| errors[(errors.len() as f64 * share) as usize];
+        println!("least: median {:.4} p95 {:.4}", at(0.5), at(0.95));
+        assert!(at(0.5) < 0.1 && at(0.95) < 0.6 && worst < 1e-3, "{} {} {worst}", at(0.5), at(0.95));
+    }
+    let below: [(&str, fn(&mut SkySettings) -> &mut u32); 18] = [
+        ("orders", |s| &mut s.orders),
+        ("suns", |s| &mut s.suns),
+        ("altitudes", |s| &mut s.altitudes),
+        ("zeniths", |s| &mut s.zeniths),
+        ("azimuths", |s| &mut s.azimuths),
+        ("rule_zeniths", |s| &mut s.rule_zeniths),
+        ("rule_azimuths", |s| &mut s.rule_azimuths),
+        ("build_panels", |s| &mut s.build_panels),
+        ("sky_azimuths", |s| &mut s.sky_azimuths),
+        ("sky_above", |s| &mut s.sky_above),
+        ("sky_below", |s| &mut s.sky_below),
+        ("sky_panels", |s| &mut s.sky_panels),
+        ("air_azimuths", |s| &mut s.air_azimuths),
+        ("air_above", |s| &mut s.air_above),
+        ("air_below", |s| &mut s.air_below),
+        ("air_slices", |s| &mut s.air_slices),
+        ("air_panels", |s| &mut s.air_panels),
+        ("march_cells", |s| &mut s.march_cells),
+    ];
+    for (name, field) in below {
+        let mut settings = LEAST;
+        let least = *field(&mut settings);
+        *field(&mut settings) -= 1;
+        let message = settings.check().unwrap_err().message;
+        assert!(message.contains(&format!("{name} must be in [{least}, ")), "{message}");
+    }
 }
 
 #[test]

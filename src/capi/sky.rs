@@ -38,7 +38,7 @@ pub struct wk_sky_settings {
     pub next: *const c_void,
     /// Which model draws. Default WK_SKY_DIRECTIONAL.
     pub model: wk_sky_model,
-    /// Orders of scattering that are carried one by one; the rest is a geometric series. Range [2, 16], default 5.
+    /// Orders of scattering that are carried one by one; the rest is a geometric series. Range [3, 16], default 5.
     pub orders: u32,
     /// Sun angles of the planet's tables. Range [16, 128], default 64.
     pub suns: u32,

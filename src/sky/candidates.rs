@@ -69,7 +69,7 @@ pub fn candidates() -> Vec<Candidate> {
 
 fn coarsest(model: SkyModel) -> SkySettings {
     SkySettings {
-        orders: 2,
+        orders: 3,
         suns: 24,
         altitudes: 10,
         zeniths: 6,

@@ -50,12 +50,15 @@ impl SkyModel {
     }
 }
 
-/// Numbers of the sky's tables. The defaults hold the errors stated in the documentation of [`crate::sky`].
+/// Numbers of the sky's tables. The defaults hold the errors stated in the documentation of [`crate::sky`]. With every
+/// number at its least at once the default model's median error is 5 % in clear air, 6 % with ozone and in haze of 30 km
+/// visibility (95th percentile 26 to 48 %, at twilight and in the sun's glow); in haze of 9 km the orders' tail is missed
+/// (15 %, which 16 orders bring to 9 %). `tests/sky_gpu.rs` holds the border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SkySettings {
     /// Which model draws, default [`SkyModel::Directional`].
     pub model: SkyModel,
-    /// Orders of scattering that are carried one by one, `[2, 16]`, default 5; the rest is a geometric series.
+    /// Orders of scattering that are carried one by one, `[3, 16]`, default 5; the rest is a geometric series.
     pub orders: u32,
     /// Sun angles of the planet's tables, `[16, 128]`, default 64.
     pub suns: u32,
@@ -65,9 +68,9 @@ pub struct SkySettings {
     pub zeniths: u32,
     /// Azimuths on `[0, pi]` in which a source is known, `[3, 24]`, default 10.
     pub azimuths: u32,
-    /// Zenith angles on each side of the horizon that are summed over, `[2, 16]`, default 8.
+    /// Zenith angles on each side of the horizon that are summed over, `[3, 16]`, default 8.
     pub rule_zeniths: u32,
-    /// Azimuths on `[0, pi]` that are summed over, `[2, 24]`, default 12.
+    /// Azimuths on `[0, pi]` that are summed over, `[3, 24]`, default 12.
     pub rule_azimuths: u32,
     /// Panels (of 4 nodes) of a ray's march while the planet's tables are built, `[1, 16]`, default 3.
     pub build_panels: u32,
@@ -131,13 +134,13 @@ impl SkySettings {
     /// [`crate::Status::InvalidArgument`] naming the field and the range.
     pub fn check(&self) -> Result<()> {
         let fields = [
-            ("orders", self.orders, 2, 16),
+            ("orders", self.orders, 3, 16),
             ("suns", self.suns, 16, 128),
             ("altitudes", self.altitudes, 8, 64),
             ("zeniths", self.zeniths, 4, 32),
             ("azimuths", self.azimuths, 3, 24),
-            ("rule_zeniths", self.rule_zeniths, 2, 16),
-            ("rule_azimuths", self.rule_azimuths, 2, 24),
+            ("rule_zeniths", self.rule_zeniths, 3, 16),
+            ("rule_azimuths", self.rule_azimuths, 3, 24),
             ("build_panels", self.build_panels, 1, 16),
             ("sky_azimuths", self.sky_azimuths, 8, 256),
             ("sky_above", self.sky_above, 8, 256),
