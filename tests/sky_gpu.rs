@@ -143,6 +143,8 @@ const LEAST: SkySettings = SkySettings {
     march_cells: 1,
 };
 
+type Field = fn(&mut SkySettings) -> &mut u32;
+
 #[test]
 fn coarsest_settings_still_draw_a_sky_and_coarser_ones_are_refused() {
     for planet in [golden_planet(), Planet::earth(), hazy_planet()] {
@@ -151,7 +153,7 @@ fn coarsest_settings_still_draw_a_sky_and_coarser_ones_are_refused() {
         println!("least: median {:.4} p95 {:.4}", at(0.5), at(0.95));
         assert!(at(0.5) < 0.1 && at(0.95) < 0.6 && worst < 1e-3, "{} {} {worst}", at(0.5), at(0.95));
     }
-    let below: [(&str, fn(&mut SkySettings) -> &mut u32); 18] = [
+    let below: [(&str, Field); 18] = [
         ("orders", |s| &mut s.orders),
         ("suns", |s| &mut s.suns),
         ("altitudes", |s| &mut s.altitudes),
