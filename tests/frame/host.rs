@@ -62,7 +62,10 @@ pub fn coarse() -> ContextDesc {
 
 impl Host {
     pub fn new(format: wgpu::TextureFormat) -> Self {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        Self::on(Device::headless(&DeviceOptions::default()).expect("a software driver is installed"), format)
+    }
+
+    pub fn on(device: Arc<Device>, format: wgpu::TextureFormat) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();

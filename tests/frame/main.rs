@@ -7,3 +7,4 @@ mod spaces;
 mod stability;
 mod stages;
 mod threads;
+mod tiers;
