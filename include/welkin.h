@@ -2262,8 +2262,8 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * ====================================================================================================
  * Queries: conditions
  *
- * What the weather comes to in physical quantities, at any place and any time that the timeline still knows: closed
- * form, no device is asked. Heights are above the station unless they say otherwise.
+ * What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
+ * come: closed form, no device is asked. Heights are above the station unless they say otherwise.
  * ====================================================================================================
  */
 
@@ -2449,9 +2449,12 @@ typedef struct wk_cloud_slab {
 } wk_cloud_slab;
 
 /**
- * The conditions at a place of the host's world and a simulation time; of times before the last update only what is
- * still under way is known.
+ * The conditions over a place of the host's world at a simulation time, past or to come. Every field is at the
+ * station's height or says at which; the position chooses the weather, of which this version has one for all the world:
+ * it must be a place, and every place answers alike.
  * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place, and for a time before what the timeline still
+ * knows: the end of the last change that was over at the last update.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -2460,7 +2463,7 @@ wk_status wk_context_get_conditions(const wk_context *context,
                                     wk_conditions *out_conditions);
 
 /**
- * The cloud layers at a place and time, low ones first. `*out_count` gets their number, at most 16, also where
+ * The cloud layers at a place and time, low ones first; place and time as in wk_context_get_conditions. `*out_count` gets their number, at most 16, also where
  * `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
  * sizeof(wk_cloud_slab) of your header.
  * Thread: concurrent.
@@ -2484,7 +2487,9 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  * ====================================================================================================
  * Queries: light and visibility
  *
- * At any place of the host's world and the context's present time. Directions are unit vectors (east, north, up) at the
+ * At any place of the host's world, now or (the functions that end in _at) at any simulation time that the timeline still
+ * knows, past or to come: closed form, no device is asked. A sun or moon put somewhere by the host stands there at all
+ * times. Only wk_context_get_ambient looks into the sky's tables and answers for now alone. Directions are unit vectors (east, north, up) at the
  * place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
  * (0.2126, 0.7152, 0.0722) is the photometric value.
  *
@@ -2599,7 +2604,7 @@ typedef struct wk_ambient {
 }
 
 /**
- * The sun over a place of the host's world.
+ * The sun over a place of the host's world, now.
  * Thread: concurrent.
  */
 WK_API
@@ -2608,7 +2613,18 @@ wk_status wk_context_get_sun(const wk_context *context,
                              wk_celestial *out_sun);
 
 /**
- * The moon over a place of the host's world.
+ * The sun over a place of the host's world at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sun_at(const wk_context *context,
+                                const double (*position_m)[3],
+                                double time_s,
+                                wk_celestial *out_sun);
+
+/**
+ * The moon over a place of the host's world, now.
  * Thread: concurrent.
  */
 WK_API
@@ -2617,8 +2633,19 @@ wk_status wk_context_get_moon(const wk_context *context,
                               wk_celestial *out_moon);
 
 /**
- * Light that arrives at places of the host's world, at most wk_caps.max_batch of them. `position_size` and `light_size`
- * are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+ * The moon over a place of the host's world at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_moon_at(const wk_context *context,
+                                 const double (*position_m)[3],
+                                 double time_s,
+                                 wk_celestial *out_moon);
+
+/**
+ * Light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size` and
+ * `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
  * Thread: concurrent.
  */
 WK_API
@@ -2630,7 +2657,21 @@ wk_status wk_context_get_light(const wk_context *context,
                                uint32_t light_size);
 
 /**
- * Transmittance and visibility between pairs of points, at most wk_caps.max_batch of them: air, haze, fog and what
+ * As wk_context_get_light, at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_light_at(const wk_context *context,
+                                  const double (*positions_m)[3],
+                                  uint32_t count,
+                                  uint32_t position_size,
+                                  double time_s,
+                                  wk_ground_light *lights,
+                                  uint32_t light_size);
+
+/**
+ * Transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them: air, haze, fog and what
  * falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
  * Thread: concurrent.
  */
@@ -2641,6 +2682,20 @@ wk_status wk_context_get_between(const wk_context *context,
                                  uint32_t segment_size,
                                  wk_between *between,
                                  uint32_t between_size);
+
+/**
+ * As wk_context_get_between, at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_between_at(const wk_context *context,
+                                    const wk_segment *segments,
+                                    uint32_t count,
+                                    uint32_t segment_size,
+                                    double time_s,
+                                    wk_between *between,
+                                    uint32_t between_size);
 
 /**
  * The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,

@@ -10,7 +10,8 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    scene::Camera,
+    scene::{Camera, WorldKind},
+    weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
@@ -50,22 +51,51 @@ fn median(mut times: Vec<Duration>) -> f64 {
     times[times.len() / 2].as_secs_f64() * 1e6
 }
 
+/// What changes from frame to frame.
+#[derive(Clone, Copy, PartialEq)]
+enum Change {
+    /// The camera turns under a given sun and a clear sky.
+    Turn,
+    /// The camera drives and turns over a curved world under cloud, rain and fog.
+    Drive,
+    /// The same while time runs at its own pace, sixty frames a second.
+    Time,
+}
+
+fn rainy() -> Weather {
+    let layer = |cover, base_m| CloudLayer::new(cover, base_m);
+    let precipitation = Precipitation { kind: PrecipitationKind::Rain, rate_mm_h: 2.0, ..Default::default() };
+    let clouds = vec![layer(0.4, 500.0), layer(0.8, 1200.0), layer(0.3, 7000.0)];
+    Weather { visibility_m: 2500.0, fog: Fog::of(FogKind::Mist), clouds, precipitation, ..Weather::default() }
+}
+
 /// The GPU is idle before each timed call, so that only the CPU's part is counted.
-fn compare(name: &str, backends: wgpu::Backends) -> Fallible<()> {
+fn compare(change: Change, backends: wgpu::Backends) -> Fallible<()> {
     let device = Device::headless(&DeviceOptions { backends, ..Default::default() })?;
     let shared = Arc::new(Shared::new(&device)?);
-    let mut context = Context::new(device.clone(), shared, ContextDesc::default())?;
-    context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 30.0 }))?;
+    let mut desc = ContextDesc::default();
+    if change != Change::Turn {
+        desc.world.kind = WorldKind::Tangent;
+    }
+    let mut context = Context::new(device.clone(), shared, desc)?;
+    match change {
+        Change::Turn => context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 30.0 }))?,
+        Change::Drive | Change::Time => context.set_weather(&rainy(), 0.0, 0.0)?,
+    }
     let mut view = View::new(&context)?;
     let color = texture(&device, wgpu::TextureFormat::Rgba16Float);
     let depth = texture(&device, wgpu::TextureFormat::Depth32Float);
     let target = color.create_view(&Default::default());
     let (mut ours, mut empty) = (Vec::new(), Vec::new());
-    for id in 0..2000u64 {
-        let angle = id as f64 * 0.01;
-        let forward = DVec3::new(angle.sin(), angle.cos(), 0.1);
-        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 50.0), forward, DVec3::Z, 1.0, 1.6, 0.1);
-        let frame = Frame::new(id, camera, &color, Some(&depth));
+    for id in 0..2000u32 {
+        let angle = f64::from(id) * 0.01;
+        let along = if change == Change::Turn { 0.0 } else { 0.2 * f64::from(id) };
+        let (place, forward) = (DVec3::new(along, 0.5 * along, 50.0), DVec3::new(angle.sin(), angle.cos(), 0.1));
+        let camera = Camera::look_to(place, forward, DVec3::Z, 1.0, 1.6, 0.1);
+        let frame = Frame::new(id.into(), camera, &color, Some(&depth));
+        if change == Change::Time {
+            context.update(f64::from(id) / 60.0)?;
+        }
         let start = Instant::now();
         view.record(&context, &frame, Stages::ALL)?;
         ours.push(start.elapsed());
@@ -76,8 +106,13 @@ fn compare(name: &str, backends: wgpu::Backends) -> Fallible<()> {
         device.wait()?;
     }
     let (ours, empty) = (median(ours.split_off(200)), median(empty.split_off(200)));
+    let name = match change {
+        Change::Turn => "camera turning",
+        Change::Drive => "camera driving in rain",
+        Change::Time => "camera driving in rain, time running",
+    };
     println!(
-        "record, camera turning, {name} ({}): {ours:.1} us, an empty pass with submit {empty:.1} us, ratio {:.2}",
+        "record, {name} ({}): {ours:.1} us, an empty pass with submit {empty:.1} us, ratio {:.2}",
         device.caps().adapter_name,
         ours / empty
     );
@@ -85,6 +120,10 @@ fn compare(name: &str, backends: wgpu::Backends) -> Fallible<()> {
 }
 
 pub fn run() -> Fallible<()> {
-    compare("noop", wgpu::Backends::NOOP)?;
-    compare("own device", DeviceOptions::default().backends)
+    for backends in [wgpu::Backends::NOOP, DeviceOptions::default().backends] {
+        for change in [Change::Turn, Change::Drive, Change::Time] {
+            compare(change, backends)?;
+        }
+    }
+    Ok(())
 }

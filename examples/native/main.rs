@@ -186,7 +186,7 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let mut view = View::new(&context)?;
     let vertices = shot.above_ground.then(|| host.vertices(eye));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
-    host.draw(&mut encoder, &camera, &context.scene_at(eye)?, vertices.as_ref());
+    host.draw(&mut encoder, &camera, &context.scene_at(eye, context.time_s())?, vertices.as_ref());
     let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;

@@ -1,9 +1,11 @@
 //! Queries: conditions
 //!
-//! What the weather comes to in physical quantities, at any place and any time that the timeline still knows: closed
-//! form, no device is asked. Heights are above the station unless they say otherwise.
+//! What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
+//! come: closed form, no device is asked. Heights are above the station unless they say otherwise.
 
 use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
 
 use super::{
     boundary::guard,
@@ -290,9 +292,12 @@ pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3
     Ok(position)
 }
 
-/// The conditions at a place of the host's world and a simulation time; of times before the last update only what is
-/// still under way is known.
+/// The conditions over a place of the host's world at a simulation time, past or to come. Every field is at the
+/// station's height or says at which; the position chooses the weather, of which this version has one for all the world:
+/// it must be a place, and every place answers alike.
 /// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place, and for a time before what the timeline still
+/// knows: the end of the last change that was over at the last update.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,
@@ -303,16 +308,15 @@ pub unsafe extern "C" fn wk_context_get_conditions(
     guard("wk_context_get_conditions", |call| {
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promises.
-        let place = unsafe {
-            position("position_m", position_m)?;
-            layout::out_struct(&"out_conditions", out_conditions)?
-        };
-        place.set(&wk_conditions::of(&object.read().conditions_at(check_finite("time_s", time_s)?)?));
+        let (at, place) =
+            unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_conditions", out_conditions)?) };
+        let time_s = check_finite("time_s", time_s)?;
+        place.set(&wk_conditions::of(&object.read().conditions_at(DVec3::from_array(at), time_s)?));
         Ok(Status::Ok)
     })
 }
 
-/// The cloud layers at a place and time, low ones first. `*out_count` gets their number, at most 16, also where
+/// The cloud layers at a place and time, low ones first; place and time as in wk_context_get_conditions. `*out_count` gets their number, at most 16, also where
 /// `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
 /// sizeof(wk_cloud_slab) of your header.
 /// Thread: concurrent.
@@ -329,10 +333,11 @@ pub unsafe extern "C" fn wk_context_get_cloud_slabs(
     guard("wk_context_get_cloud_slabs", |call| {
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promise about `position_m`.
-        unsafe { position("position_m", position_m)? };
+        let at = unsafe { position("position_m", position_m)? };
         let count = out("out_count", out_count)?;
         let room = input::Room::new("slabs", "slab_size", slabs, capacity, slab_size)?;
-        let conditions = object.read().conditions_at(check_finite("time_s", time_s)?)?;
+        let time_s = check_finite("time_s", time_s)?;
+        let conditions = object.read().conditions_at(DVec3::from_array(at), time_s)?;
         let found: [Option<&CloudSlab>; MAX_CLOUD_LAYERS] = {
             let mut slabs = conditions.cloud_slabs();
             std::array::from_fn(|_| slabs.next())

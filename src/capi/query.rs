@@ -1,6 +1,8 @@
 //! Queries: light and visibility
 //!
-//! At any place of the host's world and the context's present time. Directions are unit vectors (east, north, up) at the
+//! At any place of the host's world, now or (the functions that end in _at) at any simulation time that the timeline still
+//! knows, past or to come: closed form, no device is asked. A sun or moon put somewhere by the host stands there at all
+//! times. Only wk_context_get_ambient looks into the sky's tables and answers for now alone. Directions are unit vectors (east, north, up) at the
 //! place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
 //! (0.2126, 0.7152, 0.0722) is the photometric value.
 //!
@@ -16,12 +18,12 @@ use super::{
     boundary::guard,
     conditions::position,
     context::{ContextObject, wk_context},
-    input,
+    input::{self, check_finite},
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
-    context::{Between, Context, GroundLight, Light},
+    context::{Between, Context, GroundLight, Light, LightAt},
     error::{Result, Status},
 };
 
@@ -167,7 +169,7 @@ impl wk_ambient {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_AMBIENT, next: null(), sh9: [0.0; 27] };
 }
 
-/// The sun over a place of the host's world.
+/// The sun over a place of the host's world, now.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sun(
@@ -176,10 +178,24 @@ pub unsafe extern "C" fn wk_context_get_sun(
     out_sun: *mut wk_celestial,
 ) -> wk_status {
     // SAFETY: the caller's promises are the same.
-    unsafe { celestial("wk_context_get_sun", context, position_m, "out_sun", out_sun, |c, p| Ok(c.light_at(p)?.sun)) }
+    unsafe { celestial("wk_context_get_sun", (context, position_m, None), "out_sun", out_sun, |l| l.sun) }
 }
 
-/// The moon over a place of the host's world.
+/// The sun over a place of the host's world at a simulation time.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_sun_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_sun: *mut wk_celestial,
+) -> wk_status {
+    // SAFETY: the caller's promises are the same.
+    unsafe { celestial("wk_context_get_sun_at", (context, position_m, Some(time_s)), "out_sun", out_sun, |l| l.sun) }
+}
+
+/// The moon over a place of the host's world, now.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_moon(
@@ -188,32 +204,56 @@ pub unsafe extern "C" fn wk_context_get_moon(
     out_moon: *mut wk_celestial,
 ) -> wk_status {
     // SAFETY: the caller's promises are the same.
+    unsafe { celestial("wk_context_get_moon", (context, position_m, None), "out_moon", out_moon, |l| l.moon) }
+}
+
+/// The moon over a place of the host's world at a simulation time.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_moon_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_moon: *mut wk_celestial,
+) -> wk_status {
+    // SAFETY: the caller's promises are the same.
     unsafe {
-        celestial("wk_context_get_moon", context, position_m, "out_moon", out_moon, |c, p| Ok(c.light_at(p)?.moon))
+        celestial("wk_context_get_moon_at", (context, position_m, Some(time_s)), "out_moon", out_moon, |l| l.moon)
     }
 }
 
+/// Context, place, and time if it is not the present.
+type When = (*const wk_context, *const [f64; 3], Option<f64>);
+
 /// # Safety
-/// `position_m` is NULL or three numbers, `out` NULL or a `wk_celestial`.
+/// The position is NULL or three numbers, `out` NULL or a `wk_celestial`.
 unsafe fn celestial(
     function: &'static str,
-    context: *const wk_context,
-    position_m: *const [f64; 3],
+    (context, position_m, time_s): When,
     out_name: &str,
     out: *mut wk_celestial,
-    which: fn(&Context, DVec3) -> Result<Light>,
+    which: fn(&LightAt) -> Light,
 ) -> wk_status {
     guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promises.
         let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&out_name, out)?) };
-        place.set(&wk_celestial::of(&which(&object.read(), DVec3::from_array(at))?));
+        let context = object.read();
+        let light = context.light_at(DVec3::from_array(at), time_or_now(&context, time_s)?)?;
+        place.set(&wk_celestial::of(&which(&light)));
         Ok(Status::Ok)
     })
 }
 
-/// Light that arrives at places of the host's world, at most wk_caps.max_batch of them. `position_size` and `light_size`
-/// are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64> {
+    let Some(time_s) = time_s else { return Ok(context.time_s()) };
+    context.check_time(check_finite("time_s", time_s)?)?;
+    Ok(time_s)
+}
+
+/// Light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size` and
+/// `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
@@ -224,15 +264,48 @@ pub unsafe extern "C" fn wk_context_get_light(
     lights: *mut wk_ground_light,
     light_size: u32,
 ) -> wk_status {
-    guard("wk_context_get_light", |call| {
+    let places = (positions_m, count, position_size);
+    // SAFETY: the caller's promises are the same.
+    unsafe { light("wk_context_get_light", context, places, None, (lights, light_size)) }
+}
+
+/// As wk_context_get_light, at a simulation time.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_light_at(
+    context: *const wk_context,
+    positions_m: *const [f64; 3],
+    count: u32,
+    position_size: u32,
+    time_s: f64,
+    lights: *mut wk_ground_light,
+    light_size: u32,
+) -> wk_status {
+    let places = (positions_m, count, position_size);
+    // SAFETY: the caller's promises are the same.
+    unsafe { light("wk_context_get_light_at", context, places, Some(time_s), (lights, light_size)) }
+}
+
+/// # Safety
+/// The lists are NULL or as long as they say.
+unsafe fn light(
+    function: &'static str,
+    context: *const wk_context,
+    (positions_m, count, position_size): (*const [f64; 3], u32, u32),
+    time_s: Option<f64>,
+    (lights, light_size): (*mut wk_ground_light, u32),
+) -> wk_status {
+    guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
         let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
         let room = input::Room::new("lights", "light_size", lights, count, light_size)?;
         let context = object.read();
+        let time_s = time_or_now(&context, time_s)?;
         let answer = |i: usize| {
             // SAFETY: `i` is below the count that the caller promises.
             let at = unsafe { position(&format!("positions_m[{i}]"), places.at(i))? };
-            Ok(wk_ground_light::of(&context.light_at(DVec3::from_array(at))?.arriving))
+            Ok(wk_ground_light::of(&context.light_at(DVec3::from_array(at), time_s)?.arriving))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, light) in answers.iter().enumerate() {
@@ -243,7 +316,7 @@ pub unsafe extern "C" fn wk_context_get_light(
     })
 }
 
-/// Transmittance and visibility between pairs of points, at most wk_caps.max_batch of them: air, haze, fog and what
+/// Transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them: air, haze, fog and what
 /// falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
@@ -255,11 +328,44 @@ pub unsafe extern "C" fn wk_context_get_between(
     between: *mut wk_between,
     between_size: u32,
 ) -> wk_status {
-    guard("wk_context_get_between", |call| {
+    let pairs = (segments, count, segment_size);
+    // SAFETY: the caller's promises are the same.
+    unsafe { way("wk_context_get_between", context, pairs, None, (between, between_size)) }
+}
+
+/// As wk_context_get_between, at a simulation time.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_between_at(
+    context: *const wk_context,
+    segments: *const wk_segment,
+    count: u32,
+    segment_size: u32,
+    time_s: f64,
+    between: *mut wk_between,
+    between_size: u32,
+) -> wk_status {
+    let pairs = (segments, count, segment_size);
+    // SAFETY: the caller's promises are the same.
+    unsafe { way("wk_context_get_between_at", context, pairs, Some(time_s), (between, between_size)) }
+}
+
+/// # Safety
+/// The lists are NULL or as long as they say.
+unsafe fn way(
+    function: &'static str,
+    context: *const wk_context,
+    (segments, count, segment_size): (*const wk_segment, u32, u32),
+    time_s: Option<f64>,
+    (between, between_size): (*mut wk_between, u32),
+) -> wk_status {
+    guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
         let pairs = input::Places::new("segments", "segment_size", segments, count, segment_size, MAX_BATCH)?;
         let room = input::Room::new("between", "between_size", between, count, between_size)?;
         let context = object.read();
+        let time_s = time_or_now(&context, time_s)?;
         let answer = |i: usize| {
             let pair = pairs.at(i);
             // SAFETY: `i` is below the count that the caller promises.
@@ -267,7 +373,7 @@ pub unsafe extern "C" fn wk_context_get_between(
                 let part = |name: &str, p: *const [f64; 3]| position(&format!("segments[{i}].{name}"), p);
                 (part("from_m", &raw const (*pair).from_m)?, part("to_m", &raw const (*pair).to_m)?)
             };
-            let between = context.between(DVec3::from_array(from), DVec3::from_array(to));
+            let between = context.between(DVec3::from_array(from), DVec3::from_array(to), time_s);
             Ok(wk_between::of(&between.map_err(|e| e.within(&format!("segments[{i}]: ")))?))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;

@@ -7,11 +7,12 @@ use crate::{
     error::Result,
     scene::Place,
     sky::{
-        Planet, moon,
+        Planet,
+        moon::{self, MoonPosition},
         spectral::{Conversion, luminance, sun_rec709},
-        sun,
+        sun::{self, SunPosition, Turned},
     },
-    weather::Conditions,
+    weather::{CloudLight, Conditions},
 };
 
 /// The sun or the moon as it stands over a place. Vectors are (east, north, up) there.
@@ -65,15 +66,28 @@ pub(super) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] 
 /// The moon adds less than a hundredth to a twilight whose sun stands above this elevation, degrees.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
+/// Reflectance of the land under the clouds, with which light goes back and forth.
+const LAND_ALBEDO: f64 = 0.2;
+
+/// A light and what the clouds leave of it.
+pub(super) type UnderClouds = (Light, CloudLight);
+
 impl Context {
-    pub(super) fn lights_over(&self, place: &Place, c: &Conditions) -> Result<(Light, Light)> {
-        let utc = self.utc_at(self.time_s);
-        let almanac = sun::sun_position(utc, place)?;
-        let to_sun = self.given_sun.map_or(almanac.direction, |g| g.unit());
+    /// Sun and moon over `place` at simulation time `time_s`.
+    pub(super) fn lights_over(&self, place: &Place, c: &Conditions, time_s: f64) -> Result<[UnderClouds; 2]> {
+        let utc = self.utc_at(time_s);
+        let turned = Turned::new(&self.ephemeris.at(utc)?, utc, place);
         let pressure = c.air.pressure_hpa * (-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m).exp();
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
+        let sun = self.sun_over(&turned.sun(), c, see);
+        let moon = self.moon_over(moon::lit(&turned), &sun.0, c, see);
+        Ok([sun, moon])
+    }
+
+    fn sun_over(&self, almanac: &SunPosition, c: &Conditions, see: impl Fn(DVec3) -> (DVec3, f64)) -> UnderClouds {
+        let to_sun = self.given_sun.map_or(almanac.direction, |g| g.unit());
         let (apparent, flattening) = see(to_sun);
-        let clouds = c.cloud_light(to_sun.z, 0.2);
+        let clouds = c.cloud_light(to_sun.z, LAND_ALBEDO);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
         let sun = Light {
             direction: to_sun,
@@ -87,17 +101,16 @@ impl Context {
             direct_share: clouds.direct,
             matters: true,
         };
-        Ok((sun, self.moon_over(place, &sun, c, see)?))
+        (sun, clouds)
     }
 
     fn moon_over(
         &self,
-        place: &Place,
+        mut at: MoonPosition,
         sun: &Light,
         c: &Conditions,
         see: impl Fn(DVec3) -> (DVec3, f64),
-    ) -> Result<Light> {
-        let mut at = moon::moon_position(self.utc_at(self.time_s), place)?;
+    ) -> UnderClouds {
         if let Some(given) = &self.given_moon {
             at.direction = given.unit();
         }
@@ -114,7 +127,8 @@ impl Context {
         let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
         let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
         let above = apparent.z > -0.02;
-        Ok(Light {
+        let clouds = c.cloud_light(at.direction.z, LAND_ALBEDO);
+        let moon = Light {
             direction: at.direction,
             apparent,
             bright_limb: at.bright_limb,
@@ -123,9 +137,10 @@ impl Context {
             spectrum,
             illuminance_lux: color_of(&self.color, spectrum),
             flattening,
-            direct_share: c.cloud_light(at.direction.z, 0.2).direct,
+            direct_share: clouds.direct,
             matters: dark && above,
-        })
+        };
+        (moon, clouds)
     }
 }
 

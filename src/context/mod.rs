@@ -28,6 +28,7 @@ use crate::{
     scene::WorldFrame,
     sky::{
         Planet, SkySettings,
+        ephemeris::Ephemeris,
         sun::{Utc, direction},
     },
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
@@ -104,6 +105,7 @@ pub struct Context {
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
     time_s: f64,
+    ephemeris: Ephemeris,
 }
 
 impl Context {
@@ -130,6 +132,7 @@ impl Context {
             given_moon: None,
             fog_law: None,
             time_s: 0.0,
+            ephemeris: Ephemeris::default(),
         })
     }
 
@@ -278,12 +281,33 @@ impl Context {
         Utc(self.desc.utc_at_zero.0 + time_s)
     }
 
-    /// The weather's conditions at simulation time `time_s`; what was before the last update may be forgotten.
+    /// The weather's conditions over `position` at simulation time `time_s`, past or to come, at the station's height
+    /// (each field says so). One weather reaches over all of the world in this version: the position must be a place, and
+    /// every place answers alike.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if the time is not finite or out of range.
-    pub fn conditions_at(&self, time_s: f64) -> Result<Conditions> {
+    /// [`Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
+    /// the timeline still knows ([`Timeline::known_from_s`]).
+    pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
+        self.desc.world.frame_at(position).place.validate()?;
+        self.weather_at(time_s)
+    }
+
+    /// Refuses a time of which the weather is not known.
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`].
+    pub fn check_time(&self, time_s: f64) -> Result<()> {
         check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let from = self.timeline.known_from_s();
+        if time_s < from {
+            return Err(Error::range("time_s", &format!("at least {from} s: what was before is forgotten"), time_s));
+        }
+        Ok(())
+    }
+
+    fn weather_at(&self, time_s: f64) -> Result<Conditions> {
+        self.check_time(time_s)?;
         Ok(self.timeline.at(time_s))
     }
 }

@@ -1,7 +1,7 @@
-//! What a host may ask: light, transmittance and visibility at any place, at the context's time.
+//! What a host may ask: light, transmittance and visibility at any place and any time that the timeline knows.
 //!
 //! Closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
-//! tables. Positions are in the host's world.
+//! tables and so answers for the present. Positions are in the host's world.
 
 use glam::DVec3;
 
@@ -37,22 +37,23 @@ pub struct Between {
 }
 
 impl Context {
-    /// Sun, moon and sky at `position` and the context's time, with the clouds' and the air's share taken off.
+    /// Sun, moon and sky at `position` and simulation time `time_s`, with the clouds' and the air's share taken off.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place.
-    pub fn light_at(&self, position: DVec3) -> Result<LightAt> {
-        let scene = self.scene_at(position)?;
+    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    pub fn light_at(&self, position: DVec3, time_s: f64) -> Result<LightAt> {
+        let scene = self.scene_at(position, time_s)?;
         Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
     }
 
-    /// What air, fog, rain and snow between `from` and `to` leave of the light.
+    /// What air, fog, rain and snow between `from` and `to` leave of the light at simulation time `time_s`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same.
-    pub fn between(&self, from: DVec3, to: DVec3) -> Result<Between> {
-        let scene = self.scene_at(from)?;
-        self.scene_at(to)?;
+    /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
+    /// [`Context::conditions_at`].
+    pub fn between(&self, from: DVec3, to: DVec3, time_s: f64) -> Result<Between> {
+        let scene = self.scene_at(from, time_s)?;
+        self.desc.world.frame_at(to).place.validate()?;
         let offset = scene.world_to_enu * (to - from);
         let distance = offset.length();
         if distance < 1e-3 {
@@ -75,7 +76,7 @@ impl Context {
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }
 
-    /// The sky's light on surfaces of any slope at `position`: nine spherical harmonics of radiance, cd/m^2 a channel, in
+    /// The sky's light on surfaces of any slope at `position`, now: nine spherical harmonics of radiance, cd/m^2 a channel, in
     /// (east, north, up) of the place, the lit ground as the lower half. Clouds dim and whiten it.
     ///
     /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the air.
@@ -83,7 +84,7 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place; [`crate::Status::DeviceLost`] or a GPU fault.
     pub fn ambient_at(&self, position: DVec3) -> Result<Sh9> {
-        let scene = self.scene_at(position)?;
+        let scene = self.scene_at(position, self.time_s)?;
         let table = self.light_table(&scene.planet)?;
         let clear = |light: &Light| -> (Sh9, f32) {
             let sh = table.sh9(scene.place.altitude_m, light.direction.to_array());

@@ -4,12 +4,16 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::{Context, Light, air::planet_under, lights::color_of};
+use super::{
+    Context, Light,
+    air::planet_under,
+    lights::{UnderClouds, color_of},
+};
 use crate::{
     error::Result,
     scene::{LocalFrame, Place},
     sky::{Disc, Lamp, Observer, Planet, spectral::luminance},
-    weather::{Conditions, slab_reflectance},
+    weather::{CloudLight, Conditions, slab_reflectance},
 };
 
 /// Light that falls on level ground at a place, lux a channel of linear Rec. 709.
@@ -145,6 +149,12 @@ fn opaque_cover(c: &Conditions) -> f64 {
         .fold(1.0, |clear, slab| clear * (1.0 - slab.cover * (1.0 - (-0.25 * slab.optical_depth).exp())))
 }
 
+/// What the clouds leave of the light that the air below them scatters: their total transmission, on the mean.
+fn medium_share(left: &CloudLight, below: f64) -> f64 {
+    let share = (left.direct + left.diffuse).clamp(0.0, 1.0);
+    1.0 + (share - 1.0) * below
+}
+
 impl Scene {
     /// Whichever of sun and moon gives more light here.
     pub fn brighter(&self) -> &Light {
@@ -177,20 +187,23 @@ impl Scene {
 }
 
 impl Context {
-    /// What the camera at `position` draws from now. Closed form: no device is asked.
+    /// What a camera at `position` draws from at simulation time `time_s`, past or to come. Closed form: no device is
+    /// asked.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
-    pub fn scene_at(&self, position: DVec3) -> Result<Scene> {
+    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as
+    /// [`Context::conditions_at`].
+    pub fn scene_at(&self, position: DVec3, time_s: f64) -> Result<Scene> {
         let local = self.desc.world.frame_at(position);
         local.place.validate()?;
-        let conditions = self.timeline.at(self.time_s);
+        let conditions = self.weather_at(time_s)?;
         let planet = planet_under(&self.desc.planet, &conditions);
-        let (sun, moon) = self.lights_over(&local.place, &conditions)?;
+        let lights = self.lights_over(&local.place, &conditions, time_s)?;
         let station_m = conditions.air.station_altitude_m;
         let lowest = conditions.cloud_slabs().map(|s| s.base_m + station_m).fold(f64::INFINITY, f64::min);
         let below = smooth(0.0, 300.0, lowest + 150.0 - local.place.altitude_m);
-        let ground = self.ground_light(&planet, &local.place, &conditions, &sun, &moon, below);
+        let ground = self.ground_light(&planet, &local.place, &conditions, &lights, below);
+        let [(sun, under_sun), (moon, _)] = lights;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;
         Ok(Scene {
@@ -204,7 +217,7 @@ impl Context {
             night_floor_cd_m2: NIGHT_CD_M2,
             deck_cd_m2: ground.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
-            medium_share: self.medium_share(&conditions, sun.direction.z, below),
+            medium_share: medium_share(&under_sun, below),
             ground,
             conditions,
         })
@@ -226,32 +239,23 @@ impl Context {
         }
     }
 
-    /// What the clouds leave of the light that the air below them scatters: their total transmission, on the mean.
-    fn medium_share(&self, c: &Conditions, sun_up: f64, below: f64) -> f64 {
-        let left = c.cloud_light(sun_up, 0.2);
-        let share = (left.direct + left.diffuse).clamp(0.0, 1.0);
-        1.0 + (share - 1.0) * below
-    }
-
     fn ground_light(
         &self,
         planet: &Planet,
         place: &Place,
         c: &Conditions,
-        sun: &Light,
-        moon: &Light,
+        lights: &[UnderClouds; 2],
         below: f64,
     ) -> GroundLight {
         let tops = c.cloud_slabs().map(|s| s.top_m() + c.air.station_altitude_m);
         let cloud_top_m = tops.fold(0.0, f64::max);
-        let one = |light: &Light| {
+        let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
             let at =
                 |altitude_m| clear_light((planet, &self.color), altitude_m, elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);
             // What clouds pass on diffusely fell on their tops, through less air.
             let (on_top, _) = at(place.altitude_m.max(cloud_top_m));
-            let clouds = c.cloud_light(light.direction.z, 0.2);
             let share = |v: f64| 1.0 + (v - 1.0) * below;
             let level = light.direction.z.max(0.0);
             let from_clouds = clouds.diffuse * below;
@@ -260,8 +264,8 @@ impl Context {
                 map(on_top, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
             )
         };
-        let (sun_lux, sun_sky) = one(sun);
-        let (moon_lux, moon_sky) = one(moon);
+        let ((sun_lux, sun_sky), (moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
+        let [(sun, _), (moon, _)] = lights;
         let floor = NIGHT_CD_M2.map(|v| v / luminance(&NIGHT_CD_M2) * NIGHT_LUX);
         let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + floor[i]);
         let total_lux = luminance(&sky_lux)

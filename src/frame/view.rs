@@ -146,7 +146,7 @@ impl View {
         self.check_order(frame.frame_id, stages)?;
         let drawn = stages.has(Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::TONE));
         frame.camera.validate()?;
-        let scene = context.scene_at(frame.camera.position)?;
+        let scene = context.scene_at(frame.camera.position, context.time_s())?;
         let rays = if drawn { Some(self.check_targets(frame, stages, &scene)?) } else { None };
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };

@@ -57,8 +57,8 @@ impl Place {
         Self { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m: altitude }
     }
 
-    /// Rows east, north, up at this place, in Earth-centred axes.
-    fn ecef_to_enu(&self) -> DMat3 {
+    /// From Earth-centred axes to (east, north, up) at this place.
+    pub(crate) fn ecef_to_enu(&self) -> DMat3 {
         let (sp, cp) = self.latitude_deg.to_radians().sin_cos();
         let (sl, cl) = self.longitude_deg.to_radians().sin_cos();
         let east = DVec3::new(-sl, cl, 0.0);

@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::sun::Utc;
+use super::{ephemeris::UTC_RANGE_S, sun::Utc};
 use crate::{
     error::{Result, check_range},
     scene::Place,
@@ -61,15 +61,9 @@ fn nutation(t: f64) -> DMat3 {
     DMat3::from_rotation_x(obliquity) * DMat3::from_rotation_z(longitude) * DMat3::from_rotation_x(-mean)
 }
 
-/// From vectors fixed to the Earth (ECEF axes) to (east, north, up) at a place.
-pub(super) fn earth_to_world(place: &Place) -> DMat3 {
-    let frame = crate::scene::WorldFrame { kind: crate::scene::WorldKind::Ecef, ..Default::default() };
-    frame.frame_at(place.to_ecef()).world_to_enu
-}
-
 /// From true equatorial axes of date to (east, north, up) at a place: the Earth's turning.
-pub(super) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
-    earth_to_world(place) * DMat3::from_rotation_z(-apparent_sidereal_time(utc))
+fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
+    place.ecef_to_enu() * DMat3::from_rotation_z(-apparent_sidereal_time(utc))
 }
 
 /// From catalogue directions (equator and equinox J2000.0; x to the equinox, z to the north pole) to (east, north, up) at
@@ -82,8 +76,7 @@ pub(super) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
 pub fn celestial_to_world(utc: Utc, place: &Place) -> Result<DMat3> {
     place.validate()?;
-    // Seconds of the years -2000 to 6000, as for the sun.
-    check_range("utc", utc.0, -1.252_8e11, 1.272_1e11, "s since 1970")?;
+    check_range("utc", utc.0, UTC_RANGE_S[0], UTC_RANGE_S[1], "s since 1970")?;
     let t = utc.julian_centuries_tt();
     Ok(equator_of_date_to_world(utc, place) * nutation(t) * precession(t))
 }

@@ -34,6 +34,7 @@
 mod cache;
 pub mod candidates;
 pub mod celestial;
+pub(crate) mod ephemeris;
 pub mod light;
 pub mod moon;
 pub mod observer;

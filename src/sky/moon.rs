@@ -5,14 +5,12 @@
 
 use std::f64::consts::TAU;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::celestial::{earth_to_world, equator_of_date_to_world, nutation_obliquity};
-use super::sun::{SunPosition, Utc, sun_position};
+use super::ephemeris::Geocentric;
+use super::sun::{Turned, Utc};
 use crate::{error::Result, scene::Place};
 
-/// Astronomical unit, m (IAU 2012).
-const AU_M: f64 = 1.495_978_707e11;
 /// Radius of the moon, m (IAU 2015 mean).
 const MOON_RADIUS_M: f64 = 1.7374e6;
 
@@ -156,27 +154,30 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     )
 }
 
+/// The moon from the Earth's centre in the true equator and equinox of date, m, at `t` centuries of TT since J2000 with
+/// nutation in longitude and true obliquity, rad.
+pub(super) fn geocentric_equatorial(t: f64, nutation: f64, obliquity: f64) -> DVec3 {
+    let (longitude, latitude, distance) = geocentric_ecliptic(t);
+    let (sb, cb) = latitude.sin_cos();
+    let (sl, cl) = (longitude + nutation).sin_cos();
+    DMat3::from_rotation_x(obliquity) * (DVec3::new(cl * cb, sl * cb, sb) * distance)
+}
+
 /// The moon over `place` at `utc`, to 0.01 degrees.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
 pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
-    let sun = sun_position(utc, place)?;
-    let t = utc.julian_centuries_tt();
-    let (longitude, latitude, distance) = geocentric_ecliptic(t);
-    let (nutation, obliquity) = nutation_obliquity(t);
-    let (sb, cb) = latitude.sin_cos();
-    let (sl, cl) = (longitude + nutation).sin_cos();
-    let ecliptic = DVec3::new(cl * cb, sl * cb, sb) * distance;
-    let equatorial = glam::DMat3::from_rotation_x(obliquity) * ecliptic;
-    let seen = equator_of_date_to_world(utc, place) * equatorial - earth_to_world(place) * place.to_ecef();
-    Ok(lit(seen, &sun))
+    place.validate()?;
+    Ok(lit(&Turned::new(&Geocentric::at(utc)?, utc, place)))
 }
 
-fn lit(seen: DVec3, sun: &SunPosition) -> MoonPosition {
+/// The moon over a place, lit by the sun there.
+pub(crate) fn lit(turned: &Turned) -> MoonPosition {
+    let seen = turned.moon_m;
     let direction = seen.normalize();
     let distance_m = seen.length();
-    let to_sun = sun.direction * sun.distance_au * AU_M - seen;
+    let to_sun = turned.sun_m - seen;
     let phase_angle = to_sun.angle_between(-seen);
     let in_disc = to_sun - direction * to_sun.dot(direction);
     let azimuth = direction.x.atan2(direction.y).to_degrees().rem_euclid(360.0);
@@ -204,6 +205,7 @@ pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sun::sun_position;
     use super::*;
 
     #[test]

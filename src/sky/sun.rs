@@ -1,8 +1,12 @@
 //! Where the sun stands: the almanac, refraction, and the flattening of the disc near the horizon.
 
-use glam::DVec3;
-use solar_positioning::{Location, SolarPositions, time::JulianDate};
+use glam::{DMat3, DVec3};
+use solar_positioning::time::JulianDate;
 
+use super::{
+    celestial::mean_sidereal_time,
+    ephemeris::{AU_M, Geocentric},
+};
 use crate::{
     error::{Error, Result, Status},
     scene::Place,
@@ -46,11 +50,11 @@ impl Utc {
     }
 
     pub(super) fn julian(self) -> Result<JulianDate> {
-        JulianDate::new(self.julian_date(), self.delta_t_s()).map_err(|_| Self::out_of_range(self.0))
+        JulianDate::new(self.julian_date(), self.delta_t_s()).map_err(|_| self.out_of_range())
     }
 
-    fn out_of_range(seconds: f64) -> Error {
-        Error::range("utc", "a time of the years -2000 to 6000 (seconds since 1970)", seconds)
+    pub(super) fn out_of_range(self) -> Error {
+        Error::range("utc", "a time of the years -2000 to 6000 (seconds since 1970)", self.0)
     }
 }
 
@@ -67,30 +71,41 @@ pub struct SunPosition {
     pub distance_au: f64,
 }
 
-/// The sun over `place` at `utc`: NREL's solar position algorithm (Reda & Andreas 2004), topocentric, +-0.0003 degrees.
+/// The sun over `place` at `utc`: NREL's solar position algorithm (Reda & Andreas 2004), topocentric, +-0.0005 degrees.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for a place or time out of range.
 pub fn sun_position(utc: Utc, place: &Place) -> Result<SunPosition> {
     place.validate()?;
-    let prepared = SolarPositions::new().for_time_from_julian(utc.julian()?).map_err(|_| Utc::out_of_range(utc.0))?;
-    let location = Location { latitude: place.latitude_deg, longitude: wrap_longitude(place.longitude_deg) };
-    // The parallax of heights beyond the air's is below 0.001 degrees; the crate's range for them is not ours.
-    let height = place.altitude_m.clamp(-500.0, 1e5);
-    let at = prepared
-        .at(location, height, None)
-        .map_err(|e| Error::new(Status::InvalidArgument, format!("place and utc must give a sun position: {e}")))?;
-    let (azimuth_deg, elevation_deg) = (at.azimuth(), at.elevation_angle());
-    Ok(SunPosition {
-        direction: direction(azimuth_deg, elevation_deg),
-        azimuth_deg,
-        elevation_deg,
-        distance_au: prepared.earth_radius_vector().unwrap_or(1.0),
-    })
+    Ok(Turned::new(&Geocentric::at(utc)?, utc, place).sun())
 }
 
-fn wrap_longitude(deg: f64) -> f64 {
-    (deg + 180.0).rem_euclid(360.0) - 180.0
+/// Sun and moon as they stand over a place: turned with the Earth and seen from there, m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned {
+    pub(super) sun_m: DVec3,
+    pub(super) moon_m: DVec3,
+    distance_au: f64,
+}
+
+impl Turned {
+    pub fn new(from_centre: &Geocentric, utc: Utc, place: &Place) -> Self {
+        let to_enu = place.ecef_to_enu();
+        let turn = DMat3::from_rotation_z(-(mean_sidereal_time(utc) + from_centre.equinoxes));
+        let seen = |body: DVec3| to_enu * (turn * body - place.to_ecef());
+        let distance_au = from_centre.sun_m.length() / AU_M;
+        Self { sun_m: seen(from_centre.sun_m), moon_m: seen(from_centre.moon_m), distance_au }
+    }
+
+    pub fn sun(&self) -> SunPosition {
+        let direction = self.sun_m.normalize();
+        SunPosition {
+            direction,
+            azimuth_deg: direction.x.atan2(direction.y).to_degrees().rem_euclid(360.0),
+            elevation_deg: direction.z.atan2(direction.x.hypot(direction.y)).to_degrees(),
+            distance_au: self.distance_au,
+        }
+    }
 }
 
 /// Unit vector (east, north, up) of an azimuth (clockwise from north) and an elevation, degrees.

@@ -196,10 +196,17 @@ impl Conditions {
     /// [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
         let mu = cos_sun_zenith.clamp(0.01, 1.0);
-        let mut order: Vec<&CloudSlab> = self.cloud_slabs().collect();
-        order.sort_by(|a, b| b.base_m.total_cmp(&a.base_m));
+        // From the top, those of one height in the order of their slots; in place, since frames ask.
+        let mut order = [&CloudSlab::NONE; MAX_CLOUD_LAYERS];
+        let mut present = 0;
+        for s in self.cloud_slabs() {
+            let above = order[..present].partition_point(|o| o.base_m.total_cmp(&s.base_m).is_ge());
+            order[above..=present].rotate_right(1);
+            order[above] = s;
+            present += 1;
+        }
         let (mut direct, mut diffuse, mut sky, mut above) = (1.0, 0.0, 1.0, 0.0);
-        for s in order {
+        for s in &order[..present] {
             let beam = 1.0 - s.cover + s.cover * libm::exp(-s.optical_depth / mu);
             let back_beam = s.cover * slab_reflectance(s.optical_depth, s.asymmetry, mu);
             let back = s.cover * slab_diffuse_reflectance(s.optical_depth, s.asymmetry);

@@ -45,15 +45,26 @@ pub struct Timeline {
     version: u32,
     /// Time of the last advance; nothing may be changed before it.
     now_s: f64,
+    /// From when on history is known: the end of the last change that was forgotten.
+    #[serde(default = "always", skip_serializing_if = "is_always")]
+    known_from_s: f64,
     base: Conditions,
     #[serde(default)]
     changes: Vec<Change>,
 }
 
+fn always() -> f64 {
+    -MAX_TIME_S
+}
+
+fn is_always(time_s: &f64) -> bool {
+    *time_s == always()
+}
+
 impl Timeline {
     /// `base` for ever.
     pub fn new(base: Conditions) -> Self {
-        Self { version: VERSION, now_s: -MAX_TIME_S, base, changes: Vec::new() }
+        Self { version: VERSION, now_s: -MAX_TIME_S, known_from_s: always(), base, changes: Vec::new() }
     }
 
     /// Changes to `to`, beginning at simulation time `start_s` (\[-1e12, 1e12\] s) and lasting `transition_s`
@@ -80,8 +91,13 @@ impl Timeline {
         Ok(())
     }
 
-    /// The conditions at simulation time `t`. Before the time of the last [`advance`](Self::advance) history may be
-    /// forgotten: the answer is then that of the oldest moment still known.
+    /// Earliest simulation time of which the conditions are known, s: the end of the last change that
+    /// [`advance`](Self::advance) forgot, -1e12 as long as there is none.
+    pub fn known_from_s(&self) -> f64 {
+        self.known_from_s
+    }
+
+    /// The conditions at simulation time `t`; before [`known_from_s`](Self::known_from_s) those of that moment.
     pub fn at(&self, t: f64) -> Conditions {
         let started = self.changes.iter().take_while(|c| c.start_s <= t);
         started.fold(self.base, |below, change| match change.share(t) {
@@ -102,7 +118,9 @@ impl Timeline {
         if let Some(ended) =
             self.changes.iter().rposition(|c| c.start_s + c.transition_s <= now_s && c.start_s <= now_s)
         {
-            self.base = self.changes[ended].to;
+            let change = &self.changes[ended];
+            self.base = change.to;
+            self.known_from_s = change.start_s + change.transition_s;
             self.changes.drain(..=ended);
         }
     }
@@ -145,7 +163,7 @@ impl Timeline {
             .changes
             .iter()
             .all(|c| c.start_s.is_finite() && (0.0..=MAX_TRANSITION_S).contains(&c.transition_s));
-        if !ordered || !finite || timeline.changes.len() > MAX_CHANGES {
+        if !ordered || !finite || !timeline.known_from_s.is_finite() || timeline.changes.len() > MAX_CHANGES {
             return Err(parse(&"changes must be finite, in order of their starts, and no more than 1024"));
         }
         Ok(timeline)

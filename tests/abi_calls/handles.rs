@@ -70,6 +70,18 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_sun", "context", false, |h| unsafe { wk_context_get_sun(h.cast(), null(), null_mut()) }),
         case("wk_context_get_moon", "context", false, |h| unsafe { wk_context_get_moon(h.cast(), null(), null_mut()) }),
+        case("wk_context_get_sun_at", "context", false, |h| unsafe {
+            wk_context_get_sun_at(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_moon_at", "context", false, |h| unsafe {
+            wk_context_get_moon_at(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_light_at", "context", false, |h| unsafe {
+            wk_context_get_light_at(h.cast(), null(), 0, 0, 0.0, null_mut(), 0)
+        }),
+        case("wk_context_get_between_at", "context", false, |h| unsafe {
+            wk_context_get_between_at(h.cast(), null(), 0, 0, 0.0, null_mut(), 0)
+        }),
         case("wk_context_get_light", "context", false, |h| unsafe {
             wk_context_get_light(h.cast(), null(), 0, 0, null_mut(), 0)
         }),

@@ -2,7 +2,9 @@
 
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{conditions::*, fog_law::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*};
+use welkin::capi::{
+    conditions::*, context::*, fog_law::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*,
+};
 
 use super::world::{World, init, message};
 
@@ -91,6 +93,69 @@ fn the_sun_is_where_the_host_puts_it_or_where_the_almanac_has_it() {
         assert!(moon.illuminance_lux[1] < 1.0 && (0.0..=1.0).contains(&moon.lit));
         refused(wk_context_get_sun(world.context, null(), &mut sun), "position_m must not be NULL");
     }
+}
+
+/// What the four queries with a time wrote.
+struct Answers {
+    sun: wk_celestial,
+    moon: wk_celestial,
+    light: wk_ground_light,
+    between: wk_between,
+}
+
+fn ask_at(context: *const wk_context, time_s: f64, out: &mut Answers) -> [wk_status; 4] {
+    let segment = wk_segment { from_m: EYE, to_m: [0.0, 500.0, 2.0] };
+    let sizes = [size_of::<wk_ground_light>(), size_of::<wk_segment>(), size_of::<wk_between>()].map(|s| s as u32);
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        [
+            wk_context_get_sun_at(context, &EYE, time_s, &mut out.sun),
+            wk_context_get_moon_at(context, &EYE, time_s, &mut out.moon),
+            wk_context_get_light_at(context, &EYE, 1, 24, time_s, &mut out.light, sizes[0]),
+            wk_context_get_between_at(context, &segment, 1, sizes[1], time_s, &mut out.between, sizes[2]),
+        ]
+    }
+}
+
+#[test]
+fn every_query_answers_for_other_times_too() {
+    let world = World::new();
+    let context = world.context;
+    let mut got = Answers {
+        sun: init("wk_celestial"),
+        moon: init("wk_celestial"),
+        light: wk_ground_light { sun_lux: [0.0; 3], moon_lux: [0.0; 3], sky_lux: [0.0; 3], total_lux: 0.0 },
+        between: wk_between { transmittance: [0.0; 3], visibility_m: 0.0 },
+    };
+    let fog = wk_weather { visibility_m: 400.0, fog_kind: WK_FOG_FOG, relative_humidity: 1.0, ..init("wk_weather") };
+    // SAFETY: live pointers.
+    unsafe { assert_eq!(wk_context_set_weather(context, &fog, 100.0, 0.0), WK_OK, "{}", message()) };
+    let evening = 10.0 * 3600.0; // 20:00 UTC at 10 E, half an hour after sunset
+    assert_eq!(ask_at(context, evening, &mut got), [WK_OK; 4], "{}", message());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e11] {
+        assert_eq!(ask_at(context, bad, &mut got), [WK_ERROR_INVALID_ARGUMENT; 4], "{bad}");
+        assert!(message().contains("time_s must be"), "{bad}: {}", message());
+    }
+    assert!((-6.0..-2.0).contains(&got.sun.elevation_deg), "what is refused writes nothing: {}", got.sun.elevation_deg);
+    assert!(got.light.total_lux < 2000.0 && got.between.visibility_m < 500.0, "{}", got.between.visibility_m);
+    let evening_lux = got.light.total_lux;
+    // SAFETY: a live handle.
+    unsafe { assert_eq!(wk_context_update(context, 200.0), WK_OK) };
+    assert_eq!(ask_at(context, 99.0, &mut got), [WK_ERROR_INVALID_ARGUMENT; 4]);
+    assert!(message().contains("time_s must be at least 100"), "{}", message());
+    assert_eq!(ask_at(context, 200.0, &mut got), [WK_OK; 4]);
+    assert!(got.light.total_lux > 5.0 * evening_lux, "noon is brighter");
+    let (mut here, mut there) = (init::<wk_conditions>("wk_conditions"), init("wk_conditions"));
+    // SAFETY: live pointers.
+    unsafe {
+        refused(wk_context_get_conditions(context, &EYE, 99.0, &mut here), "time_s must be at least 100");
+        refused(wk_context_get_conditions(context, &[0.0, 0.0, 2e9], 200.0, &mut here), "altitude_m must be in");
+        assert_eq!(here.visibility_m, 0.0, "nothing is written");
+        // One weather for all the world: another place, the same answer.
+        assert_eq!(wk_context_get_conditions(context, &EYE, 200.0, &mut here), WK_OK);
+        assert_eq!(wk_context_get_conditions(context, &[1e4, 5e3, 800.0], 200.0, &mut there), WK_OK);
+    }
+    assert_eq!((here.visibility_m, here.temperature_c), (there.visibility_m, there.temperature_c));
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn visibility_between_two_points_is_the_reported_one() {
         let weather = Weather { visibility_m: v, fog: Fog::of(fog), ..Weather::default() };
         host.context.set_weather(&weather, i as f64, 0.0).unwrap();
         host.context.update(i as f64).unwrap();
-        let between = host.context.between(DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.0, v, 1.0)).unwrap();
+        let between = host.context.between(DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.0, v, 1.0), i as f64).unwrap();
         // The planet curves below the level line: at 30 km its end is 70 m up, in thinner haze.
         assert!((between.visibility_m / v - 1.0).abs() < 0.05, "{v}: {between:?}");
         assert!((between.transmittance[1] / 0.05 - 1.0).abs() < 0.15, "{v}: {between:?}");
@@ -32,7 +32,7 @@ fn ambient_light_agrees_with_the_light_on_level_ground() {
     let mut host = host();
     for elevation_deg in [60.0, 20.0] {
         host.context.set_sun(Some(GivenDirection { azimuth_deg: 90.0, elevation_deg })).unwrap();
-        let light = host.context.light_at(DVec3::ZERO).unwrap();
+        let light = host.context.light_at(DVec3::ZERO, 0.0).unwrap();
         let sh = host.context.ambient_at(DVec3::ZERO).unwrap();
         let pi = std::f32::consts::PI;
         let level = |up: f32| {
@@ -60,7 +60,10 @@ fn a_saved_context_goes_on_alike_and_channels_agree() {
         host.context.update(40.0).unwrap();
     }
     assert_eq!(a.context.state_hash().unwrap(), b.context.state_hash().unwrap());
-    assert_eq!(a.context.conditions_at(50.0).unwrap(), b.context.conditions_at(50.0).unwrap());
+    assert_eq!(
+        a.context.conditions_at(DVec3::ZERO, 50.0).unwrap(),
+        b.context.conditions_at(DVec3::ZERO, 50.0).unwrap()
+    );
     let before = b.context.state_hash().unwrap();
     for damaged in [&state[..20], b"nonsense".as_slice(), &[0xff, 0xfe]] {
         assert!(b.context.load(damaged).is_err());
@@ -69,4 +72,62 @@ fn a_saved_context_goes_on_alike_and_channels_agree() {
     assert!(b.context.update(30.0).is_err(), "time does not run back");
     assert!(b.context.set_weather(&fog, 10.0, 0.0).is_err(), "the past cannot be changed");
     assert!(ContextDesc::default().world.validate().is_ok());
+}
+
+/// What is asked of a time to come is, to the bit, what the context says when that time is there; and of a time past, what
+/// it said then.
+#[test]
+fn every_time_answers_as_the_present_did_or_will() {
+    let at = DVec3::new(300.0, -200.0, 40.0);
+    let far = at + DVec3::new(50.0, 900.0, 5.0);
+    let mut host = host();
+    host.context.set_sun(None).unwrap();
+    let rain = Weather { visibility_m: 3000.0, fog: Fog::of(FogKind::Mist), ..Weather::default() };
+    host.context.set_weather(&rain, 1000.0, 3600.0).unwrap();
+    let times = [0.0, 999.0, 1800.0, 4000.0, 40_000.0];
+    let answers = |host: &Host| {
+        times.map(|t| {
+            let c = &host.context;
+            (c.conditions_at(at, t).unwrap(), c.light_at(at, t).unwrap(), c.between(at, far, t).unwrap())
+        })
+    };
+    let foreseen = answers(&host);
+    for (t, (conditions, light, between)) in times.iter().zip(foreseen) {
+        host.context.update(*t).unwrap();
+        let c = &host.context;
+        assert_eq!(c.conditions_at(at, c.time_s()).unwrap(), conditions, "{t}");
+        assert_eq!(c.light_at(at, c.time_s()).unwrap(), light, "{t}");
+        assert_eq!(c.between(at, far, c.time_s()).unwrap(), between, "{t}");
+        if *t < 4600.0 {
+            assert_eq!(answers(&host), foreseen, "asked at {t}");
+        }
+    }
+    let [dawn, .., night] = foreseen.map(|f| f.1.arriving.total_lux);
+    assert!(dawn > 1e4 && night < 100.0, "time moves the sun: {dawn} and {night} lux");
+    assert!(foreseen[0].2.visibility_m > 2.0 * foreseen[4].2.visibility_m, "and the weather");
+}
+
+#[test]
+fn times_and_places_without_an_answer_are_refused_by_name() {
+    let mut host = host();
+    host.context.set_weather(&Weather { visibility_m: 900.0, ..Weather::default() }, 10.0, 20.0).unwrap();
+    host.context.update(100.0).unwrap();
+    let c = &host.context;
+    let ask = |at: DVec3, t: f64| {
+        let to = DVec3::new(0.0, 10.0, 0.0);
+        [c.conditions_at(at, t).err(), c.light_at(at, t).err(), c.between(at, to, t).err(), c.scene_at(at, t).err()]
+    };
+    // The change was over at 30 s and is forgotten: from there on the answer is known.
+    assert_eq!(ask(DVec3::ZERO, 30.0), [None, None, None, None]);
+    for t in [29.9, -1.0, f64::NAN, f64::INFINITY, -1.1e10, 1.1e10] {
+        for refused in ask(DVec3::ZERO, t) {
+            let message = refused.unwrap().message;
+            assert!(message.starts_with("time_s must be"), "{t}: {message}");
+        }
+    }
+    for refused in ask(DVec3::Z * 2e9, 50.0) {
+        let message = refused.unwrap().message;
+        assert!(message.starts_with("altitude_m must be"), "{message}");
+    }
+    assert!(c.between(DVec3::ZERO, DVec3::Z * 2e9, 50.0).unwrap_err().message.contains("altitude_m"));
 }
