@@ -1881,6 +1881,14 @@ typedef struct wk_context_desc {
      * Range: the years -2000 to 6000. Default 2026-06-21 10:00.
      */
     double utc_at_zero_s;
+    /**
+     * A directory, UTF-8, for the sky's finished tables, made if it is not there: a later start with the same planet, sky
+     * settings and weather reads them in place of building them. The tables of the first weather that is drawn and those
+     * of wk_context_build_sky are kept, the newest 32 of all programs that name the directory (2 MB each). A file that is
+     * damaged or cannot be written is said through the log callback, and the tables are built. Read during the call.
+     * Default NULL: no files.
+     */
+    const char *cache_dir;
 } wk_context_desc;
 
 /** Every field of `wk_context_desc` at its default. */
@@ -1899,8 +1907,16 @@ typedef struct wk_context_desc {
     /* exposure_mode */ WK_EXPOSURE_AUTO, \
     /* tone_curve */ WK_TONE_EXPONENTIAL, \
     /* exposure_value */ 0.0, \
-    /* utc_at_zero_s */ 1782036000.0 \
+    /* utc_at_zero_s */ 1782036000.0, \
+    /* cache_dir */ NULL \
 }
+
+/**
+ * Told how much of a long operation is done, from 0 to 1, never less than before. Anything but 0 as the answer ends the
+ * operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind; it may draw with the host's own means, an
+ * OpenGL context included.
+ */
+typedef int32_t (*wk_progress_fn)(void *user, double share);
 
 /**
  * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
@@ -1912,6 +1928,21 @@ WK_API
 wk_status wk_context_create(wk_device *device,
                             const wk_context_desc *desc,
                             wk_context **out_context);
+
+/**
+ * Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
+ * frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
+ * lies in the context's cache_dir, and writes it there. Without this call the first frame builds them, and waits.
+ * `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
+ * no file.
+ * Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
+ * while `progress` runs.
+ * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+ */
+WK_API
+wk_status wk_context_build_sky(wk_context *context,
+                               wk_progress_fn progress,
+                               void *user);
 
 /**
  * Destroys a context. NULL does nothing.

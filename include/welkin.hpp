@@ -164,6 +164,10 @@ public:
     }
     wk_status set_clock(double utc_s, double time_s) { return check(wk_context_set_clock(get(), utc_s, time_s)); }
     wk_status update(double time_s) { return check(wk_context_update(get(), time_s)); }
+    wk_status build_sky(wk_progress_fn progress = nullptr, void *user = nullptr)
+    {
+        return check(wk_context_build_sky(get(), progress, user));
+    }
 };
 
 class view : public handle<wk_view, wk_view_destroy> {

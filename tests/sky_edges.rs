@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::sky::probe::{Answer, Probe, Question, Ray};
-use welkin::sky::{Observer, Planet, SkyModel, SkySettings, SkyTables, SkyVolume};
+use welkin::sky::{Observer, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables, SkyVolume};
 
 fn golden_planet() -> Planet {
     Planet::from_toml(include_str!("../examples/data/planet_golden.toml")).unwrap()
@@ -235,14 +235,80 @@ fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
     assert!(shares.len() >= 16 && shares.windows(2).all(|w| w[0] < w[1]) && shares.last() == Some(&1.0), "{shares:?}");
     let built = tables.read_light().unwrap().irradiance(100.0, 0.5);
     let mut again = SkyTables::new(&device, &settings).unwrap();
-    let mut never = |_: f32| panic!("a cached planet is not built");
-    again.build(&planet, Some(&directory), &mut never).unwrap();
+    let mut told = Vec::new();
+    let mut once = |share: f32| {
+        told.push(share);
+        true
+    };
+    again.build(&planet, Some(&directory), &mut once).unwrap();
+    assert_eq!((again.builds(), told), (0, vec![1.0]), "a cached planet is not built");
     assert_eq!(again.read_light().unwrap().irradiance(100.0, 0.5), built);
     let rays = [Ray::at(0.3, 0.2, 0.0), Ray::at(1.5, 2.0, 0.0)];
     let ask =
         |t: SkyTables| Probe::with_tables(t, &planet).unwrap().under_sun(Question::Sky, 10.0, 1.3, &rays).unwrap();
     assert_eq!(ask(again), ask(tables), "bit for bit");
     std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[test]
+fn who_shows_the_same_planet_shares_its_tables() {
+    let (device, settings) = (device(), coarse(SkyModel::Directional));
+    let library = SkyLibrary::default();
+    let make = || SkyTables::of_library(&library, &device, &settings).unwrap();
+    let follow = |tables: &mut SkyTables, planet: &Planet, share: f32| {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let progress = tables.update(&mut encoder, planet, share).unwrap();
+        device.submit_and_wait(encoder).unwrap();
+        progress
+    };
+    let light = |t: &SkyTables| t.read_light().unwrap().irradiance(10.0, 0.5);
+    let (planet, hazy) = (golden_planet(), golden_planet().with_air_scaled(1.3));
+    let (mut a, mut b) = (make(), make());
+    assert!(follow(&mut a, &planet, 0.1).work > 0.9 && follow(&mut b, &planet, 0.1).work == 0.0);
+    assert_eq!((a.builds(), light(&a)), (1, light(&b)));
+    // A change that both follow is built once, by the parts of both.
+    let mut shares = [0.0f32; 2];
+    for _ in 0..40 {
+        shares[0] += follow(&mut a, &hazy, 0.1).work;
+        shares[1] += follow(&mut b, &hazy, 0.1).work;
+    }
+    assert!((shares[0] + shares[1] - 1.0).abs() < 1e-3 && shares[0] > 0.3 && shares[1] > 0.3, "{shares:?}");
+    let mut alone = SkyTables::new(&device, &settings).unwrap();
+    follow(&mut alone, &hazy, 1.0);
+    assert_eq!((a.builds(), light(&a), light(&b)), (2, light(&alone), light(&alone)));
+    // One who gives up a build leaves it to the other; the last one ends it.
+    let thin = golden_planet().with_air_scaled(0.5);
+    follow(&mut a, &thin, 0.1);
+    follow(&mut b, &thin, 0.1);
+    drop(a);
+    assert!(follow(&mut b, &thin, 1.0).work > 0.5);
+    assert_eq!(b.builds(), 3);
+    drop(b);
+    let mut later = make();
+    assert!(follow(&mut later, &thin, 0.1).work > 0.9 && later.builds() == 1, "nothing outlives its users");
+}
+
+#[test]
+fn threads_that_want_one_planet_build_it_once() {
+    let (device, settings) = (device(), coarse(SkyModel::Directional));
+    let library = SkyLibrary::default();
+    let planet = golden_planet();
+    // Held, so that what one thread has built is not gone before the next one looks.
+    let keeper = SkyTables::of_library(&library, &device, &settings).unwrap();
+    let all: Vec<SkyTables> = std::thread::scope(|scope| {
+        let one = || {
+            let mut tables = SkyTables::of_library(&library, &device, &settings).unwrap();
+            let mut last = 0.0;
+            let mut rising = |share: f32| std::mem::replace(&mut last, share) <= share;
+            tables.build(&planet, None, &mut rising).unwrap();
+            tables
+        };
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(one)).collect();
+        threads.into_iter().map(|t| t.join().unwrap()).collect()
+    });
+    assert_eq!((keeper.builds(), all.len()), (1, 4));
+    let light = |t: &SkyTables| t.read_light().unwrap().irradiance(10.0, 0.5);
+    assert!(all.iter().all(|t| light(t) == light(&all[0])));
 }
 
 /// Tier 0 on OpenGL, where every table is built by the same passes, draws the same.

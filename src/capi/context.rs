@@ -10,6 +10,7 @@
 
 use std::{
     ffi::{c_char, c_void},
+    path::PathBuf,
     ptr::null,
     sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard},
 };
@@ -113,6 +114,12 @@ pub struct wk_context_desc {
     /// Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
     /// Range: the years -2000 to 6000. Default 2026-06-21 10:00.
     pub utc_at_zero_s: f64,
+    /// A directory, UTF-8, for the sky's finished tables, made if it is not there: a later start with the same planet, sky
+    /// settings and weather reads them in place of building them. The tables of the first weather that is drawn and those
+    /// of wk_context_build_sky are kept, the newest 32 of all programs that name the directory (2 MB each). A file that is
+    /// damaged or cannot be written is said through the log callback, and the tables are built. Read during the call.
+    /// Default NULL: no files.
+    pub cache_dir: *const c_char,
 }
 
 impl wk_context_desc {
@@ -132,6 +139,7 @@ impl wk_context_desc {
         tone_curve: WK_TONE_EXPONENTIAL,
         exposure_value: 0.0,
         utc_at_zero_s: 1782036000.0,
+        cache_dir: null(),
     };
 }
 
@@ -179,7 +187,7 @@ pub(super) fn in_struct(param: &str, e: Error) -> Error {
 }
 
 /// # Safety
-/// `desc.planet_toml` is NULL or a string, and the chain is checked.
+/// `desc.planet_toml` and `desc.cache_dir` are NULL or strings, and the chain is checked.
 unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let kind = match desc.world_kind {
         WK_WORLD_TANGENT => WorldKind::Tangent,
@@ -210,7 +218,9 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     // SAFETY: the caller's promise.
     let sky = unsafe { layout::extension::<wk_sky_settings>(desc.next)? }.unwrap_or(wk_sky_settings::INIT).to_rust();
     sky.check().map_err(|e| e.within("wk_sky_settings."))?;
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky })
+    // SAFETY: the caller's promise.
+    let cache_dir = unsafe { input::optional_text("desc.cache_dir", desc.cache_dir)? }.map(PathBuf::from);
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, cache_dir })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
@@ -237,6 +247,36 @@ pub unsafe extern "C" fn wk_context_create(
         let handle = handles::insert::<_, DeviceObject>(Arc::new(context), Some(device))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Told how much of a long operation is done, from 0 to 1, never less than before. Anything but 0 as the answer ends the
+/// operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind; it may draw with the host's own means, an
+/// OpenGL context included.
+pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: f64) -> i32>;
+
+/// Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
+/// frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
+/// lies in the context's cache_dir, and writes it there. Without this call the first frame builds them, and waits.
+/// `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
+/// no file.
+/// Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
+/// while `progress` runs.
+/// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_build_sky(
+    context: *mut wk_context,
+    progress: wk_progress_fn,
+    user: *mut c_void,
+) -> wk_status {
+    guard("wk_context_build_sky", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        object.cell.drain();
+        object.read().build_sky(&mut |share| {
+            // SAFETY: the host gave both for this call.
+            progress.is_none_or(|f| unsafe { f(user, f64::from(share)) } == 0)
+        })?;
         Ok(Status::Ok)
     })
 }

@@ -11,7 +11,10 @@ mod scene;
 mod sky;
 mod state;
 
-use std::sync::{Arc, Mutex};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex},
+};
 
 use glam::DVec3;
 
@@ -51,6 +54,9 @@ pub struct ContextDesc {
     pub utc_at_zero: Utc,
     /// How the sky is drawn. Default the directional tables.
     pub sky: SkySettings,
+    /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet, settings
+    /// and weather reads them. What goes wrong with its files is logged, never an error. Default none.
+    pub cache_dir: Option<PathBuf>,
 }
 
 impl Default for ContextDesc {
@@ -63,6 +69,7 @@ impl Default for ContextDesc {
             tone: ToneCurve::default(),
             utc_at_zero: Utc(1_782_036_000.0),
             sky: SkySettings::default(),
+            cache_dir: None,
         }
     }
 }
@@ -119,7 +126,7 @@ impl Context {
         desc.exposure.validate()?;
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
-        let sky = Mutex::new(FollowedSky::new(&device, &desc.sky)?);
+        let sky = Mutex::new(FollowedSky::new(&device, &shared.sky, &desc.sky, desc.cache_dir.clone())?);
         let color = lights::color_columns(&desc.planet);
         Ok(Self {
             device,

@@ -1,15 +1,16 @@
 //! The context's tables of the sky: made once, led after the air by parts, at most once a frame however many views.
 
 use std::{
-    ops::Deref,
+    ops::{Deref, DerefMut},
+    path::PathBuf,
     sync::{Arc, MutexGuard},
 };
 
-use super::Context;
+use super::{Context, air::planet_under};
 use crate::{
     error::{Error, Result, Status},
     gpu::Device,
-    sky::{LightTable, Planet, SkyModel, SkySettings, SkyTables},
+    sky::{LightTable, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables},
 };
 
 /// Largest share of a rebuild that one frame pays.
@@ -18,14 +19,28 @@ const SHARE_PER_FRAME: f32 = 1.0 / 16.0;
 /// Tables that follow the weather's air.
 pub(crate) struct FollowedSky {
     tables: SkyTables,
+    cache: Option<PathBuf>,
     frame_id: Option<u64>,
     light: Option<(u64, Arc<LightTable>)>,
 }
 
 impl FollowedSky {
-    pub(super) fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
+    pub(super) fn new(
+        device: &Arc<Device>,
+        library: &SkyLibrary,
+        settings: &SkySettings,
+        cache: Option<PathBuf>,
+    ) -> Result<Self> {
         let _entered = device.enter()?;
-        Ok(Self { tables: SkyTables::new(device, settings)?, frame_id: None, light: None })
+        Ok(Self { tables: SkyTables::of_library(library, device, settings)?, cache, frame_id: None, light: None })
+    }
+
+    /// With a cache, the first planet comes from it or goes into it.
+    fn begin(&mut self, planet: &Planet) -> Result<()> {
+        match &self.cache {
+            Some(cache) if self.tables.planet().is_none() => self.tables.begin_with(planet, cache),
+            _ => Ok(()),
+        }
     }
 
     /// Leads the tables after `planet` by one frame's share of work; whole at the first frame, and where the picture may
@@ -42,6 +57,7 @@ impl FollowedSky {
             return Ok(false);
         }
         self.frame_id = Some(frame_id);
+        self.begin(planet)?;
         let progress = self.tables.update(encoder, planet, if whole { 1.0 } else { SHARE_PER_FRAME })?;
         device.check()?;
         Ok(progress.work > 0.0)
@@ -49,6 +65,7 @@ impl FollowedSky {
 
     /// The light of the tables as they are shown, read back once a revision; built for `planet` if nothing is yet.
     pub fn light_table(&mut self, device: &Device, planet: &Planet) -> Result<Arc<LightTable>> {
+        self.begin(planet)?;
         if self.tables.planet().is_none() {
             let mut encoder = device.device.create_command_encoder(&Default::default());
             self.tables.update(&mut encoder, planet, 1.0)?;
@@ -66,6 +83,12 @@ impl FollowedSky {
     }
 }
 
+impl DerefMut for FollowedSky {
+    fn deref_mut(&mut self) -> &mut SkyTables {
+        &mut self.tables
+    }
+}
+
 impl Deref for FollowedSky {
     type Target = SkyTables;
 
@@ -77,6 +100,23 @@ impl Deref for FollowedSky {
 impl Context {
     pub(crate) fn sky(&self) -> Result<MutexGuard<'_, FollowedSky>> {
         self.sky.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked while building the sky"))
+    }
+
+    /// Builds the tables of the sky for the weather of the present time now, in sixteen parts with a wait for the GPU after
+    /// each, and shows them, so that no frame has to. Tables that another context of the device shows, or that lie in
+    /// [`super::ContextDesc::cache_dir`], are taken instead; new ones are written there. `progress` is told the share done,
+    /// 1 at last; when it answers false the build ends, and the context stays as it was.
+    ///
+    /// # Errors
+    /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
+    pub fn build_sky(&self, progress: &mut dyn FnMut(f32) -> bool) -> Result<()> {
+        let planet = planet_under(&self.desc.planet, &self.timeline.at(self.time_s));
+        planet.check()?;
+        // Not under the sky's lock: frames and queries of other threads go on while parts are built.
+        let kit = self.sky()?.kit().clone();
+        let set = kit.build(&planet, self.desc.cache_dir.as_deref(), progress)?;
+        let _entered = self.device.enter()?;
+        self.sky()?.show_now(set)
     }
 
     /// Whether the sky is marched per pixel.

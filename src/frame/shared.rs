@@ -1,4 +1,4 @@
-//! What the contexts and views of a device share: the composition's pipelines.
+//! What the contexts and views of a device share: the composition's pipelines, the sky's pipelines and tables.
 
 use std::sync::{Mutex, MutexGuard};
 
@@ -6,11 +6,13 @@ use super::composite::Composite;
 use crate::{
     error::{Error, Result, Status},
     gpu::Device,
+    sky::SkyLibrary,
 };
 
-/// Pipelines of one device, made once and used by all its contexts and views. Any thread.
+/// Pipelines and tables of one device, made once and used by all its contexts and views. Any thread.
 pub struct Shared {
     composite: Mutex<Composite>,
+    pub(crate) sky: SkyLibrary,
 }
 
 impl Shared {
@@ -19,7 +21,7 @@ impl Shared {
     /// # Errors
     /// A GPU fault.
     pub fn new(device: &Device) -> Result<Self> {
-        let shared = Self { composite: Mutex::new(Composite::new(device)) };
+        let shared = Self { composite: Mutex::new(Composite::new(device)), sky: SkyLibrary::default() };
         device.check()?;
         Ok(shared)
     }

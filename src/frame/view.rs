@@ -127,7 +127,7 @@ impl View {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
         self.record_into(context, frame, stages, &mut encoder)?;
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
         device.check()
     }
 

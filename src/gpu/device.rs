@@ -1,7 +1,7 @@
 //! The device: one queue, its caps, its faults, and the way into a host's context.
 
 use std::sync::{
-    Arc, Mutex,
+    Arc, Mutex, MutexGuard, PoisonError,
     atomic::{AtomicBool, Ordering},
 };
 
@@ -127,6 +127,7 @@ pub struct Device {
     pub queue: wgpu::Queue,
     caps: Caps,
     faults: Arc<Faults>,
+    submission: Mutex<()>,
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
@@ -202,7 +203,19 @@ impl Device {
         let entrance =
             binding.clone().map(|binding| Entrance { binding, entered: entered.clone(), kept: Some(kept()) });
         let exit = binding.clone().map(|binding| Exit { binding, entered });
-        let own = Self { _entrance: entrance, instance, adapter, device, queue, caps, faults, binding, _exit: exit };
+        let submission = Mutex::new(());
+        let own = Self {
+            _entrance: entrance,
+            instance,
+            adapter,
+            device,
+            queue,
+            caps,
+            faults,
+            submission,
+            binding,
+            _exit: exit,
+        };
         Ok(Arc::new(own))
     }
 
@@ -261,12 +274,24 @@ impl Device {
         }))
     }
 
+    /// Submits. One thread at a time: what a Vulkan host stages for its own submission goes with no other.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) {
+        let commands = encoder.finish();
+        let _turn = self.turn();
+        self.queue.submit([commands]);
+    }
+
+    /// The right to submit, until the answer is dropped.
+    pub(crate) fn turn(&self) -> MutexGuard<'_, ()> {
+        self.submission.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Submits, and waits until the GPU has finished. For queries, tests and measurements, not for frames.
     ///
     /// # Errors
     /// [`Status::DeviceLost`], or the first GPU fault.
     pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
-        self.queue.submit([encoder.finish()]);
+        self.submit(encoder);
         self.wait()
     }
 

@@ -44,7 +44,7 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
         },
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
-    device.queue.submit([encoder.finish()]);
+    device.submit(encoder);
     let (done, answer) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |r| {
         let _ = done.send(r);

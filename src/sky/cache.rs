@@ -67,12 +67,46 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
         let _ = fs::remove_file(&part);
     }
     written.map_err(failed)?;
+    let _ = forget_oldest(directory);
     Ok(target)
 }
 
-/// Reads tables of a key; `None` if there is no file or it is not whole.
-pub(crate) fn read(directory: &Path, key: u64, settings: &SkySettings) -> Option<Vec<Vec<u8>>> {
-    let file = fs::read(path(directory, key)).ok()?;
+/// Files that are kept in a directory: every weather makes one.
+const MOST_FILES: usize = 32;
+
+/// Removes the oldest tables beyond [`MOST_FILES`].
+fn forget_oldest(directory: &Path) -> std::io::Result<()> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(directory)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|n| n.starts_with("sky-") && n.ends_with(".tables"));
+        if is_ours {
+            files.push((entry.metadata()?.modified()?, entry.path()));
+        }
+    }
+    files.sort();
+    let excess = files.len().saturating_sub(MOST_FILES);
+    files[..excess].iter().try_for_each(|(_, path)| fs::remove_file(path))
+}
+
+/// Reads tables of a key; `None` if there is no file.
+///
+/// # Errors
+/// [`Status::Io`] naming the file, if it cannot be read or is not whole.
+pub(crate) fn read(directory: &Path, key: u64, settings: &SkySettings) -> Result<Option<Vec<Vec<u8>>>> {
+    let path = path(directory, key);
+    match fs::read(&path) {
+        Ok(file) => match parse(&file, key, settings) {
+            Some(tables) => Ok(Some(tables)),
+            None => Err(Error::new(Status::Io, format!("{} is damaged", path.display()))),
+        },
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(Error::new(Status::Io, format!("{}: {e}", path.display()))),
+    }
+}
+
+fn parse(file: &[u8], key: u64, settings: &SkySettings) -> Option<Vec<Vec<u8>>> {
     let (body, sum) = file.split_last_chunk::<8>()?;
     if u64::from_le_bytes(*sum) != fnv(SEED, body) {
         return None;
@@ -107,21 +141,37 @@ mod tests {
             .enumerate()
             .map(|(i, n)| vec![i as u8 + 1; (n.size(&settings).0 * n.size(&settings).1 * 8) as usize])
             .collect();
-        assert!(read(&directory, key, &settings).is_none());
+        assert!(read(&directory, key, &settings).unwrap().is_none());
         let file = write(&directory, key, &tables).unwrap();
-        assert_eq!(read(&directory, key, &settings).unwrap(), tables);
-        assert!(read(&directory, key, &SkySettings { suns: 32, ..settings }).is_none());
+        assert_eq!(read(&directory, key, &settings).unwrap().unwrap(), tables);
+        assert!(read(&directory, key, &SkySettings { suns: 32, ..settings }).is_err());
         let whole = fs::read(&file).unwrap();
         for damage in [0, 9, whole.len() / 2, whole.len() - 1] {
             let mut bad = whole.clone();
             bad[damage] ^= 1;
             fs::write(&file, &bad).unwrap();
-            assert!(read(&directory, key, &settings).is_none(), "{damage}");
+            assert!(read(&directory, key, &settings).unwrap_err().message.contains("damaged"), "{damage}");
         }
         fs::write(&file, &whole[..whole.len() - 3]).unwrap();
-        assert!(read(&directory, key, &settings).is_none());
+        assert!(read(&directory, key, &settings).is_err());
         fs::write(&file, b"").unwrap();
-        assert!(read(&directory, key, &settings).is_none());
+        assert!(read(&directory, key, &settings).is_err());
+        fs::remove_dir_all(&directory).unwrap();
+    }
+
+    #[test]
+    fn the_oldest_files_go_and_others_stay() {
+        let directory = std::env::temp_dir().join(format!("welkin-sky-cache-many-{}", std::process::id()));
+        fs::create_dir_all(&directory).unwrap();
+        fs::write(directory.join("notes.txt"), b"the user's own").unwrap();
+        let first = write(&directory, 0, &[]).unwrap();
+        let old = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+        fs::File::options().append(true).open(&first).unwrap().set_modified(old).unwrap();
+        for key in 1..=MOST_FILES as u64 {
+            write(&directory, key, &[]).unwrap();
+        }
+        assert!(!first.exists() && directory.join("notes.txt").exists());
+        assert_eq!(fs::read_dir(&directory).unwrap().count(), MOST_FILES + 1);
         fs::remove_dir_all(&directory).unwrap();
     }
 

@@ -8,6 +8,9 @@
 //! `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`, `sky_transmittance`, `ground_radiance`, ..) and
 //! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
 //!
+//! Those who show the same planet with the same settings through one [`SkyLibrary`] (all contexts of a device do) share its
+//! tables and the work of building them.
+//!
 //! ```text
 //! tables.update(&mut encoder, &planet, 1.0 / 16.0)?;          // follows a changing air by parts
 //! volume.prepare(&mut encoder, &tables, &observer)?;          // draws only if altitude, sun or air changed
@@ -35,6 +38,7 @@ mod cache;
 pub mod candidates;
 pub mod celestial;
 pub(crate) mod ephemeris;
+mod kit;
 pub mod light;
 pub mod moon;
 pub mod observer;
@@ -45,6 +49,7 @@ pub mod probe;
 mod probe_csv;
 mod recipe;
 pub mod reference;
+mod set;
 pub mod settings;
 pub mod sight;
 pub mod spectral;
@@ -53,6 +58,7 @@ pub mod tables;
 mod uniforms;
 pub mod volume;
 
+pub use kit::SkyLibrary;
 pub use light::{LightTable, Sh9};
 pub use observer::{Disc, Lamp, Observer};
 pub use planet::Planet;

@@ -208,16 +208,15 @@ pub(crate) fn fade_blend() -> wgpu::BlendState {
     wgpu::BlendState { color: over, alpha: over }
 }
 
-/// One table shown out of two, faded.
-pub(crate) struct Fader {
-    pub shown: Table,
+/// Shows a table out of two, faded.
+pub(crate) struct FadePasses {
+    layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    groups: [wgpu::BindGroup; 2],
 }
 
-impl Fader {
-    pub fn new(device: &Device, label: &str, size: (u32, u32), from: [&Table; 2]) -> Result<Self> {
-        let layout = layout(device, label, &[Slot::Table]);
+impl FadePasses {
+    pub fn new(device: &Device) -> Result<Self> {
+        let layout = layout(device, "sky fade", &[Slot::Table]);
         let target = wgpu::ColorTargetState {
             format: TABLE_FORMAT,
             blend: Some(fade_blend()),
@@ -231,16 +230,27 @@ impl Fader {
             constants: &[],
             samples: 1,
         };
-        let groups = from.map(|t| bind(device, &layout, &[tex(&t.view)]));
-        Ok(Self { shown: Table::new(device, label, size), pipeline: fullscreen(device, &desc)?, groups })
+        let pipeline = fullscreen(device, &desc)?;
+        Ok(Self { layout, pipeline })
     }
 
-    /// Shows table `first`, and `share` of the other over it.
-    pub fn show(&self, encoder: &mut wgpu::CommandEncoder, first: usize, share: f32) {
+    /// How a table is read.
+    pub fn group(&self, device: &Device, table: &wgpu::TextureView) -> wgpu::BindGroup {
+        bind(device, &self.layout, &[tex(table)])
+    }
+
+    /// Draws table `first` into `target`, and a share of the other over it.
+    pub fn show(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        first: &wgpu::BindGroup,
+        other: Option<(&wgpu::BindGroup, f32)>,
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("sky fade"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.shown.view,
+                view: target,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
@@ -248,13 +258,11 @@ impl Fader {
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);
-        for (index, t) in [(first, 1.0), (1 - first, share.clamp(0.0, 1.0))] {
-            if t > 0.0 {
-                let t = f64::from(t);
-                pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
-                pass.set_bind_group(0, &self.groups[index], &[]);
-                pass.draw(0..3, 0..1);
-            }
+        for (group, t) in [Some((first, 1.0)), other].into_iter().flatten() {
+            let t = f64::from(t.clamp(0.0, 1.0));
+            pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..3, 0..1);
         }
     }
 }

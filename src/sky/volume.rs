@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use bytemuck::{Zeroable as _, bytes_of};
 
+use super::kit::Kit;
 use super::observer::{Lamp, Observer};
 use super::passes::{Builder, Slot, TABLE_FORMAT, bind, fade_blend, layout, table_texture, tex, uniform_buffer};
 use super::recipe::Name;
+use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
-use super::tables::{SkyTables, TableSet};
+use super::tables::SkyTables;
 use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
 use crate::error::Result;
 use crate::gpu::Device;
@@ -43,28 +45,51 @@ impl Layered {
 /// Plain and blending variant of a pass.
 struct Pair([wgpu::RenderPipeline; 2]);
 
-/// What all observers of the same tables share.
+/// Layouts of what observers bind.
+pub(crate) struct ObserverLayouts {
+    planet: wgpu::BindGroupLayout,
+    observer: wgpu::BindGroupLayout,
+    view: wgpu::BindGroupLayout,
+}
+
+impl ObserverLayouts {
+    pub fn new(device: &Device) -> Self {
+        use Slot::{Sampler, Table, Uniform};
+        Self {
+            planet: layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]),
+            observer: layout(device, "sky observer", &[Uniform]),
+            view: SkyVolume::view_layout(device),
+        }
+    }
+
+    /// A planet's tables as observers read them: of light scattered more than once, and once by gas and by haze.
+    pub fn planet_group(
+        &self,
+        device: &Device,
+        builder: &Builder,
+        air: &wgpu::Buffer,
+        [sources, gas, haze]: [&wgpu::TextureView; 3],
+    ) -> wgpu::BindGroup {
+        let sampler = wgpu::BindingResource::Sampler(&builder.sampler);
+        let (air, dims) = (air.as_entire_binding(), builder.dims.as_entire_binding());
+        bind(device, &self.planet, &[air, dims, tex(sources), sampler, tex(gas), tex(haze)])
+    }
+}
+
+/// Pipelines that all observers share.
 pub(crate) struct ObserverPasses {
-    planet_layout: wgpu::BindGroupLayout,
-    observer_layout: wgpu::BindGroupLayout,
-    view_layout: wgpu::BindGroupLayout,
     sky: Pair,
     air: Pair,
 }
 
 impl ObserverPasses {
-    pub fn new(device: &Device, settings: &SkySettings) -> Result<Self> {
-        use Slot::{Sampler, Table, Uniform};
-        let planet_layout = layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]);
-        let observer_layout = layout(device, "sky observer", &[Uniform]);
-        let layouts = [&planet_layout, &observer_layout];
+    pub fn new(device: &Device, settings: &SkySettings, layouts: &ObserverLayouts) -> Result<Self> {
+        let layouts = [&layouts.planet, &layouts.observer];
         let (sky, air) = match settings.model {
             SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
             _ => ("sky", "volume"),
         };
-        let sky = pair(device, settings, sky, &layouts)?;
-        let air = pair(device, settings, air, &layouts)?;
-        Ok(Self { planet_layout, observer_layout, view_layout: SkyVolume::view_layout(device), sky, air })
+        Ok(Self { sky: pair(device, settings, sky, &layouts)?, air: pair(device, settings, air, &layouts)? })
     }
 }
 
@@ -81,18 +106,15 @@ struct Drawn {
 /// One thread at a time; one [`SkyVolume::prepare`] a submission, since it writes uniforms through the queue.
 pub struct SkyVolume {
     device: Arc<Device>,
-    settings: SkySettings,
+    kit: Arc<Kit>,
     sky: Layered,
     air: Layered,
-    passes: Arc<ObserverPasses>,
-    /// Tables over the planet, for each of its two sets.
-    planet_groups: [wgpu::BindGroup; 2],
     observer_groups: Vec<wgpu::BindGroup>,
     observers: Vec<wgpu::Buffer>,
     view: wgpu::Buffer,
-    view_layout: wgpu::BindGroupLayout,
-    view_groups: [wgpu::BindGroup; 2],
-    current: usize,
+    view_group: wgpu::BindGroup,
+    /// Whose sources the group holds, where pixels march through them.
+    marched: Option<Arc<TableSet>>,
     drawn: [Option<Drawn>; LAMPS],
     written: ViewUniform,
 }
@@ -103,50 +125,23 @@ impl SkyVolume {
     /// # Errors
     /// GPU faults.
     pub fn new(tables: &SkyTables) -> Result<Self> {
-        let device = tables.device.clone();
+        let (device, kit) = (tables.device.clone(), tables.kit().clone());
         let s = *tables.settings();
         let sky = Layered::new(&device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
         let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
         let air = Layered::new(&device, "air of an observer", air_size);
-        let passes = tables.observer_passes()?;
-        let (planet_layout, observer_layout) = (&passes.planet_layout, &passes.observer_layout);
-        let view_layout = passes.view_layout.clone();
+        kit.observer_passes()?;
         let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
         let observers: Vec<_> = (0..LAMPS).map(|_| uniform_buffer(&device, "sky observer", &zero)).collect();
-        let observer_groups =
-            observers.iter().map(|b| bind(&device, observer_layout, &[b.as_entire_binding()])).collect();
+        let group = |b: &wgpu::Buffer| bind(&device, &kit.observer_layouts.observer, &[b.as_entire_binding()]);
+        let observer_groups = observers.iter().map(group).collect();
         let written = ViewUniform::zeroed();
         let view = uniform_buffer(&device, "sky view", bytes_of(&written));
-        let sets = tables.sets();
-        let planet_groups = sets.map(|set| planet_group(&device, planet_layout, &tables.builder, set));
-        let view_groups = sets.map(|set| {
-            let sampler = wgpu::BindingResource::Sampler(&tables.builder.sampler);
-            let lights = tex(&tables.lights.shown.view);
-            let sources = tex(&set.result(Name::Sources).view);
-            bind(
-                &device,
-                &view_layout,
-                &[view.as_entire_binding(), tex(&sky.whole), tex(&air.whole), lights, sources, sampler],
-            )
-        });
+        let textures = [&sky.whole, &air.whole, &tables.light.view, &kit.nothing.view];
+        let view_group = view_group(&kit, &view, textures);
         device.check()?;
-        let (current, drawn) = (0, [None; LAMPS]);
-        Ok(Self {
-            device,
-            settings: s,
-            sky,
-            air,
-            passes,
-            planet_groups,
-            observer_groups,
-            observers,
-            view,
-            view_layout,
-            view_groups,
-            current,
-            drawn,
-            written,
-        })
+        let (marched, drawn) = (None, [None; LAMPS]);
+        Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, written })
     }
 
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
@@ -157,12 +152,12 @@ impl SkyVolume {
 
     /// The layout that this volume's group was made with.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
-        &self.view_layout
+        &self.kit.observer_layouts.view
     }
 
     /// Group 1 of every shader that includes `sky/lookup.wgsl`. Ask again after every [`SkyVolume::prepare`].
     pub fn bind_group(&self) -> &wgpu::BindGroup {
-        &self.view_groups[self.current]
+        &self.view_group
     }
 
     /// Brings the tables up to date and says whether anything had to be drawn. Nothing is, when neither altitude nor sun
@@ -177,7 +172,7 @@ impl SkyVolume {
         observer: &Observer,
     ) -> Result<bool> {
         observer.check()?;
-        self.current = tables.shown_index();
+        self.follow_sources(tables);
         let air = tables.air();
         let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
         // Lamps that matter, and the altitude that all their tables were drawn for.
@@ -191,19 +186,19 @@ impl SkyVolume {
                 let altitude = observer.altitude_m.max(0.0) as f32;
                 let uniform = ObserverUniform { altitude, mu_s: lamp.toward[2] as f32, unused: [0.0; 2], edges };
                 self.device.queue.write_buffer(&self.observers[i], 0, bytes_of(&uniform));
-                self.draw(encoder, tables, i);
+                self.draw(encoder, tables, i)?;
                 self.drawn[i] = Some(drawn);
             }
         }
         let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
         let mut view = ViewUniform {
             air,
-            dims: DimsUniform::of(&self.settings),
+            dims: DimsUniform::of(&self.kit.settings),
             edges: EdgesUniform::of(&air, altitude_m),
             altitude: altitude_m as f32,
             lamp_count: lamps.len() as u32,
             refraction: observer.refraction as f32,
-            march_panels: self.settings.march_cells.div_ceil(4),
+            march_panels: self.kit.settings.march_cells.div_ceil(4),
             lamps: [LampUniform::zeroed(); LAMPS],
         };
         for (i, lamp) in lamps.iter().enumerate() {
@@ -229,13 +224,28 @@ impl SkyVolume {
         (drawn.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (drawn.mu_s - mu_s).abs() <= 2e-5
     }
 
-    /// Draws lamp `i`'s tables; while an air fades into another, both, one over the other.
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tables: &SkyTables, i: usize) {
-        if self.settings.model == SkyModel::BruteForce {
+    /// Where every pixel marches, it reads the sources of the planet that is shown.
+    fn follow_sources(&mut self, tables: &SkyTables) {
+        let Some(shown) = tables.shown() else { return };
+        let same = self.marched.as_ref().is_some_and(|m| Arc::ptr_eq(m, shown));
+        if self.kit.settings.model != SkyModel::BruteForce || same {
             return;
         }
-        let (shown, next) = (tables.shown_index(), tables.fade());
-        for (pass, target) in [(&self.passes.sky, &self.sky), (&self.passes.air, &self.air)] {
+        let sources = &shown.result(Name::Sources).view;
+        let textures = [&self.sky.whole, &self.air.whole, &tables.light.view, sources];
+        self.view_group = view_group(&self.kit, &self.view, textures);
+        self.marched = Some(shown.clone());
+    }
+
+    /// Draws lamp `i`'s tables; while an air fades into another, both, one over the other.
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tables: &SkyTables, i: usize) -> Result<()> {
+        let Some(shown) = tables.shown() else { return Ok(()) };
+        let next = tables.fading();
+        if self.kit.settings.model == SkyModel::BruteForce {
+            return Ok(());
+        }
+        let passes = self.kit.observer_passes()?;
+        for (pass, target) in [(&passes.sky, &self.sky), (&passes.air, &self.air)] {
             let layer = |k: usize| {
                 Some(wgpu::RenderPassColorAttachment {
                     view: &target.layers[LAYERS as usize * i + k],
@@ -253,25 +263,26 @@ impl SkyVolume {
                 ..Default::default()
             });
             recorded.set_pipeline(&pass.0[0]);
-            recorded.set_bind_group(0, &self.planet_groups[shown], &[]);
+            recorded.set_bind_group(0, &shown.observer_group, &[]);
             recorded.set_bind_group(1, &self.observer_groups[i], &[]);
             recorded.draw(0..3, 0..1);
-            if let Some(t) = next {
+            if let Some((next, t)) = next {
                 let t = f64::from(t);
                 recorded.set_pipeline(&pass.0[1]);
                 recorded.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
-                recorded.set_bind_group(0, &self.planet_groups[1 - shown], &[]);
+                recorded.set_bind_group(0, &next.observer_group, &[]);
                 recorded.draw(0..3, 0..1);
             }
         }
+        Ok(())
     }
 }
 
-fn planet_group(device: &Device, layout: &wgpu::BindGroupLayout, builder: &Builder, set: &TableSet) -> wgpu::BindGroup {
-    let view = |name| tex(&set.result(name).view);
-    let sampler = wgpu::BindingResource::Sampler(&builder.sampler);
-    let (air, dims) = (set.air.as_entire_binding(), builder.dims.as_entire_binding());
-    bind(device, layout, &[air, dims, view(Name::Sources), sampler, view(Name::OnceGas), view(Name::OnceHaze)])
+/// What shaders look up: the observer's sky and air, the planet's light, and the sources where pixels march.
+fn view_group(kit: &Kit, view: &wgpu::Buffer, textures: [&wgpu::TextureView; 4]) -> wgpu::BindGroup {
+    let [sky, air, light, sources] = textures.map(tex);
+    let sampler = wgpu::BindingResource::Sampler(&kit.builder.sampler);
+    bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), sky, air, light, sources, sampler])
 }
 
 fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGroupLayout]) -> Result<Pair> {

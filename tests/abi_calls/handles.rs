@@ -50,6 +50,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_surface_present", "surface", false, |h| unsafe { wk_surface_present(h.cast()) }),
         case("wk_context_create", "device", false, |h| unsafe { wk_context_create(h.cast(), null(), null_mut()) }),
         case("wk_context_destroy", "context", true, |h| unsafe { wk_context_destroy(h.cast()) }),
+        case("wk_context_build_sky", "context", false, |h| unsafe { wk_context_build_sky(h.cast(), None, null_mut()) }),
         case("wk_context_set_sun", "context", false, |h| unsafe { wk_context_set_sun(h.cast(), null()) }),
         case("wk_context_set_moon", "context", false, |h| unsafe { wk_context_set_moon(h.cast(), null()) }),
         case("wk_context_set_weather", "context", false, |h| unsafe {

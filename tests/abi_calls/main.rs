@@ -6,6 +6,7 @@
 
 mod handles;
 mod queries;
+mod sky;
 mod structs;
 mod weather;
 mod world;

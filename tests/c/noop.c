@@ -74,6 +74,16 @@ static void draw(wk_view *view, wk_texture *color, wk_texture *depth, uint64_t f
     EXPECT(report.frame_id == frame_id && report.passes > 0);
 }
 
+/* A progress bar that gives up when it is told to. */
+static int32_t on_progress(void *user, double share)
+{
+    double *last = (double *)user;
+    const int abort_now = *last < 0.0;
+    EXPECT(share > *last && share <= 1.0);
+    *last = share;
+    return abort_now;
+}
+
 int main(void)
 {
     wk_device_desc device_desc = WK_DEVICE_DESC_INIT;
@@ -85,6 +95,7 @@ int main(void)
     wk_view *views[2] = {NULL, NULL};
     wk_texture *color, *depth;
     unsigned char pixels[16 * 8 * 4];
+    double progress;
     int i;
 
     versions();
@@ -97,6 +108,12 @@ int main(void)
     CHECK(wk_context_create(device, &context_desc, &context));
     CHECK(wk_context_set_sun(context, &sun));
     CHECK(wk_context_set_sun(context, NULL));
+    progress = -1.0;
+    EXPECT(wk_context_build_sky(context, on_progress, &progress) == WK_ERROR_ABORTED);
+    progress = 0.0;
+    CHECK(wk_context_build_sky(context, on_progress, &progress));
+    EXPECT(progress == 1.0);
+    CHECK(wk_context_build_sky(context, NULL, NULL));
     for (i = 0; i < 2; i++) CHECK(wk_view_create(context, NULL, &views[i]));
     color = texture(device, WK_FORMAT_RGBA8_UNORM);
     depth = texture(device, WK_FORMAT_R32_FLOAT);

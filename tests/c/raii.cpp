@@ -41,7 +41,7 @@ int main()
         raw = device.get();
         welkin::context context;
         welkin::view view;
-        if (context.create(device) != WK_OK || view.create(context) != WK_OK) return 3;
+        if (context.create(device) != WK_OK || context.build_sky() != WK_OK || view.create(context) != WK_OK) return 3;
         if (context.update(1.0) != WK_OK || view.record(frame, WK_STAGE_PREPARE) != WK_OK) return 4;
         if (!fails(device)) return 5;
     }

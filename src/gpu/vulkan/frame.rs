@@ -63,11 +63,13 @@ impl VulkanHost {
             let family = self.record.queue_family_index;
             brackets.of(&self.raw, family, over.images.iter().map(|&(image, role, _)| (image, role)))?
         };
+        let turn = self.device.turn();
         // SAFETY: the caller vouches for the semaphores; they are staged for the submission right below.
         unsafe { self.stage(over)? };
         let submitted = dispatch::with_bracket(self.record.queue, bracket, || self.device.queue.submit([commands]));
         // SAFETY: the queue is only asked what is left over.
         unsafe { self.unstage(over)? };
+        drop(turn);
         if submitted { Ok(()) } else { Err(refused()) }
     }
 

@@ -1,0 +1,406 @@
+//! What all tables of one device and one setting share: pipelines, builds under way, and the finished tables of every
+//! planet that someone still shows.
+//!
+//! A planet is built once, whoever asks: a second one who wants it joins the build or takes what is finished. Every part of
+//! a build is a submission of its own under the kit's lock, so that parts lie on the queue in their order whichever frames
+//! they belong to. Nothing here keeps tables alive: they go with the last who shows them.
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+
+use super::Planet;
+use super::cache;
+use super::passes::{Builder, FadePasses, Table};
+use super::recipe::{Name, Pass, passes};
+use super::set::TableSet;
+use super::settings::SkySettings;
+use super::volume::{ObserverLayouts, ObserverPasses};
+use crate::error::{Error, Result, Status};
+use crate::gpu::{Device, readback};
+
+/// The kits of a device: one a setting that is in use. Any thread.
+#[derive(Default)]
+pub struct SkyLibrary {
+    kits: Mutex<Vec<Weak<Kit>>>,
+}
+
+impl SkyLibrary {
+    /// The kit of these settings, made if nobody has it.
+    pub(crate) fn kit(&self, device: &Arc<Device>, settings: &SkySettings) -> Result<Arc<Kit>> {
+        settings.check()?;
+        let mut kits = self.kits.lock().unwrap_or_else(PoisonError::into_inner);
+        kits.retain(|k| k.strong_count() > 0);
+        if let Some(kit) = kits.iter().filter_map(Weak::upgrade).find(|k| k.settings == *settings) {
+            return Ok(kit);
+        }
+        let kit = Arc::new(Kit::new(device, settings)?);
+        kits.push(Arc::downgrade(&kit));
+        Ok(kit)
+    }
+}
+
+/// A part of a pass: rows of its target.
+#[derive(Clone, Copy, Debug)]
+struct Strip {
+    pass: usize,
+    first_row: u32,
+    rows: u32,
+    cost: f64,
+}
+
+/// A pass is cut into strips of at most this share of a whole build.
+const STRIP_SHARE: f64 = 1.0 / 48.0;
+/// Share of a whole build in one submission: none may keep a GPU from the host's own work for long.
+const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
+
+/// Tables that only a build under way needs.
+struct Scratch(Vec<(Name, Table)>);
+
+/// A claim on a build: it goes on as long as someone holds one.
+pub(crate) struct Ticket {
+    set: Arc<TableSet>,
+}
+
+impl Ticket {
+    /// The planet that is built.
+    pub fn planet(&self) -> &Planet {
+        &self.set.planet
+    }
+}
+
+/// What asking for a planet gives.
+pub(crate) enum Claim {
+    Finished(Arc<TableSet>),
+    Building(Arc<Ticket>),
+}
+
+struct Build {
+    ticket: Weak<Ticket>,
+    set: Arc<TableSet>,
+    scratch: Scratch,
+    shared: wgpu::BindGroup,
+    /// Tables that each pass reads.
+    reads: Vec<wgpu::BindGroup>,
+    /// Strips done.
+    next: usize,
+}
+
+#[derive(Default)]
+struct Work {
+    builds: Vec<Build>,
+    finished: Vec<Weak<TableSet>>,
+    spare: Option<Scratch>,
+    count: u64,
+}
+
+/// What one step of a build came to, as shares of a whole one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    pub work: f64,
+    pub done: f64,
+}
+
+/// Pipelines and builds of one setting on one device. Any thread; its lock is the last that is taken.
+pub(crate) struct Kit {
+    pub device: Arc<Device>,
+    pub settings: SkySettings,
+    pub builder: Builder,
+    pub fades: FadePasses,
+    pub observer_layouts: ObserverLayouts,
+    /// Stands for tables that a model does not have.
+    pub nothing: Table,
+    observers: OnceLock<ObserverPasses>,
+    passes: Vec<Pass>,
+    strips: Vec<Strip>,
+    total_cost: f64,
+    work: Mutex<Work>,
+}
+
+impl Kit {
+    fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
+        let passes = passes(settings);
+        let (strips, total_cost) = strips(settings, &passes);
+        let kit = Self {
+            device: device.clone(),
+            settings: *settings,
+            builder: Builder::new(device, settings, &passes)?,
+            fades: FadePasses::new(device)?,
+            observer_layouts: ObserverLayouts::new(device),
+            nothing: Table::new(device, "sky nothing", (1, 1)),
+            observers: OnceLock::new(),
+            passes,
+            strips,
+            total_cost,
+            work: Mutex::default(),
+        };
+        device.check()?;
+        Ok(kit)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Work> {
+        self.work.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Pipelines of the observers' tables, made for the first of them.
+    pub fn observer_passes(&self) -> Result<&ObserverPasses> {
+        if let Some(known) = self.observers.get() {
+            return Ok(known);
+        }
+        let made = ObserverPasses::new(&self.device, &self.settings, &self.observer_layouts)?;
+        Ok(self.observers.get_or_init(|| made))
+    }
+
+    /// Planets built so far, from the cache's files not counted.
+    pub fn builds(&self) -> u64 {
+        self.lock().count
+    }
+
+    /// Finished tables of a checked planet, or a claim on its build, which may be another's.
+    pub fn claim(&self, planet: &Planet) -> Claim {
+        let mut work = self.lock();
+        self.sweep(&mut work);
+        let finished = work.finished.iter().filter_map(Weak::upgrade).find(|s| s.planet == *planet);
+        if let Some(set) = finished {
+            return Claim::Finished(set);
+        }
+        let known = work.builds.iter().find(|b| b.set.planet == *planet).and_then(|b| b.ticket.upgrade());
+        if let Some(ticket) = known {
+            return Claim::Building(ticket);
+        }
+        let set = Arc::new(TableSet::new(self, planet));
+        let ticket = Arc::new(Ticket { set: set.clone() });
+        let scratch = work.spare.take().unwrap_or_else(|| self.scratch());
+        let build = self.build_of(Arc::downgrade(&ticket), set, scratch);
+        work.builds.push(build);
+        Claim::Building(ticket)
+    }
+
+    /// Takes back the scratch of builds that nobody wants any more.
+    fn sweep(&self, work: &mut Work) {
+        while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
+            work.spare = Some(work.builds.swap_remove(i).scratch);
+        }
+    }
+
+    fn scratch(&self) -> Scratch {
+        let make = |n: &Name| (*n, Table::new(&self.device, &format!("sky {n:?}"), n.size(&self.settings)));
+        Scratch(Name::SCRATCH.iter().map(make).collect())
+    }
+
+    fn build_of(&self, ticket: Weak<Ticket>, set: Arc<TableSet>, scratch: Scratch) -> Build {
+        let view = |name: Name| {
+            let known = set.tables().chain(&scratch.0).find(|(n, _)| *n == name);
+            known.map_or(&self.nothing.view, |(_, t)| &t.view)
+        };
+        let reads = self.passes.iter().map(|p| self.builder.tables_group(&self.device, p.reads.map(view))).collect();
+        let shared = self.builder.shared_group(&self.device, &set.air);
+        Build { ticket, set, scratch, shared, reads, next: 0 }
+    }
+
+    /// Submits strips up to `share` of a whole build; the tables when the last one is submitted.
+    pub fn advance(&self, ticket: &Arc<Ticket>, share: f64) -> Result<(Step, Option<Arc<TableSet>>)> {
+        let mut guard = self.lock();
+        let work = &mut *guard;
+        let Some(i) = work.builds.iter().position(|b| Arc::ptr_eq(&b.set, &ticket.set)) else {
+            // Another who wanted it has finished it.
+            return Ok((Step { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
+        };
+        let first = work.builds[i].next;
+        let mut rest = share * self.total_cost * (1.0 + 1e-6);
+        while rest > 0.0 && work.builds[i].next < self.strips.len() {
+            let part = rest.min(SUBMISSION_SHARE * self.total_cost);
+            let at_least_one = work.builds[i].next == first;
+            let cost = self.submit_some(&mut work.builds[i], part, at_least_one)?;
+            if cost == 0.0 {
+                break;
+            }
+            rest -= cost;
+        }
+        let next = work.builds[i].next;
+        let sum = |s: &[Strip]| s.iter().map(|s| s.cost).sum::<f64>() / self.total_cost;
+        let step = Step { work: sum(&self.strips[first..next]), done: sum(&self.strips[..next]) };
+        if next < self.strips.len() {
+            return Ok((step, None));
+        }
+        let build = work.builds.swap_remove(i);
+        work.spare = Some(build.scratch);
+        work.count += 1;
+        work.finished.retain(|s| s.strong_count() > 0);
+        work.finished.push(Arc::downgrade(&build.set));
+        Ok((Step { done: 1.0, ..step }, Some(build.set)))
+    }
+
+    /// Submits strips worth at most `budget`, or the next one if `at_least_one` is asked; answers their cost.
+    fn submit_some(&self, build: &mut Build, budget: f64, at_least_one: bool) -> Result<f64> {
+        let (mut cost, mut end) = (0.0, build.next);
+        while let Some(strip) = self.strips.get(end) {
+            if cost + strip.cost > budget && !(at_least_one && end == build.next) {
+                break;
+            }
+            cost += strip.cost;
+            end += 1;
+        }
+        if end > build.next {
+            let mut encoder = self.device.device.create_command_encoder(&Default::default());
+            self.record(&mut encoder, build, end);
+            self.device.submit(encoder);
+            self.device.check()?;
+            build.next = end;
+        }
+        Ok(cost)
+    }
+
+    /// Records strips up to `end`, those of one pass in one render pass.
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, end: usize) {
+        for strips in self.strips[build.next..end].chunk_by(|a, b| a.pass == b.pass) {
+            let index = strips[0].pass;
+            let pass = &self.passes[index];
+            let Some(pipeline) = self.builder.pipeline(pass.kind) else { continue };
+            let view = |name: &Name| {
+                let known = build.set.tables().chain(&build.scratch.0).find(|(n, _)| n == name);
+                known.map(|(_, t)| wgpu::RenderPassColorAttachment {
+                    view: &t.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+                })
+            };
+            let targets: Vec<_> = pass.draws.iter().map(view).collect();
+            let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("sky build"),
+                color_attachments: &targets,
+                ..Default::default()
+            });
+            recorded.set_pipeline(pipeline);
+            recorded.set_bind_group(0, &build.shared, &[self.builder.job_offset(index)]);
+            recorded.set_bind_group(1, &build.reads[index], &[]);
+            let rows: u32 = strips.iter().map(|s| s.rows).sum();
+            recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&self.settings).0, rows);
+            recorded.draw(0..3, 0..1);
+        }
+    }
+
+    /// Tables of a checked planet: those that someone shows, those of the cache's file, or new ones, built in sixteen parts
+    /// with a wait for the GPU after each; the cache is written afterwards. The host's context is entered for each part and
+    /// left while `progress` is told the share done; when that answers false the build ends.
+    pub fn build(
+        &self,
+        planet: &Planet,
+        cache: Option<&Path>,
+        progress: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Arc<TableSet>> {
+        let mut tell = |share: f64| match progress(share.min(1.0) as f32) {
+            true => Ok(()),
+            false => Err(Error::new(Status::Aborted, "building the sky's tables was aborted by the host")),
+        };
+        let claim = {
+            let _entered = self.device.enter()?;
+            self.claim_or_load(planet, cache)
+        };
+        let ticket = match claim {
+            Claim::Finished(set) => return tell(1.0).map(|()| set),
+            Claim::Building(ticket) => ticket,
+        };
+        loop {
+            let entered = self.device.enter()?;
+            let (step, set) = self.advance(&ticket, 1.0 / 16.0)?;
+            self.device.wait()?;
+            drop(entered);
+            tell(step.done)?;
+            let Some(set) = set else { continue };
+            if let Some(directory) = cache {
+                let _entered = self.device.enter()?;
+                self.keep(&set, directory);
+            }
+            return Ok(set);
+        }
+    }
+
+    /// Whether this device's tables are worth a file: the `noop` backend computes nothing.
+    fn is_real(&self) -> bool {
+        self.device.caps().backend != wgpu::Backend::Noop
+    }
+
+    /// As [`Kit::claim`], with a look into the cache where nobody has finished the planet.
+    pub fn claim_or_load(&self, planet: &Planet, cache: Option<&Path>) -> Claim {
+        match (self.claim(planet), cache) {
+            (Claim::Building(ticket), Some(directory)) => {
+                self.load(planet, directory).map_or(Claim::Building(ticket), Claim::Finished)
+            }
+            (claim, _) => claim,
+        }
+    }
+
+    /// Tables from the cache's file; what is wrong with it is logged.
+    fn load(&self, planet: &Planet, directory: &Path) -> Option<Arc<TableSet>> {
+        if !self.is_real() {
+            return None;
+        }
+        let read = cache::key(planet, &self.settings).and_then(|key| cache::read(directory, key, &self.settings));
+        match read {
+            Ok(tables) => {
+                let set = Arc::new(TableSet::new(self, planet));
+                set.fill(&self.device, &tables?);
+                self.lock().finished.push(Arc::downgrade(&set));
+                Some(set)
+            }
+            Err(e) => {
+                log::warn!("the sky's tables are built anew: {}", e.message);
+                None
+            }
+        }
+    }
+
+    /// Writes finished tables to the cache; what goes wrong is logged. Waits for the GPU.
+    pub fn keep(&self, set: &TableSet, directory: &Path) {
+        if !self.is_real() {
+            return;
+        }
+        let read = |name: &Name| readback::bytes(&self.device, &set.result(*name).texture, 0);
+        let written = Name::RESULTS
+            .iter()
+            .map(read)
+            .collect::<Result<Vec<_>>>()
+            .and_then(|tables| cache::write(directory, cache::key(&set.planet, &self.settings)?, &tables));
+        if let Err(e) = written {
+            log::warn!("the sky's tables are not kept: {}", e.message);
+        }
+    }
+}
+
+/// Cuts the passes into strips; also the cost of all.
+fn strips(settings: &SkySettings, passes: &[Pass]) -> (Vec<Strip>, f64) {
+    let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_cost(settings);
+    let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();
+    let mut out = Vec::new();
+    for (pass, p) in passes.iter().enumerate() {
+        let height = p.draws[0].size(settings).1;
+        let each = ((STRIP_SHARE * total / row_cost(p)) as u32).clamp(1, height);
+        for first_row in (0..height).step_by(each as usize) {
+            let rows = each.min(height - first_row);
+            out.push(Strip { pass, first_row, rows, cost: row_cost(p) * f64::from(rows) });
+        }
+    }
+    (out, total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::settings::SkyModel;
+    use super::*;
+
+    #[test]
+    fn strips_cover_every_pass_and_are_small() {
+        for (_, model) in SkyModel::NAMES {
+            let s = SkySettings::with_model(model);
+            let list = passes(&s);
+            let (strips, total) = strips(&s, &list);
+            assert!(strips.iter().all(|x| x.cost <= total / 32.0), "{model:?}");
+            assert!((strips.iter().map(|x| x.cost).sum::<f64>() / total - 1.0).abs() < 1e-9);
+            for (i, p) in list.iter().enumerate() {
+                let rows: u32 = strips.iter().filter(|x| x.pass == i).map(|x| x.rows).sum();
+                assert_eq!(rows, p.draws[0].size(&s).1);
+            }
+        }
+    }
+}

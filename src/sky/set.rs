@@ -1,0 +1,84 @@
+//! The finished tables of one planet, which all that show it share.
+
+use std::sync::{Arc, OnceLock};
+
+use bytemuck::bytes_of;
+
+use super::Planet;
+use super::kit::Kit;
+use super::light::LightTable;
+use super::passes::{Table, uniform_buffer};
+use super::recipe::Name;
+use super::uniforms::AirUniform;
+use crate::error::Result;
+use crate::gpu::Device;
+
+/// One planet's tables, and how observers and fades read them.
+pub(crate) struct TableSet {
+    pub planet: Planet,
+    pub air: wgpu::Buffer,
+    /// Group 0 of the observers' passes.
+    pub observer_group: wgpu::BindGroup,
+    /// The light, for a fade.
+    pub light_group: wgpu::BindGroup,
+    results: Vec<(Name, Table)>,
+    /// Its light on the CPU, once it was asked for.
+    light: OnceLock<Arc<LightTable>>,
+}
+
+impl TableSet {
+    /// Empty tables.
+    pub fn new(kit: &Kit, planet: &Planet) -> Self {
+        let device = &kit.device;
+        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.size(&kit.settings)));
+        let results: Vec<_> = Name::RESULTS.iter().map(table).collect();
+        let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(planet)));
+        let of = |name: Name| &find(&results, name).view;
+        let sources = [of(Name::Sources), of(Name::OnceGas), of(Name::OnceHaze)];
+        Self {
+            planet: *planet,
+            observer_group: kit.observer_layouts.planet_group(device, &kit.builder, &air, sources),
+            light_group: kit.fades.group(device, of(Name::Lights)),
+            air,
+            results,
+            light: OnceLock::new(),
+        }
+    }
+
+    /// One of [`Name::RESULTS`].
+    pub fn result(&self, name: Name) -> &Table {
+        find(&self.results, name)
+    }
+
+    /// All of them.
+    pub fn tables(&self) -> std::slice::Iter<'_, (Name, Table)> {
+        self.results.iter()
+    }
+
+    /// Fills them with a cache's bytes, in the order of [`Name::RESULTS`].
+    pub fn fill(&self, device: &Device, tables: &[Vec<u8>]) {
+        for (name, bytes) in Name::RESULTS.iter().zip(tables) {
+            let texture = &self.result(*name).texture;
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texture.width() * 8),
+                rows_per_image: None,
+            };
+            device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+        }
+    }
+
+    /// The light on the CPU; read back when it is first asked for, which waits for the GPU.
+    pub fn read_light(&self, device: &Device) -> Result<Arc<LightTable>> {
+        if let Some(known) = self.light.get() {
+            return Ok(known.clone());
+        }
+        let read = Arc::new(LightTable::read(device, self.result(Name::Lights), AirUniform::of(&self.planet))?);
+        Ok(self.light.get_or_init(|| read).clone())
+    }
+}
+
+/// Made of exactly these names; the first stands in for one that cannot be asked for.
+fn find(results: &[(Name, Table)], name: Name) -> &Table {
+    &results.iter().find(|(n, _)| *n == name).unwrap_or(&results[0]).1
+}
