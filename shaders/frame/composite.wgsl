@@ -12,12 +12,15 @@ const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
 fn sky_behind(d: vec3f) -> vec3f {
+    if drawn.z == 0.0 && d.z >= 0.0 {
+        return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
+    }
     var spectrum = sky_radiance(d);
     if d.z < 0.0 {
         return color_of(spectrum + ground_radiance(d)) * frame.medium_share + frame.night_floor;
     }
     spectrum += disc_radiance(d, frame.pixel_angle) * frame.direct_share;
-    let clear = color_of(spectrum) + frame.night_floor;
+    let clear = color_of(spectrum) * drawn.z + frame.night_floor;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 
@@ -27,9 +30,9 @@ fn display(luminance: vec3f) -> vec3f {
     return tone_curve(frame.tone, max(luminance, vec3f(0.0)) * frame.exposure);
 }
 
-// `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host drew nothing.
-fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
-    let ray = view_ray(frame.depth, ndc);
+// What weather adds to a pixel. `range` along the ray and `plane` from the camera's plane are RANGE_SKY where the host
+// drew nothing.
+fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     let sky = range >= RANGE_SKY;
     var veil = Veil(vec3f(0.0), vec3f(1.0));
     if BACKGROUND && sky {
@@ -40,6 +43,12 @@ fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: ve
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
     }
+    return veil;
+}
+
+fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
+    drawn = frame.drawn;
+    let veil = weather_over(view_ray(frame.depth, ndc), range, plane);
     return vec4f(mix(written(host.rgb, veil, pixel), host.rgb, mask), host.a);
 }
 

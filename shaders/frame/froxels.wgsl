@@ -17,6 +17,7 @@ struct Froxel {
 
 @fragment
 fn froxels(in: FullscreenVarying) -> Froxel {
+    drawn = frame.drawn;
     let texel = floor(in.position.xy);
     let tile = floor(texel / FROXEL_TILE);
     let inside = texel - tile * FROXEL_TILE;

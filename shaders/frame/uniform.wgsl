@@ -36,6 +36,8 @@ struct FrameUniform {
     direct_share: f32,
     pad0: f32,
     pad1: f32,
+    // How much of air, fog and clear sky is drawn, 1 all of it, 0 not at all (src/plan); w is not used.
+    drawn: vec4f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.
@@ -45,3 +47,6 @@ fn color_of(spectrum: vec3f) -> vec3f {
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;
+
+// As frame.drawn; the gauge (plan/gauge.wgsl) sets it to see what a part is worth.
+var<private> drawn: vec4f;

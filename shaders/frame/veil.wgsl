@@ -18,21 +18,27 @@ fn overcast_gradation(sin_elevation: f32) -> f32 {
 }
 
 fn air_between(d: vec3f, distance: f32) -> Veil {
+    if drawn.x == 0.0 {
+        return Veil(vec3f(0.0), vec3f(1.0));
+    }
     let air = aerial(d, distance);
     let night = frame.night_floor * (1.0 - air.transmittance);
     let clear = color_of(air.radiance) * frame.medium_share;
     // No beam reaches the air below a deck: it is lit by the deck, and far things fade to the deck at the horizon.
     let overcast = frame.deck * overcast_gradation(0.0) * (1.0 - air.transmittance);
-    return Veil(mix(clear, overcast, frame.deck_cover) + night, air.transmittance);
+    let light = mix(clear, overcast, frame.deck_cover) + night;
+    return Veil(light * drawn.x, mix(vec3f(1.0), air.transmittance, drawn.x));
 }
 
 // `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air
 // before it, the fog round the camera lies before the air: fog_compose, written for a veil.
 fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
-    if !FOG {
+    if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    let f = fog_along(fog, ray.origin, ray.direction, range, plane);
+    var f = fog_along(fog, ray.origin, ray.direction, range, plane);
+    f.radiance *= drawn.y;
+    f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
     var before = Veil(vec3f(0.0), vec3f(1.0));
     if f.distance > 50.0 {
         before = air_between(ray.direction, f.distance);

@@ -32,6 +32,29 @@ pub(super) struct Variant {
     pub march: bool,
 }
 
+impl Variant {
+    /// Values of the shader's `override` constants.
+    pub fn constants(&self) -> [(&'static str, f64); 13] {
+        let yes = |b: bool| f64::from(u8::from(b));
+        let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
+        [
+            ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
+            ("MEDIUM", yes(self.stages.has(Stages::MEDIUM))),
+            ("TONE", yes(self.stages.has(Stages::TONE))),
+            ("SKY_MARCH", yes(self.march)),
+            ("FOG", yes(self.fog.is_some())),
+            ("DEPTH_KINDS", f64::from(self.depth_kinds)),
+            ("HAS_DEPTH", yes(self.has_depth)),
+            ("HAS_MASK", yes(self.has_mask)),
+            f0,
+            f1,
+            f2,
+            f3,
+            f4,
+        ]
+    }
+}
+
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
     layout_single: wgpu::BindGroupLayout,
@@ -171,18 +194,6 @@ impl Composite {
         if !self.pipelines.contains_key(&variant) {
             let multi = variant.samples > 1;
             let layouts = self.layouts(multi);
-            let yes = |b: bool| f64::from(u8::from(b));
-            let own = [
-                ("BACKGROUND", yes(variant.stages.has(Stages::BACKGROUND))),
-                ("MEDIUM", yes(variant.stages.has(Stages::MEDIUM))),
-                ("TONE", yes(variant.stages.has(Stages::TONE))),
-                ("SKY_MARCH", yes(variant.march)),
-                ("FOG", yes(variant.fog.is_some())),
-                ("DEPTH_KINDS", f64::from(variant.depth_kinds)),
-                ("HAS_DEPTH", yes(variant.has_depth)),
-                ("HAS_MASK", yes(variant.has_mask)),
-            ];
-            let constants = [&own[..], &variant.fog.unwrap_or(FogVariant::ALL).constants()].concat();
             let pipeline = pass::fullscreen(
                 device,
                 &FullscreenDesc {
@@ -194,7 +205,7 @@ impl Composite {
                         blend: None,
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
-                    constants: &constants,
+                    constants: &variant.constants(),
                     samples: variant.samples,
                 },
             )?;

@@ -17,6 +17,7 @@ use crate::{
     error::{Error, Result, Status},
     fog::{FogKind, FogUniform, FogVariant},
     gpu::Device,
+    plan::{Budget, Plan, Planner, Present, Situation},
     scene::{Camera, ViewRays},
     sky::SkyVolume,
 };
@@ -54,6 +55,8 @@ pub struct View {
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     sky: SkyVolume,
     froxels: Option<Froxels>,
+    planner: Planner,
+    planned_for: Option<u64>,
     light_scale: f32,
     recorded: Stages,
     report: Report,
@@ -89,6 +92,8 @@ impl View {
             bound: None,
             sky,
             froxels: None,
+            planner: Planner::new(),
+            planned_for: None,
             light_scale: 0.0,
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
@@ -98,6 +103,23 @@ impl View {
     /// What the last frame took and showed.
     pub fn report(&self) -> &Report {
         &self.report
+    }
+
+    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged
+    /// after an error.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field and its range.
+    pub fn set_budget(&mut self, budget: Budget) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        self.planner.set_budget(&device, budget)?;
+        device.check()
+    }
+
+    /// What the last frame drew of the weather, and why.
+    pub fn plan(&self) -> &Plan {
+        self.planner.plan()
     }
 
     /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
@@ -256,7 +278,23 @@ impl View {
         self.bind(frame, color)?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
-        let block = uniform(frame, scene, rays, color, exposure, context, tone);
+        let situation = situation(frame, scene);
+        if self.planned_for != Some(frame.frame_id) {
+            self.planned_for = Some(frame.frame_id);
+            let present = Present {
+                parts: [
+                    variant.has_depth && variant.stages.has(Stages::MEDIUM),
+                    variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
+                    variant.stages.has(Stages::BACKGROUND),
+                ],
+                pixels: u64::from(color.width()) * u64::from(color.height()),
+                lamps: scene.observer(false).lamps.iter().flatten().count() as u32,
+            };
+            let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
+            self.planner.begin(&self.device, &situation, &present, pure);
+        }
+        let drawn = self.planner.drawn();
+        let block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
@@ -270,6 +308,13 @@ impl View {
         let groups = [group, self.sky.bind_group()];
         crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
+        if variant.stages.has(Stages::MEDIUM)
+            && let Some(gauge) = self.planner.due(&situation)
+        {
+            let (multi, constants) = (variant.samples > 1, variant.constants());
+            gauge.record(&self.device, encoder, (multi, &constants), &composite.layouts(multi), &groups)?;
+            self.report.passes += 1;
+        }
         drop(composite);
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (exposure * frame.cd_m2_per_unit)) as f32,
@@ -310,6 +355,17 @@ impl View {
     }
 }
 
+/// What the planner compares pictures by.
+fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
+    let forward = frame.camera.rotation().transpose() * DVec3::NEG_Z;
+    Situation {
+        position: frame.camera.position,
+        forward,
+        sun: scene.sun.direction,
+        conditions: scene.conditions,
+    }
+}
+
 /// A texture like the host's colour, to read while the host's is written.
 fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
     let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -335,7 +391,7 @@ fn uniform(
     color: &wgpu::Texture,
     exposure: f64,
     context: &Context,
-    tone: bool,
+    (tone, drawn): (bool, [f32; 4]),
 ) -> FrameUniform {
     let format = color.format();
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
@@ -370,5 +426,6 @@ fn uniform(
         direct_share: scene.brighter().direct_share as f32,
         encode: u32::from(encode),
         pad: [0.0; 2],
+        drawn,
     }
 }

@@ -1,0 +1,43 @@
+// What each part of the weather is worth in this very picture: at a coarse grid of its pixels, the composition with
+// everything and without one part after the other. Output: relative change of luminance without air, without fog,
+// without clear sky; alpha is 1 where the host drew something, -1 where it drew nothing, 0 under the mask.
+//!include "frame/composite.wgsl"
+
+// Pixels of the picture are looked at through these, written by the variant for one or several samples.
+struct Looked {
+    host: vec3f,
+    range: f32,
+    plane: f32,
+    ndc: vec2f,
+    mask: f32,
+}
+
+// Exposed luminance, 1 = white: what error is measured in, before a tone curve.
+fn exposed(host: vec3f, veil: Veil) -> f32 {
+    var light = veil.light * frame.exposure;
+    var behind = host * (frame.cd_m2_per_unit * frame.exposure);
+    if frame.color_space != SCENE_LINEAR {
+        light = tone_curve(frame.tone, light);
+        behind = select(host, srgb_decode(host), frame.color_space == DISPLAY_SRGB);
+    }
+    return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+fn shown_with(parts: vec3f, p: Looked, ray: ViewRay) -> f32 {
+    drawn = vec4f(parts, 0.0);
+    return exposed(p.host, weather_over(ray, p.range, p.plane));
+}
+
+fn gauged(p: Looked) -> vec4f {
+    let ray = view_ray(frame.depth, p.ndc);
+    let all = shown_with(vec3f(1.0), p, ray);
+    let without = vec3f(
+        shown_with(vec3f(0.0, 1.0, 1.0), p, ray),
+        shown_with(vec3f(1.0, 0.0, 1.0), p, ray),
+        shown_with(vec3f(1.0, 1.0, 0.0), p, ray),
+    );
+    // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.
+    let change = (without - all) / (all + 0.01) * (1.0 - p.mask);
+    let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * (1.0 - p.mask);
+    return vec4f(clamp(change, vec3f(-6e4), vec3f(6e4)), kind);
+}

@@ -1,0 +1,148 @@
+//! The gauge: one small pass that sees what each part of the weather is worth in a picture, read back without waiting.
+//!
+//! A few frames lie between the pass and its answer, so a plan follows a picture, never leads it. Costs 2304 pixels of
+//! four compositions: a hundredth of a picture of 1280 x 720, and only in every [`EVERY`]th frame.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU32, Ordering},
+};
+
+use super::parts::Sample;
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+};
+
+/// Gauged pixels across and down.
+pub const GRID: (u32, u32) = (64, 36);
+/// Frames from one gauge to the next.
+pub const EVERY: u32 = 8;
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const BYTES_PER_ROW: u32 = GRID.0 * 8;
+
+const IDLE: u32 = 0;
+const RECORDED: u32 = 1;
+const MAPPING: u32 = 2;
+const READY: u32 = 3;
+const FAILED: u32 = 4;
+
+/// Target, staging buffer and pipeline of a view's gauge.
+pub(crate) struct Gauge {
+    target: wgpu::Texture,
+    view: wgpu::TextureView,
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU32>,
+    /// Made for a number of samples (one or several) and `override` constants.
+    pipeline: Option<(bool, Vec<(&'static str, f64)>, wgpu::RenderPipeline)>,
+    samples: Vec<Sample>,
+}
+
+impl Gauge {
+    pub fn new(device: &Device) -> Self {
+        let target = device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("gauge"),
+            size: wgpu::Extent3d { width: GRID.0, height: GRID.1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = target.create_view(&Default::default());
+        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("gauge"),
+            size: u64::from(BYTES_PER_ROW * GRID.1),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let count = (GRID.0 * GRID.1) as usize;
+        Self {
+            target,
+            view,
+            buffer,
+            state: Arc::new(AtomicU32::new(IDLE)),
+            pipeline: None,
+            samples: Vec::with_capacity(count),
+        }
+    }
+
+    /// Whether a new gauge can be recorded.
+    pub fn is_idle(&self) -> bool {
+        self.state.load(Ordering::Acquire) == IDLE
+    }
+
+    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `multi` says whether the host's
+    /// picture has several samples a pixel.
+    pub fn record(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        (multi, constants): (bool, &[(&'static str, f64)]),
+        layouts: &[&wgpu::BindGroupLayout],
+        groups: &[&wgpu::BindGroup],
+    ) -> Result<()> {
+        if self.pipeline.as_ref().is_none_or(|(m, made, _)| *m != multi || made != constants) {
+            let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+            let desc = FullscreenDesc {
+                shader: if multi { "plan/gauge_multi.wgsl" } else { "plan/gauge_single.wgsl" },
+                entry: "gauge",
+                layouts,
+                targets: &[target],
+                constants,
+                samples: 1,
+            };
+            self.pipeline = Some((multi, constants.to_vec(), pass::fullscreen(device, &desc)?));
+        }
+        let Some((.., pipeline)) = &self.pipeline else { return Ok(()) };
+        pass::draw(encoder, "gauge", pipeline, groups, &self.view);
+        encoder.copy_texture_to_buffer(
+            self.target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(BYTES_PER_ROW),
+                    rows_per_image: None,
+                },
+            },
+            self.target.size(),
+        );
+        self.state.store(RECORDED, Ordering::Release);
+        Ok(())
+    }
+
+    /// Goes on with a readback under way, without waiting: call once a frame, after the host has submitted what was
+    /// recorded. The samples, when they have arrived.
+    pub fn advance(&mut self, device: &Device) -> Option<&[Sample]> {
+        if self.state.load(Ordering::Acquire) == RECORDED {
+            self.state.store(MAPPING, Ordering::Release);
+            let state = self.state.clone();
+            self.buffer.map_async(wgpu::MapMode::Read, .., move |done| {
+                state.store(if done.is_ok() { READY } else { FAILED }, Ordering::Release);
+            });
+        }
+        let _ = device.device.poll(wgpu::PollType::Poll);
+        match self.state.load(Ordering::Acquire) {
+            READY => {}
+            FAILED => {
+                self.state.store(IDLE, Ordering::Release);
+                return None;
+            }
+            _ => return None,
+        }
+        self.samples.clear();
+        if let Ok(bytes) = self.buffer.get_mapped_range(..) {
+            let half = |b: &[u8], i: usize| half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
+            self.samples.extend(bytes.chunks_exact(8).map(|b| [0, 1, 2, 3].map(|i| half(b, i))));
+        }
+        self.buffer.unmap();
+        self.state.store(IDLE, Ordering::Release);
+        Some(&self.samples)
+    }
+}

@@ -1,0 +1,187 @@
+//! Which parts of the weather a picture needs: chosen from what each is worth in that very picture.
+//!
+//! The gauge ([`super::gauge`]) says, at a grid of the picture's pixels, how the luminance would change without a part.
+//! Parts are left out as long as the whole change stays within the tolerance, those first that save most work.
+//!
+//! *Error* is that of the whole library: |Y' - Y| / (Y + 0.01 white) after exposure, its 95th percentile over pixels. A
+//! tolerance also bounds the worst pixel, by [`WORST`] times as much: a far ridge in a twentieth of the picture keeps
+//! its haze.
+
+/// Part of the weather that a view may leave out of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// Air and haze between the camera and what the host drew.
+    Air,
+    /// Fog, mist, dust and what falls, as a layer.
+    Fog,
+    /// The clear sky above the horizon, behind clouds: left out, a closed deck hides it.
+    Sky,
+}
+
+impl Part {
+    /// All, in the order of every list here.
+    pub const ALL: [Self; 3] = [Self::Air, Self::Fog, Self::Sky];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Air => "air",
+            Self::Fog => "fog",
+            Self::Sky => "sky",
+        }
+    }
+}
+
+/// Why a part is drawn or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reason {
+    /// No tolerance was given: everything is drawn.
+    #[default]
+    EverythingAsked,
+    /// This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn.
+    NotGauged,
+    /// The weather has none of it, or the stages recorded do not draw it.
+    Absent,
+    /// Without it the error would be beyond the tolerance.
+    Needed,
+    /// The error without it is within the tolerance.
+    WithinTolerance,
+}
+
+impl Reason {
+    /// In a few words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::EverythingAsked => "no tolerance was given",
+            Self::NotGauged => "this picture has not been gauged yet",
+            Self::Absent => "there is none of it",
+            Self::Needed => "without it the error would be beyond the tolerance",
+            Self::WithinTolerance => "the error without it is within the tolerance",
+        }
+    }
+}
+
+/// The worst pixel may err by so many times the tolerance of the 95th percentile.
+pub const WORST: f64 = 10.0;
+
+/// Error of a picture from which parts were left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// 95th percentile over the gauged pixels.
+    pub p95: f64,
+    /// Upper end of the one-sided 95 % confidence interval of that percentile over all pixels.
+    pub bound: f64,
+    /// The worst gauged pixel.
+    pub worst: f64,
+}
+
+impl Estimate {
+    /// Whether it keeps a tolerance.
+    pub fn keeps(&self, tolerance: f64) -> bool {
+        self.bound <= tolerance && self.worst <= WORST * tolerance
+    }
+}
+
+/// What a gauge saw at one pixel: change of luminance without each part, and whether the host drew there (1), did not
+/// (-1), or keeps the pixel for itself (0).
+pub type Sample = [f32; 4];
+
+/// Estimates for every set of parts; holds its memory between calls.
+pub(super) struct Chooser {
+    scratch: Vec<f32>,
+}
+
+/// Bit of a part in a set of parts.
+fn bit(part: usize) -> usize {
+    1 << part
+}
+
+impl Chooser {
+    pub fn new(samples: usize) -> Self {
+        Self { scratch: Vec::with_capacity(samples) }
+    }
+
+    /// The error of leaving out the parts of `set` (bit i is `Part::ALL[i]`).
+    pub fn estimate(&mut self, samples: &[Sample], set: usize) -> Estimate {
+        self.scratch.clear();
+        for s in samples.iter().filter(|s| s[3] != 0.0) {
+            let change: f32 = (0..3).filter(|i| set & bit(*i) != 0).map(|i| s[i]).sum();
+            self.scratch.push(if change.is_finite() { change.abs() } else { f32::MAX });
+        }
+        let n = self.scratch.len();
+        if n == 0 || set == 0 {
+            return Estimate::default();
+        }
+        self.scratch.sort_unstable_by(f32::total_cmp);
+        // The order statistic above which a binomial count of 5 % falls in 95 % of draws.
+        let spread = 1.645 * (0.95 * 0.05 / n as f64).sqrt();
+        let at = |share: f64| f64::from(self.scratch[((share * n as f64).ceil() as usize).clamp(1, n) - 1]);
+        Estimate { p95: at(0.95), bound: at((0.95 + spread).min(1.0)), worst: at(1.0) }
+    }
+
+    /// The parts to leave out: those present that save most `work` while the error keeps `tolerance`.
+    pub fn choose(&mut self, samples: &[Sample], present: [bool; 3], work: [f64; 3], tolerance: f64) -> usize {
+        let saved = |set: usize| (0..3).filter(|i| set & bit(*i) != 0).map(|i| work[i]).sum::<f64>();
+        let candidates = (1..8usize).filter(|set| (0..3).all(|i| set & bit(i) == 0 || present[i]));
+        let mut best = 0;
+        for set in candidates {
+            if saved(set) > saved(best) && self.estimate(samples, set).keeps(tolerance) {
+                best = set;
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(changes: impl Fn(usize) -> [f32; 3]) -> Vec<Sample> {
+        (0..2000).map(|i| (i, changes(i))).map(|(i, c)| [c[0], c[1], c[2], if i % 2 == 0 { 1.0 } else { -1.0 }]).collect()
+    }
+
+    #[test]
+    fn what_saves_most_is_left_out_while_the_error_allows_it() {
+        let mut chooser = Chooser::new(2000);
+        let even = picture(|_| [0.01, 0.015, 0.0]);
+        let choose = |c: &mut Chooser, tolerance| c.choose(&even, [true; 3], [1.0, 3.0, 0.5], tolerance);
+        assert_eq!(choose(&mut chooser, 0.005), 0b100, "the sky is worth nothing here");
+        assert_eq!(choose(&mut chooser, 0.012), 0b101);
+        assert_eq!(choose(&mut chooser, 0.02), 0b110, "fog saves more than air");
+        assert_eq!(choose(&mut chooser, 0.03), 0b111);
+        assert_eq!(chooser.choose(&even, [true, false, true], [1.0; 3], 0.03), 0b101, "what is not there saves nothing");
+        assert_eq!(chooser.choose(&[], [true; 3], [1.0; 3], 0.1), 0b111, "a picture under the mask needs nothing");
+    }
+
+    #[test]
+    fn opposite_changes_cancel_only_where_they_meet() {
+        let mut chooser = Chooser::new(2000);
+        let both = picture(|_| [0.3, -0.3, 0.0]);
+        assert_eq!(chooser.choose(&both, [true; 3], [1.0; 3], 0.01) & 0b11, 0b11);
+        let apart = picture(|i| if i < 1000 { [0.3, 0.0, 0.0] } else { [0.0, -0.3, 0.0] });
+        assert_eq!(chooser.choose(&apart, [true; 3], [1.0; 3], 0.01) & 0b11, 0);
+    }
+
+    #[test]
+    fn the_bound_lies_above_the_percentile_and_a_few_pixels_cannot_be_ruined() {
+        let mut chooser = Chooser::new(2000);
+        let ramp = picture(|i| [i as f32 / 2000.0, 0.0, 0.0]);
+        let e = chooser.estimate(&ramp, 1);
+        assert!((e.p95 - 0.95).abs() < 1e-3 && e.bound > 0.956 && e.bound < 0.96 && e.worst > 0.99, "{e:?}");
+        let ridge = picture(|i| [if i < 60 { 0.5 } else { 0.0 }, 0.0, 0.0]);
+        assert!(chooser.estimate(&ridge, 1).p95 == 0.0);
+        assert_eq!(chooser.choose(&ridge, [true, false, false], [1.0; 3], 0.02), 0, "a far ridge keeps its haze");
+        assert_eq!(chooser.choose(&ridge, [true, false, false], [1.0; 3], 0.06), 1);
+        let broken = picture(|_| [f32::NAN, 0.0, 0.0]);
+        assert_eq!(chooser.choose(&broken, [true, false, false], [1.0; 3], 1.0), 0);
+    }
+
+    #[test]
+    fn masked_pixels_do_not_count() {
+        let mut chooser = Chooser::new(2000);
+        let mut half = picture(|i| [if i < 1000 { 0.5 } else { 0.0 }, 0.0, 0.0]);
+        half[..1000].iter_mut().for_each(|s| s[3] = 0.0);
+        assert_eq!(chooser.estimate(&half, 1), Estimate::default());
+    }
+}
