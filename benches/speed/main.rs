@@ -1,7 +1,8 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, fog, sky).
+//! (record, fog, parts, sky).
 
 mod fog;
+mod parts;
 mod record;
 mod sky;
 
@@ -13,6 +14,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("fog") {
         fog::run()?;
+    }
+    if wanted("parts") {
+        parts::run()?;
     }
     if wanted("sky") {
         sky::run()?;

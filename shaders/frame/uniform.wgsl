@@ -36,7 +36,8 @@ struct FrameUniform {
     direct_share: f32,
     pad0: f32,
     pad1: f32,
-    // How much of air, fog and clear sky is drawn, 1 all of it, 0 not at all (src/plan); w is not used.
+    // How much of air, fog and clear sky is drawn, 1 all of it, 0 not at all (src/plan);
+    // w: the compositions that the gauge makes, everything and without each part.
     drawn: vec4f,
 }
 

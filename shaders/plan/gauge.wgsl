@@ -23,21 +23,17 @@ fn exposed(host: vec3f, veil: Veil) -> f32 {
     return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-fn shown_with(parts: vec3f, p: Looked, ray: ViewRay) -> f32 {
-    drawn = vec4f(parts, 0.0);
-    return exposed(p.host, weather_over(ray, p.range, p.plane));
-}
-
 fn gauged(p: Looked) -> vec4f {
     let ray = view_ray(frame.depth, p.ndc);
-    let all = shown_with(vec3f(1.0), p, ray);
-    let without = vec3f(
-        shown_with(vec3f(0.0, 1.0, 1.0), p, ray),
-        shown_with(vec3f(1.0, 0.0, 1.0), p, ray),
-        shown_with(vec3f(1.0, 1.0, 0.0), p, ray),
-    );
+    // Everything, then without one part after the other. A loop over a count that no compiler knows: unrolled, the fog
+    // took a software driver a minute to compile.
+    var shown = vec4f(0.0);
+    for (var k = 0u; k < u32(frame.drawn.w); k++) {
+        drawn = vec4f(select(vec3f(1.0), vec3f(0.0), vec3u(k) == vec3u(1u, 2u, 3u)), 0.0);
+        shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane));
+    }
     // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.
-    let change = (without - all) / (all + 0.01) * (1.0 - p.mask);
+    let change = (shown.yzw - shown.x) / (shown.x + 0.01) * (1.0 - p.mask);
     let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * (1.0 - p.mask);
     return vec4f(clamp(change, vec3f(-6e4), vec3f(6e4)), kind);
 }

@@ -117,6 +117,12 @@ impl View {
         device.check()
     }
 
+    /// Draws just these parts of the weather (in the order of [`Part::ALL`](crate::plan::Part::ALL)) from the next frame
+    /// on, whatever the budget, so that all channels of a simulator draw alike; `None` plans again.
+    pub fn pin_plan(&mut self, parts: Option<[bool; 3]>) {
+        self.planner.pin(parts);
+    }
+
     /// What the last frame drew of the weather, and why.
     pub fn plan(&self) -> &Plan {
         self.planner.plan()
@@ -358,12 +364,7 @@ impl View {
 /// What the planner compares pictures by.
 fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
     let forward = frame.camera.rotation().transpose() * DVec3::NEG_Z;
-    Situation {
-        position: frame.camera.position,
-        forward,
-        sun: scene.sun.direction,
-        conditions: scene.conditions,
-    }
+    Situation { position: frame.camera.position, forward, sun: scene.sun.direction, conditions: scene.conditions }
 }
 
 /// A texture like the host's colour, to read while the host's is written.

@@ -5,6 +5,10 @@
 //! the f64 reference, and charts them; of what is [`Candidate::offered`], only those on the front ([`front::pareto`])
 //! are worth a choice.
 //!
+//! A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back without waiting), chooses
+//! which [`Part`]s of the weather it can do without ([`parts`]), and fades them out and in so that nothing pops.
+//! [`Plan`] says what was chosen and why, and the error to expect.
+//!
 //! ```
 //! use welkin::plan::{Effect, Method, candidate, candidates};
 //!
@@ -18,6 +22,12 @@
 mod candidate;
 pub mod difference;
 pub mod front;
+mod gauge;
+pub mod parts;
+mod planner;
 
 pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
 pub use difference::{Difference, difference};
+pub use parts::{Estimate, Part, Reason};
+pub use planner::{Budget, PartPlan, Plan};
+pub(crate) use planner::{Planner, Present, Situation};

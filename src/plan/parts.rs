@@ -35,6 +35,8 @@ impl Part {
 /// Why a part is drawn or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reason {
+    /// The host pinned the plan.
+    Pinned,
     /// No tolerance was given: everything is drawn.
     #[default]
     EverythingAsked,
@@ -52,6 +54,7 @@ impl Reason {
     /// In a few words.
     pub fn text(self) -> &'static str {
         match self {
+            Self::Pinned => "the host pinned it",
             Self::EverythingAsked => "no tolerance was given",
             Self::NotGauged => "this picture has not been gauged yet",
             Self::Absent => "there is none of it",
@@ -138,7 +141,10 @@ mod tests {
     use super::*;
 
     fn picture(changes: impl Fn(usize) -> [f32; 3]) -> Vec<Sample> {
-        (0..2000).map(|i| (i, changes(i))).map(|(i, c)| [c[0], c[1], c[2], if i % 2 == 0 { 1.0 } else { -1.0 }]).collect()
+        (0..2000)
+            .map(|i| (i, changes(i)))
+            .map(|(i, c)| [c[0], c[1], c[2], if i % 2 == 0 { 1.0 } else { -1.0 }])
+            .collect()
     }
 
     #[test]
@@ -150,7 +156,11 @@ mod tests {
         assert_eq!(choose(&mut chooser, 0.012), 0b101);
         assert_eq!(choose(&mut chooser, 0.02), 0b110, "fog saves more than air");
         assert_eq!(choose(&mut chooser, 0.03), 0b111);
-        assert_eq!(chooser.choose(&even, [true, false, true], [1.0; 3], 0.03), 0b101, "what is not there saves nothing");
+        assert_eq!(
+            chooser.choose(&even, [true, false, true], [1.0; 3], 0.03),
+            0b101,
+            "what is not there saves nothing"
+        );
         assert_eq!(chooser.choose(&[], [true; 3], [1.0; 3], 0.1), 0b111, "a picture under the mask needs nothing");
     }
 

@@ -27,9 +27,7 @@ impl Budget {
     /// [`crate::Status::InvalidArgument`].
     pub fn validate(&self) -> Result<()> {
         match self.tolerance {
-            Some(t) if !(t.is_finite() && t > 0.0 && t <= 1.0) => {
-                Err(Error::range("budget.tolerance", "in (0, 1]", t))
-            }
+            Some(t) if !(t.is_finite() && t > 0.0 && t <= 1.0) => Err(Error::range("budget.tolerance", "in (0, 1]", t)),
             _ => Ok(()),
         }
     }
@@ -116,6 +114,7 @@ const FADE_FRAMES: f32 = 8.0;
 
 pub(crate) struct Planner {
     budget: Budget,
+    pinned: Option<[bool; 3]>,
     gauge: Option<Gauge>,
     chooser: Chooser,
     /// Of the gauge under way, and of the one that the plan stands on.
@@ -130,6 +129,7 @@ impl Planner {
     pub fn new() -> Self {
         Self {
             budget: Budget::default(),
+            pinned: None,
             gauge: None,
             chooser: Chooser::new(0),
             gauging: None,
@@ -152,6 +152,14 @@ impl Planner {
         Ok(())
     }
 
+    /// Draws just these parts from now on, whatever the budget; `None` plans again.
+    pub fn pin(&mut self, parts: Option<[bool; 3]>) {
+        if parts != self.pinned {
+            self.pinned = parts;
+            self.forget();
+        }
+    }
+
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
@@ -163,6 +171,12 @@ impl Planner {
 
     /// Once a frame: takes a gauge's answer, chooses, fades. `pure`: the picture may not depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
+        if let Some(pinned) = self.pinned {
+            for (part, drawn) in self.plan.parts.iter_mut().zip(pinned) {
+                (part.share, part.reason) = (f32::from(u8::from(drawn)), Reason::Pinned);
+            }
+            return;
+        }
         let Some(tolerance) = self.budget.tolerance else {
             self.plan = Plan::default();
             return;
@@ -191,16 +205,16 @@ impl Planner {
         }
     }
 
-    /// How much of each part the frame draws.
+    /// How much of each part the frame draws, and how often the gauge composes.
     pub fn drawn(&self) -> [f32; 4] {
         let p = &self.plan.parts;
-        [p[0].share, p[1].share, p[2].share, 0.0]
+        [p[0].share, p[1].share, p[2].share, 1.0 + p.len() as f32]
     }
 
     /// The gauge, if this frame should be gauged.
     pub fn due(&mut self, here: &Situation) -> Option<&mut Gauge> {
         let gauge = self.gauge.as_mut()?;
-        if self.budget.tolerance.is_none() || self.frames < EVERY || !gauge.is_idle() {
+        if self.pinned.is_some() || self.budget.tolerance.is_none() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
         (self.frames, self.gauging) = (0, Some(*here));

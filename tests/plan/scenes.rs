@@ -1,0 +1,230 @@
+//! Seeded scenes: a host that draws hills and boxes by ray casting, under any weather, hour, height and field of view.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use welkin::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Exposure, Frame, FrameFlags, Shared, Stages, View},
+    gpu::{Device, DeviceOptions, readback},
+    plan::{Budget, Plan},
+    scene::Camera,
+    sky::SkySettings,
+    weather::Weather,
+};
+
+const SIZE: (u32, u32) = (192, 108);
+
+/// One scene as a host would set it up.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    pub name: String,
+    pub weather: &'static str,
+    pub sun_deg: f64,
+    pub height_m: f64,
+    pub pitch_deg: f64,
+    pub fov_deg: f64,
+    /// Nothing of the host's world is farther.
+    pub far_m: f64,
+    pub has_depth: bool,
+    pub tolerance: f64,
+}
+
+/// Uniform in [0, 1): SplitMix64 of seed and draw.
+fn chance(seed: u64, draw: u64) -> f64 {
+    let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(draw.wrapping_mul(0xd1b5_4a32_d192_ed03));
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+impl Shot {
+    pub fn seeded(seed: u64) -> Self {
+        let names: Vec<&'static str> = Weather::preset_names().collect();
+        let weather = names[(seed as usize * 7 + 3) % names.len()];
+        let u = |draw| chance(seed + 1, draw);
+        let height_m = [2.0, 2.0, 30.0, 400.0, 3000.0, 11_000.0][(u(1) * 6.0) as usize];
+        Self {
+            name: format!("{weather} seed {seed}"),
+            weather,
+            sun_deg: -8.0 + 70.0 * u(2),
+            height_m,
+            pitch_deg: if height_m > 100.0 { -25.0 * u(3) } else { 12.0 * u(3) - 6.0 },
+            fov_deg: 25.0 + 65.0 * u(4),
+            far_m: if height_m > 100.0 { 60_000.0 } else { 40.0 * 1000f64.powf(u(5)) },
+            has_depth: u(6) > 0.15,
+            tolerance: [0.005, 0.01, 0.02, 0.05][(u(7) * 4.0) as usize],
+        }
+    }
+
+    /// A machine in a yard of 60 m, under a high sun.
+    pub fn yard() -> Self {
+        let (sun_deg, height_m, pitch_deg, fov_deg, far_m) = (40.0, 2.0, -10.0, 60.0, 60.0);
+        Self { name: "yard".into(), sun_deg, height_m, pitch_deg, fov_deg, far_m, has_depth: true, ..Self::seeded(0) }
+    }
+
+    fn camera(&self) -> Camera {
+        let (s, c) = self.pitch_deg.to_radians().sin_cos();
+        let eye = DVec3::new(0.0, 0.0, self.height_m);
+        let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+        Camera::look_to(eye, DVec3::new(0.0, c, s), DVec3::Z, self.fov_deg.to_radians(), aspect, 0.1)
+    }
+
+    /// Distance and albedo of what the host drew in a pixel: a plain with ridges and posts, up to `far_m`.
+    fn hit(&self, direction: DVec3) -> Option<(f64, f64)> {
+        let ground = if direction.z < 0.0 { self.height_m / -direction.z } else { f64::INFINITY };
+        let level = direction.truncate().length();
+        let bearing = direction.x.atan2(direction.y);
+        let mut nearest = (ground, 0.12 + 0.06 * (40.0 * bearing).sin());
+        for (share, height, albedo) in [(0.15, 0.02, 0.3), (0.45, 0.05, 0.2), (0.95, 0.11, 0.08)] {
+            let distance = share * self.far_m;
+            let top = height * distance * (0.6 + 0.4 * (7.0 * bearing + 9.0 * share).sin());
+            let at = self.height_m + direction.z / level * distance;
+            if at <= top && distance / level < nearest.0 {
+                nearest = (distance / level, albedo);
+            }
+        }
+        (nearest.0 <= self.far_m.max(1.01 * self.height_m)).then_some(nearest)
+    }
+}
+
+/// A device, a context and a view, with the host's pictures.
+pub struct Bench {
+    device: Arc<Device>,
+    context: Context,
+    pub view: View,
+    plain: View,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    time_s: f64,
+    frame_id: u64,
+    /// cd/m^2 that shows as white.
+    white: f64,
+    host: (Vec<[u16; 4]>, Vec<f32>),
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let shared = Arc::new(Shared::new(&device).unwrap());
+        // Coarse tables, built soon: these tests ask what is drawn, not how right it is.
+        let sky = SkySettings {
+            orders: 4,
+            suns: 32,
+            altitudes: 14,
+            zeniths: 11,
+            azimuths: 7,
+            rule_zeniths: 6,
+            rule_azimuths: 8,
+            build_panels: 2,
+            ..SkySettings::default()
+        };
+        let context = Context::new(device.clone(), shared, ContextDesc { sky, ..Default::default() }).unwrap();
+        let (view, plain) = (View::new(&context).unwrap(), View::new(&context).unwrap());
+        let texture = |format| {
+            use wgpu::TextureUsages as U;
+            device.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+                view_formats: &[],
+            })
+        };
+        let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
+        let host = (Vec::new(), Vec::new());
+        Self { device, context, view, plain, color, depth, time_s: 0.0, frame_id: 0, white: 1.0, host }
+    }
+
+    /// Weather, light and the host's picture of a scene; the tables are brought to it whole.
+    pub fn set(&mut self, shot: &Shot) {
+        self.time_s += 10.0;
+        let weather = Weather::preset(shot.weather).unwrap();
+        self.context.set_weather(&weather, self.time_s, 0.0).unwrap();
+        self.time_s += 1.0;
+        self.context.update(self.time_s).unwrap();
+        let sun = GivenDirection { azimuth_deg: 40.0, elevation_deg: shot.sun_deg };
+        self.context.set_sun(Some(sun)).unwrap();
+        let scene = self.context.scene_at(shot.camera().position).unwrap();
+        self.white = 1.0 / Exposure::default().factor(scene.ground.adaptation_cd_m2);
+        let lit = scene.ground.total_lux / std::f64::consts::PI / self.white;
+        let to_world = shot.camera().rotation().transpose();
+        let half = (0.5 * shot.fov_deg.to_radians()).tan();
+        let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+        self.host = (Vec::new(), Vec::new());
+        for y in 0..SIZE.1 {
+            for x in 0..SIZE.0 {
+                let ndc = |v: u32, n: u32| (f64::from(v) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                let seen = DVec3::new(ndc(x, SIZE.0) * aspect * half, -ndc(y, SIZE.1) * half, -1.0).normalize();
+                let direction = to_world * seen;
+                let (range, albedo) = shot.hit(direction).unwrap_or((f64::INFINITY, 0.0));
+                // Reversed, infinite: near over the distance from the camera's plane.
+                self.host.1.push((0.1 / (range * -seen.z)) as f32);
+                let v = half::f16::from_f64(albedo * lit).to_bits();
+                self.host.0.push([v, v, v, half::f16::ONE.to_bits()]);
+            }
+        }
+    }
+
+    fn upload(&self) {
+        let size = self.color.size();
+        let put = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * SIZE.0), rows_per_image: None };
+            self.device.queue.write_texture(texture.as_image_copy(), bytes, layout, size);
+        };
+        put(&self.color, bytemuck::cast_slice(&self.host.0), 8);
+        put(&self.depth, bytemuck::cast_slice(&self.host.1), 4);
+    }
+
+    fn draw(&mut self, shot: &Shot, planned: bool, flags: FrameFlags) -> Vec<f64> {
+        self.upload();
+        self.frame_id += 1;
+        let frame = Frame {
+            cd_m2_per_unit: self.white,
+            exposure: Some(Exposure::Factor(1.0 / self.white)),
+            flags,
+            ..Frame::new(self.frame_id, shot.camera(), &self.color, shot.has_depth.then_some(&self.depth))
+        };
+        let view = if planned { &mut self.view } else { &mut self.plain };
+        view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
+        let pixels = readback::rgba(&self.device, &self.color).unwrap();
+        let luminance = |p: &[f32; 4]| 0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2]);
+        pixels.iter().map(luminance).collect()
+    }
+
+    /// The picture with everything in it.
+    pub fn everything(&mut self, shot: &Shot) -> Vec<f64> {
+        self.draw(shot, false, FrameFlags::NO_HISTORY)
+    }
+
+    /// The picture that the planned view draws after so many frames.
+    pub fn planned(&mut self, shot: &Shot, frames: u64) -> (Vec<f64>, Plan) {
+        self.view.pin_plan(None);
+        self.view.set_budget(Budget { tolerance: Some(shot.tolerance) }).unwrap();
+        let mut picture = self.draw(shot, true, FrameFlags(0));
+        for _ in 1..frames {
+            picture = self.draw(shot, true, FrameFlags(0));
+        }
+        (picture, *self.view.plan())
+    }
+
+    /// The picture of a host without a budget.
+    pub fn unplanned(&mut self, shot: &Shot) -> (Vec<f64>, Plan) {
+        (self.draw(shot, true, FrameFlags(0)), *self.view.plan())
+    }
+
+    /// A picture that may not depend on earlier ones.
+    pub fn pure(&mut self, shot: &Shot) -> Vec<f64> {
+        self.draw(shot, true, FrameFlags::NO_HISTORY)
+    }
+
+    /// The picture with just these parts.
+    pub fn pinned(&mut self, shot: &Shot, parts: [bool; 3]) -> Vec<f64> {
+        self.view.pin_plan(Some(parts));
+        self.draw(shot, true, FrameFlags(0))
+    }
+}
