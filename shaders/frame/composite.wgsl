@@ -7,12 +7,14 @@
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 override TONE: bool = true;
+// Whether the clear sky above the horizon is drawn at all.
+override CLEAR_SKY: bool = true;
 
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
 fn sky_behind(d: vec3f) -> vec3f {
-    if drawn.z == 0.0 && d.z >= 0.0 {
+    if (!CLEAR_SKY || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
     var spectrum = sky_radiance(d);

@@ -5,6 +5,8 @@
 
 // Whether there is any fog.
 override FOG: bool = true;
+// Whether the air between is drawn at all.
+override AIR: bool = true;
 
 // Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
 struct Veil {
@@ -18,7 +20,7 @@ fn overcast_gradation(sin_elevation: f32) -> f32 {
 }
 
 fn air_between(d: vec3f, distance: f32) -> Veil {
-    if drawn.x == 0.0 {
+    if !AIR || drawn.x == 0.0 {
         return Veil(vec3f(0.0), vec3f(1.0));
     }
     let air = aerial(d, distance);

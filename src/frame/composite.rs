@@ -30,11 +30,19 @@ pub(super) struct Variant {
     pub depth_kinds: u32,
     /// The sky is marched per pixel instead of looked up.
     pub march: bool,
+    /// Air between and clear sky are drawn at all.
+    pub air: bool,
+    pub sky: bool,
 }
 
 impl Variant {
+    /// Without the parts of which nothing is drawn: cheaper than a branch on a software driver, which takes both ways.
+    pub fn reduced(self, [air, fog, sky, _]: [f32; 4]) -> Self {
+        Self { air: air > 0.0, sky: sky > 0.0, fog: self.fog.filter(|_| fog > 0.0), ..self }
+    }
+
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 13] {
+    pub fn constants(&self) -> [(&'static str, f64); 15] {
         let yes = |b: bool| f64::from(u8::from(b));
         let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
@@ -46,6 +54,8 @@ impl Variant {
             ("DEPTH_KINDS", f64::from(self.depth_kinds)),
             ("HAS_DEPTH", yes(self.has_depth)),
             ("HAS_MASK", yes(self.has_mask)),
+            ("AIR", yes(self.air)),
+            ("CLEAR_SKY", yes(self.sky)),
             f0,
             f1,
             f2,

@@ -277,6 +277,8 @@ impl View {
                 .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
             depth_kinds: rays.depth_kinds(),
             march: context.marches_sky(),
+            air: true,
+            sky: true,
         };
         if variant.stages == Stages(0) {
             return Ok(());
@@ -310,7 +312,9 @@ impl View {
             encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
         }
         let mut composite = self.shared.composite()?;
-        let pipeline = composite.pipeline(&self.device, variant)?;
+        // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
+        let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
+        let pipeline = composite.pipeline(&self.device, least)?;
         let groups = [group, self.sky.bind_group()];
         crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;

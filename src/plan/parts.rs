@@ -115,11 +115,18 @@ impl Chooser {
         if n == 0 || set == 0 {
             return Estimate::default();
         }
-        self.scratch.sort_unstable_by(f32::total_cmp);
         // The order statistic above which a binomial count of 5 % falls in 95 % of draws.
         let spread = 1.645 * (0.95 * 0.05 / n as f64).sqrt();
-        let at = |share: f64| f64::from(self.scratch[((share * n as f64).ceil() as usize).clamp(1, n) - 1]);
-        Estimate { p95: at(0.95), bound: at((0.95 + spread).min(1.0)), worst: at(1.0) }
+        let rank = |share: f64| ((share * n as f64).ceil() as usize).clamp(1, n) - 1;
+        let (low, high) = (rank(0.95), rank((0.95 + spread).min(1.0)));
+        let (_, p95, above) = self.scratch.select_nth_unstable_by(low, f32::total_cmp);
+        let p95 = f64::from(*p95);
+        let worst = above.iter().copied().fold(p95 as f32, f32::max);
+        let bound = match high.checked_sub(low + 1) {
+            Some(beyond) if beyond < above.len() => f64::from(*above.select_nth_unstable_by(beyond, f32::total_cmp).1),
+            _ => p95,
+        };
+        Estimate { p95, bound, worst: f64::from(worst) }
     }
 
     /// The parts to leave out: those present that save most `work` while the error keeps `tolerance`.
