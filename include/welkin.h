@@ -221,6 +221,12 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_AMBIENT 26
 /** wk_metar */
 #define WK_STRUCT_TYPE_METAR 27
+/** wk_budget */
+#define WK_STRUCT_TYPE_BUDGET 40
+/** wk_plan */
+#define WK_STRUCT_TYPE_PLAN 41
+/** wk_part_plan */
+#define WK_STRUCT_TYPE_PART_PLAN 42
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3124,6 +3130,200 @@ WK_API wk_status wk_get_veil_snippet(wk_shading_language language, const char **
 WK_API
 wk_status wk_frame_textures_init(wk_frame_textures *out,
                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * What a picture needs, and no more
+ *
+ * With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
+ * composes with everything and without each part of the weather, and reads the differences back some frames later
+ * without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+ * After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+ *
+ * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
+ * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
+ *
+ * What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
+ * that must also leave out alike pin their plan.
+ * ====================================================================================================
+ */
+
+/** Which optional fields of a wk_budget are set. */
+typedef uint32_t wk_budget_has_flags;
+
+/** tolerance */
+#define WK_BUDGET_HAS_TOLERANCE 1
+/** pinned_parts */
+#define WK_BUDGET_HAS_PINNED_PARTS 2
+
+/** Parts of the weather that a picture may do without. */
+typedef uint32_t wk_part_flags;
+
+/** Air and haze between the camera and what the host drew. */
+#define WK_PART_AIR 1
+/** Fog, mist, dust and what falls, as a layer. */
+#define WK_PART_FOG 2
+/** The clear sky above the horizon, behind clouds. */
+#define WK_PART_SKY 4
+
+/** How wrong a view's pictures may be. */
+typedef struct wk_budget {
+    /** sizeof(wk_budget) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_BUDGET. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Which optional fields are set. Default 0: everything is drawn. */
+    wk_budget_has_flags has;
+    /**
+     * Optional: just these parts are drawn, whatever the tolerance, so that all channels draw alike; a union of
+     * WK_PART_ constants, 0 for none.
+     */
+    wk_part_flags pinned_parts;
+    /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
+    double tolerance;
+} wk_budget;
+
+/** Every field of `wk_budget` at its default. */
+#define WK_BUDGET_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_budget), \
+    /* struct_type */ WK_STRUCT_TYPE_BUDGET, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* pinned_parts */ 0, \
+    /* tolerance */ 0.0 \
+}
+
+/** What a view's last frame left out. Errors are estimates from the gauged pixels. */
+typedef struct wk_plan {
+    /** sizeof(wk_plan) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_PLAN. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** The parts of which anything is drawn. */
+    wk_part_flags drawn;
+    /** 0. */
+    uint32_t reserved;
+    /** Error of all that is left out together: 95th percentile over the gauged pixels. */
+    double error;
+    /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
+    double error_bound;
+    /** Error of the worst gauged pixel. */
+    double worst;
+    /** Work of the picture as planned, in units of copying a pixel; 0 before the first gauge. */
+    double work;
+    /** Work of the picture with everything, likewise. */
+    double work_of_everything;
+} wk_plan;
+
+/** Every field of `wk_plan` at its default. */
+#define WK_PLAN_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_plan), \
+    /* struct_type */ WK_STRUCT_TYPE_PLAN, \
+    /* next */ NULL, \
+    /* drawn */ 0, \
+    /* reserved */ 0, \
+    /* error */ 0.0, \
+    /* error_bound */ 0.0, \
+    /* worst */ 0.0, \
+    /* work */ 0.0, \
+    /* work_of_everything */ 0.0 \
+}
+
+/** Why a part is drawn or not. */
+typedef uint32_t wk_plan_reason;
+
+/** No tolerance was given: everything is drawn. */
+#define WK_PLAN_REASON_EVERYTHING_ASKED 0
+/** This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn. */
+#define WK_PLAN_REASON_NOT_GAUGED 1
+/** The weather has none of it, or the recorded stages do not draw it. */
+#define WK_PLAN_REASON_ABSENT 2
+/** Without it the error would be beyond the tolerance. */
+#define WK_PLAN_REASON_NEEDED 3
+/** The error without it is within the tolerance. */
+#define WK_PLAN_REASON_WITHIN_TOLERANCE 4
+/** The host pinned it. */
+#define WK_PLAN_REASON_PINNED 5
+
+/** One part of a plan. */
+typedef struct wk_part_plan {
+    /** sizeof(wk_part_plan) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_PART_PLAN. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Why it is drawn or not. */
+    wk_plan_reason reason;
+    /** 0. */
+    uint32_t reserved;
+    /** The reason in a few words of English; lives as long as the process. */
+    const char *reason_text;
+    /** How much of it is drawn: 1 all, 0 nothing, between while it fades. */
+    double share;
+    /** Error of the picture without this part alone, as last gauged. */
+    double error;
+    /** The same at the worst gauged pixel. */
+    double worst;
+    /** Its work in this picture, were it drawn, in units of copying a pixel. */
+    double work;
+} wk_part_plan;
+
+/** Every field of `wk_part_plan` at its default. */
+#define WK_PART_PLAN_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_part_plan), \
+    /* struct_type */ WK_STRUCT_TYPE_PART_PLAN, \
+    /* next */ NULL, \
+    /* reason */ 0, \
+    /* reserved */ 0, \
+    /* reason_text */ NULL, \
+    /* share */ 0.0, \
+    /* error */ 0.0, \
+    /* worst */ 0.0, \
+    /* work */ 0.0 \
+}
+
+/**
+ * Sets how wrong the view's pictures may be; NULL asks for everything again. Unchanged after an error.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
+
+/**
+ * Says what the view's last frame left out.
+ * Thread: exclusive on the view.
+ */
+WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
+
+/**
+ * Says of one part (a single WK_PART_ constant) how much of it the view's last frame drew, and why.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
+ */
+WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part_flags part, wk_part_plan *out_part);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_BUDGET_INIT`. `struct_size` is `sizeof(wk_budget)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_budget_init(wk_budget *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_PLAN_INIT`. `struct_size` is `sizeof(wk_plan)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_plan_init(wk_plan *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_PART_PLAN_INIT`. `struct_size` is `sizeof(wk_part_plan)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -45,6 +45,8 @@ pub mod view;
 
 pub mod veil;
 
+pub mod plan;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -104,6 +104,12 @@ pub const WK_STRUCT_TYPE_CELESTIAL: wk_struct_type = 25;
 pub const WK_STRUCT_TYPE_AMBIENT: wk_struct_type = 26;
 /// wk_metar
 pub const WK_STRUCT_TYPE_METAR: wk_struct_type = 27;
+/// wk_budget
+pub const WK_STRUCT_TYPE_BUDGET: wk_struct_type = 40;
+/// wk_plan
+pub const WK_STRUCT_TYPE_PLAN: wk_struct_type = 41;
+/// wk_part_plan
+pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 42;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

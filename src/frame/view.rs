@@ -106,7 +106,7 @@ impl View {
     }
 
     /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged
-    /// after an error.
+    /// after an error. Default: everything is drawn.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field and its range.
@@ -115,12 +115,6 @@ impl View {
         let _entered = device.enter()?;
         self.planner.set_budget(&device, budget)?;
         device.check()
-    }
-
-    /// Draws just these parts of the weather (in the order of [`Part::ALL`](crate::plan::Part::ALL)) from the next frame
-    /// on, whatever the budget, so that all channels of a simulator draw alike; `None` plans again.
-    pub fn pin_plan(&mut self, parts: Option<[bool; 3]>) {
-        self.planner.pin(parts);
     }
 
     /// What the last frame drew of the weather, and why.

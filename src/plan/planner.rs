@@ -18,6 +18,9 @@ pub struct Budget {
     /// Largest error of what is left out, (0, 1]: 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
     /// exposure, and ten times as much at the worst pixel. Default `None`: everything is drawn. 0.01 is not seen.
     pub tolerance: Option<f64>,
+    /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance, so that all channels of a simulator
+    /// draw alike. Default `None`: plan.
+    pub pinned: Option<[bool; 3]>,
 }
 
 impl Budget {
@@ -114,7 +117,6 @@ const FADE_FRAMES: f32 = 8.0;
 
 pub(crate) struct Planner {
     budget: Budget,
-    pinned: Option<[bool; 3]>,
     gauge: Option<Gauge>,
     chooser: Chooser,
     /// Of the gauge under way, and of the one that the plan stands on.
@@ -129,7 +131,6 @@ impl Planner {
     pub fn new() -> Self {
         Self {
             budget: Budget::default(),
-            pinned: None,
             gauge: None,
             chooser: Chooser::new(0),
             gauging: None,
@@ -152,14 +153,6 @@ impl Planner {
         Ok(())
     }
 
-    /// Draws just these parts from now on, whatever the budget; `None` plans again.
-    pub fn pin(&mut self, parts: Option<[bool; 3]>) {
-        if parts != self.pinned {
-            self.pinned = parts;
-            self.forget();
-        }
-    }
-
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
@@ -171,7 +164,7 @@ impl Planner {
 
     /// Once a frame: takes a gauge's answer, chooses, fades. `pure`: the picture may not depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
-        if let Some(pinned) = self.pinned {
+        if let Some(pinned) = self.budget.pinned {
             for (part, drawn) in self.plan.parts.iter_mut().zip(pinned) {
                 (part.share, part.reason) = (f32::from(u8::from(drawn)), Reason::Pinned);
             }
@@ -214,7 +207,7 @@ impl Planner {
     /// The gauge, if this frame should be gauged.
     pub fn due(&mut self, here: &Situation) -> Option<&mut Gauge> {
         let gauge = self.gauge.as_mut()?;
-        if self.pinned.is_some() || self.budget.tolerance.is_none() || self.frames < EVERY || !gauge.is_idle() {
+        if self.budget.pinned.is_some() || self.budget.tolerance.is_none() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
         (self.frames, self.gauging) = (0, Some(*here));

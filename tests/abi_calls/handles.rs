@@ -5,8 +5,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, query::*, status::*, surface::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, plan::*, query::*, status::*, surface::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -97,6 +97,11 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
         case("wk_view_get_frame_textures", "view", false, |h| unsafe {
             wk_view_get_frame_textures(h.cast(), null_mut())
+        }),
+        case("wk_view_set_budget", "view", false, |h| unsafe { wk_view_set_budget(h.cast(), null()) }),
+        case("wk_view_get_plan", "view", false, |h| unsafe { wk_view_get_plan(h.cast(), null_mut()) }),
+        case("wk_view_get_part_plan", "view", false, |h| unsafe {
+            wk_view_get_part_plan(h.cast(), WK_PART_AIR, null_mut())
         }),
         case("wk_view_get_report", "view", false, |h| unsafe { wk_view_get_report(h.cast(), null_mut()) }),
         case("wk_view_record", "frame.target.color", true, move |h| record(view, |t| t.color = h.cast())),

@@ -7,8 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, query::*, report::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, plan::*, query::*, report::*,
+    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -119,6 +119,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
         }),
+        case("wk_budget", "budget", true, move |p| unsafe { wk_view_set_budget(view, p.cast()) }),
+        case("wk_plan", "out_plan", false, move |p| unsafe { wk_view_get_plan(view, p.cast()) }),
+        case("wk_part_plan", "out_part", false, move |p| unsafe { wk_view_get_part_plan(view, WK_PART_FOG, p.cast()) }),
         case("wk_report", "out_report", false, move |p| unsafe { wk_view_get_report(view, p.cast()) }),
         case("wk_caps", "out_caps", false, move |p| unsafe { wk_device_get_caps(device, p.cast()) }),
         case("wk_window", "window", false, |p| unsafe {

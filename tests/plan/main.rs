@@ -104,7 +104,7 @@ fn a_budget_out_of_range_is_refused_and_the_last_one_stays() {
     bench.set(&near);
     bench.planned(&near, SETTLED);
     for tolerance in [0.0, -1.0, 1.5, f64::NAN, f64::INFINITY] {
-        let e = bench.view.set_budget(Budget { tolerance: Some(tolerance) }).unwrap_err();
+        let e = bench.view.set_budget(Budget { tolerance: Some(tolerance), pinned: None }).unwrap_err();
         assert!(e.message.contains("budget.tolerance") && e.message.contains("(0, 1]"), "{}", e.message);
     }
     let (_, plan) = bench.planned(&near, 1);

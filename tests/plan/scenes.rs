@@ -148,7 +148,7 @@ impl Bench {
         self.context.update(self.time_s).unwrap();
         let sun = GivenDirection { azimuth_deg: 40.0, elevation_deg: shot.sun_deg };
         self.context.set_sun(Some(sun)).unwrap();
-        let scene = self.context.scene_at(shot.camera().position).unwrap();
+        let scene = self.context.scene_at(shot.camera().position, self.time_s).unwrap();
         self.white = 1.0 / Exposure::default().factor(scene.ground.adaptation_cd_m2);
         let lit = scene.ground.total_lux / std::f64::consts::PI / self.white;
         let to_world = shot.camera().rotation().transpose();
@@ -203,8 +203,7 @@ impl Bench {
 
     /// The picture that the planned view draws after so many frames.
     pub fn planned(&mut self, shot: &Shot, frames: u64) -> (Vec<f64>, Plan) {
-        self.view.pin_plan(None);
-        self.view.set_budget(Budget { tolerance: Some(shot.tolerance) }).unwrap();
+        self.view.set_budget(Budget { tolerance: Some(shot.tolerance), pinned: None }).unwrap();
         let mut picture = self.draw(shot, true, FrameFlags(0));
         for _ in 1..frames {
             picture = self.draw(shot, true, FrameFlags(0));
@@ -224,7 +223,7 @@ impl Bench {
 
     /// The picture with just these parts.
     pub fn pinned(&mut self, shot: &Shot, parts: [bool; 3]) -> Vec<f64> {
-        self.view.pin_plan(Some(parts));
+        self.view.set_budget(Budget { tolerance: None, pinned: Some(parts) }).unwrap();
         self.draw(shot, true, FrameFlags(0))
     }
 }

@@ -1,0 +1,268 @@
+//! What a picture needs, and no more
+//!
+//! With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
+//! composes with everything and without each part of the weather, and reads the differences back some frames later
+//! without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+//! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//!
+//! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
+//! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
+//!
+//! What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
+//! that must also leave out alike pin their plan.
+
+use std::{
+    ffi::{c_char, c_void},
+    ptr::null,
+};
+
+use super::{
+    boundary::guard,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    view::{ViewObject, wk_view},
+};
+use crate::{
+    error::{Error, Status},
+    plan::{Budget, Part, PartPlan, Reason},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
+
+/// Parts of the weather that a picture may do without.
+pub type wk_part_flags = u32;
+/// Air and haze between the camera and what the host drew.
+pub const WK_PART_AIR: wk_part_flags = 1;
+/// Fog, mist, dust and what falls, as a layer.
+pub const WK_PART_FOG: wk_part_flags = 2;
+/// The clear sky above the horizon, behind clouds.
+pub const WK_PART_SKY: wk_part_flags = 4;
+
+/// Which optional fields of a wk_budget are set.
+pub type wk_budget_has_flags = u32;
+/// tolerance
+pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
+/// pinned_parts
+pub const WK_BUDGET_HAS_PINNED_PARTS: wk_budget_has_flags = 2;
+
+/// Why a part is drawn or not.
+pub type wk_plan_reason = u32;
+/// No tolerance was given: everything is drawn.
+pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
+/// This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn.
+pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
+/// The weather has none of it, or the recorded stages do not draw it.
+pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
+/// Without it the error would be beyond the tolerance.
+pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
+/// The error without it is within the tolerance.
+pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
+/// The host pinned it.
+pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
+
+/// How wrong a view's pictures may be.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_budget {
+    /// sizeof(wk_budget) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_BUDGET.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Which optional fields are set. Default 0: everything is drawn.
+    pub has: wk_budget_has_flags,
+    /// Optional: just these parts are drawn, whatever the tolerance, so that all channels draw alike; a union of
+    /// WK_PART_ constants, 0 for none.
+    pub pinned_parts: wk_part_flags,
+    /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
+    pub tolerance: f64,
+}
+
+impl wk_budget {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_BUDGET,
+        next: null(),
+        has: 0,
+        pinned_parts: 0,
+        tolerance: 0.0,
+    };
+}
+
+/// What a view's last frame left out. Errors are estimates from the gauged pixels.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_plan {
+    /// sizeof(wk_plan) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_PLAN.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The parts of which anything is drawn.
+    pub drawn: wk_part_flags,
+    /// 0.
+    pub reserved: u32,
+    /// Error of all that is left out together: 95th percentile over the gauged pixels.
+    pub error: f64,
+    /// Upper end of the 95 % confidence interval of that percentile over all pixels.
+    pub error_bound: f64,
+    /// Error of the worst gauged pixel.
+    pub worst: f64,
+    /// Work of the picture as planned, in units of copying a pixel; 0 before the first gauge.
+    pub work: f64,
+    /// Work of the picture with everything, likewise.
+    pub work_of_everything: f64,
+}
+
+impl wk_plan {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_PLAN,
+        next: null(),
+        drawn: 0,
+        reserved: 0,
+        error: 0.0,
+        error_bound: 0.0,
+        worst: 0.0,
+        work: 0.0,
+        work_of_everything: 0.0,
+    };
+}
+
+/// One part of a plan.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_part_plan {
+    /// sizeof(wk_part_plan) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_PART_PLAN.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Why it is drawn or not.
+    pub reason: wk_plan_reason,
+    /// 0.
+    pub reserved: u32,
+    /// The reason in a few words of English; lives as long as the process.
+    pub reason_text: *const c_char,
+    /// How much of it is drawn: 1 all, 0 nothing, between while it fades.
+    pub share: f64,
+    /// Error of the picture without this part alone, as last gauged.
+    pub error: f64,
+    /// The same at the worst gauged pixel.
+    pub worst: f64,
+    /// Its work in this picture, were it drawn, in units of copying a pixel.
+    pub work: f64,
+}
+
+impl wk_part_plan {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_PART_PLAN,
+        next: null(),
+        reason: 0,
+        reserved: 0,
+        reason_text: null(),
+        share: 0.0,
+        error: 0.0,
+        worst: 0.0,
+        work: 0.0,
+    };
+
+    fn of(part: &PartPlan) -> Self {
+        let (reason, text) = match part.reason {
+            Reason::EverythingAsked => (WK_PLAN_REASON_EVERYTHING_ASKED, c"no tolerance was given"),
+            Reason::NotGauged => (WK_PLAN_REASON_NOT_GAUGED, c"this picture has not been gauged yet"),
+            Reason::Absent => (WK_PLAN_REASON_ABSENT, c"there is none of it"),
+            Reason::Needed => (WK_PLAN_REASON_NEEDED, c"without it the error would be beyond the tolerance"),
+            Reason::WithinTolerance => {
+                (WK_PLAN_REASON_WITHIN_TOLERANCE, c"the error without it is within the tolerance")
+            }
+            Reason::Pinned => (WK_PLAN_REASON_PINNED, c"the host pinned it"),
+        };
+        Self {
+            reason,
+            reason_text: text.as_ptr(),
+            share: part.share.into(),
+            error: part.worth.p95,
+            worst: part.worth.worst,
+            work: part.work,
+            ..Self::INIT
+        }
+    }
+}
+
+/// Sets how wrong the view's pictures may be; NULL asks for everything again. Unchanged after an error.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const wk_budget) -> wk_status {
+    guard("wk_view_set_budget", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let mut asked = Budget::default();
+        if !budget.is_null() {
+            // SAFETY: the caller's promise about `budget`.
+            let c = unsafe { layout::read(&"budget", budget)? };
+            // SAFETY: as above.
+            unsafe { layout::check_chain(&"budget", c.next, &[])? };
+            layout::WK_BUDGET_HAS_FLAGS.check(&"budget.has", c.has.into())?;
+            layout::WK_PART_FLAGS.check(&"budget.pinned_parts", c.pinned_parts.into())?;
+            asked.tolerance = (c.has & WK_BUDGET_HAS_TOLERANCE != 0).then_some(c.tolerance);
+            let pinned = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY].map(|p| c.pinned_parts & p != 0);
+            asked.pinned = (c.has & WK_BUDGET_HAS_PINNED_PARTS != 0).then_some(pinned);
+        }
+        asked.validate()?;
+        object.cell.drain();
+        object.lock().set_budget(asked)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Says what the view's last frame left out.
+/// Thread: exclusive on the view.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_plan) -> wk_status {
+    guard("wk_view_get_plan", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `out_plan`.
+        let place = unsafe { layout::out_struct(&"out_plan", out_plan)? };
+        let plan = *object.lock().plan();
+        let drawn = plan.parts.iter().zip([WK_PART_AIR, WK_PART_FOG, WK_PART_SKY]);
+        place.set(&wk_plan {
+            drawn: drawn.filter(|(p, _)| p.share > 0.0).fold(0, |all, (_, flag)| all | flag),
+            error: plan.error.p95,
+            error_bound: plan.error.bound,
+            worst: plan.error.worst,
+            work: plan.work,
+            work_of_everything: plan.work_of_everything,
+            ..wk_plan::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
+
+/// Says of one part (a single WK_PART_ constant) how much of it the view's last frame drew, and why.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_part_plan(
+    view: *mut wk_view,
+    part: wk_part_flags,
+    out_part: *mut wk_part_plan,
+) -> wk_status {
+    guard("wk_view_get_part_plan", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let flags = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY];
+        let Some(i) = flags.iter().position(|f| *f == part) else {
+            return Err(Error::range("part", "one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY", part));
+        };
+        // SAFETY: the caller's promise about `out_part`.
+        let place = unsafe { layout::out_struct(&"out_part", out_part)? };
+        place.set(&wk_part_plan::of(&object.lock().plan().parts[i]));
+        Ok(Status::Ok)
+    })
+}
+
+const _: () = assert!(Part::ALL.len() == 3, "every part has its WK_PART_ constant");
