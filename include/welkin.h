@@ -3213,7 +3213,7 @@ typedef struct wk_plan {
     double error_bound;
     /** Error of the worst gauged pixel. */
     double worst;
-    /** Work of the picture as planned, in units of copying a pixel; 0 before the first gauge. */
+    /** Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge. */
     double work;
     /** Work of the picture with everything, likewise. */
     double work_of_everything;
@@ -3269,7 +3269,7 @@ typedef struct wk_part_plan {
     double error;
     /** The same at the worst gauged pixel. */
     double worst;
-    /** Its work in this picture, were it drawn, in units of copying a pixel. */
+    /** Its work in this picture, were it drawn, in units of a pixel with none of the parts. */
     double work;
 } wk_part_plan;
 

@@ -1,5 +1,5 @@
 //! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of
-//! `plan::planner` in units of a pixel that is only copied.
+//! `plan::planner`, in units of a pixel with none of them.
 
 use std::{sync::Arc, time::Instant};
 
@@ -91,7 +91,7 @@ impl Bench {
 }
 
 pub fn run() -> Fallible<()> {
-    println!("parts of a picture of {} x {}, in units of its plain copy:", SIZE.width, SIZE.height);
+    println!("parts of a picture of {} x {}, in shares of one with none of them:", SIZE.width, SIZE.height);
     let mut bench = Bench::new()?;
     for (name, weather, horizon, part) in [("air", "clear", 0, 0), ("fog", "fog", 0, 1), ("sky", "clear", 360, 2)] {
         bench.world(horizon);
@@ -100,16 +100,25 @@ pub fn run() -> Fallible<()> {
         let none = bench.time(only)?;
         only[part] = true;
         let with = bench.time(only)?;
-        println!("  {name}: {:.1} ({none:.2} ms without, {with:.2} ms with)", with / none - 1.0);
+        println!("  {name}: {:.2} ({none:.2} ms without, {with:.2} ms with)", with / none - 1.0);
     }
     bench.world(180);
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
     let pinned = bench.time([true; 3])?;
     bench.view.set_budget(Budget { tolerance: Some(1e-6), pinned: None })?;
-    let mut total = 0.0;
-    for _ in 0..400 {
-        total += bench.frame()?;
+    for _ in 0..16 {
+        bench.frame()?;
     }
-    println!("  gauge, over its frames: {:.3} of the picture", total / 400.0 / pinned - 1.0);
+    // One frame in eight has a gauge: the least time of each of the eight.
+    let mut least = [f64::INFINITY; 8];
+    for i in 0..400 {
+        least[i % 8] = least[i % 8].min(bench.frame()?);
+    }
+    let gauged = least.iter().copied().fold(0.0, f64::max);
+    println!(
+        "  gauge: {:.2} ms in every eighth frame, {:.3} of the pictures' {pinned:.1} ms",
+        gauged - pinned,
+        (gauged - pinned) / 8.0 / pinned
+    );
     Ok(())
 }

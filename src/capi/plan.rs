@@ -110,7 +110,7 @@ pub struct wk_plan {
     pub error_bound: f64,
     /// Error of the worst gauged pixel.
     pub worst: f64,
-    /// Work of the picture as planned, in units of copying a pixel; 0 before the first gauge.
+    /// Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge.
     pub work: f64,
     /// Work of the picture with everything, likewise.
     pub work_of_everything: f64,
@@ -153,7 +153,7 @@ pub struct wk_part_plan {
     pub error: f64,
     /// The same at the worst gauged pixel.
     pub worst: f64,
-    /// Its work in this picture, were it drawn, in units of copying a pixel.
+    /// Its work in this picture, were it drawn, in units of a pixel with none of the parts.
     pub work: f64,
 }
 

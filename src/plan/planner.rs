@@ -47,7 +47,7 @@ pub struct PartPlan {
     pub reason: Reason,
     /// Error of the picture without this part alone, as last gauged.
     pub worth: Estimate,
-    /// Its work in this picture in units of a pixel's plain composition, were it drawn.
+    /// Its work in this picture, were it drawn, in units of a pixel with none of the parts.
     pub work: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct Plan {
     pub parts: [PartPlan; 3],
     /// Estimated error of all that is left out together.
     pub error: Estimate,
-    /// Work of the picture as planned, in units of a pixel's plain composition.
+    /// Work of the picture as planned, in units of a pixel with none of the parts.
     pub work: f64,
     /// Work of the picture with everything.
     pub work_of_everything: f64,
@@ -86,11 +86,11 @@ pub(crate) struct Present {
     pub lamps: u32,
 }
 
-/// Work of a pixel, measured on a software driver (benches/speed, 640 x 360) in units of a pixel that is only copied
-/// and toned: air between and clear sky for one lamp and for each further one, fog as a layer.
-const AIR: (f64, f64) = (5.0, 2.5);
-const SKY: (f64, f64) = (4.0, 2.0);
-const FOG: f64 = 9.0;
+/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
+/// air between and clear sky for one lamp and for each further one, fog as a layer.
+const AIR: (f64, f64) = (0.4, 0.2);
+const SKY: (f64, f64) = (0.07, 0.05);
+const FOG: f64 = 0.17;
 
 /// What a gauge was made of: a picture far from it needs another.
 #[derive(Clone, Copy, PartialEq)]
