@@ -222,11 +222,11 @@ typedef uint32_t wk_struct_type;
 /** wk_metar */
 #define WK_STRUCT_TYPE_METAR 27
 /** wk_budget */
-#define WK_STRUCT_TYPE_BUDGET 40
+#define WK_STRUCT_TYPE_BUDGET 28
 /** wk_plan */
-#define WK_STRUCT_TYPE_PLAN 41
+#define WK_STRUCT_TYPE_PLAN 29
 /** wk_part_plan */
-#define WK_STRUCT_TYPE_PART_PLAN 42
+#define WK_STRUCT_TYPE_PART_PLAN 30
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.

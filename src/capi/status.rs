@@ -105,11 +105,11 @@ pub const WK_STRUCT_TYPE_AMBIENT: wk_struct_type = 26;
 /// wk_metar
 pub const WK_STRUCT_TYPE_METAR: wk_struct_type = 27;
 /// wk_budget
-pub const WK_STRUCT_TYPE_BUDGET: wk_struct_type = 40;
+pub const WK_STRUCT_TYPE_BUDGET: wk_struct_type = 28;
 /// wk_plan
-pub const WK_STRUCT_TYPE_PLAN: wk_struct_type = 41;
+pub const WK_STRUCT_TYPE_PLAN: wk_struct_type = 29;
 /// wk_part_plan
-pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 42;
+pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 30;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

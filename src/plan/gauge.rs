@@ -31,6 +31,9 @@ const MAPPING: u32 = 2;
 const READY: u32 = 3;
 const FAILED: u32 = 4;
 
+/// Values of `override` constants.
+type Constants = Vec<(&'static str, f64)>;
+
 /// Target, staging buffer and pipeline of a view's gauge.
 pub(crate) struct Gauge {
     target: wgpu::Texture,
@@ -38,7 +41,7 @@ pub(crate) struct Gauge {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
     /// Made for a number of samples (one or several) and `override` constants.
-    pipeline: Option<(bool, Vec<(&'static str, f64)>, wgpu::RenderPipeline)>,
+    pipeline: Option<(bool, Constants, wgpu::RenderPipeline)>,
     samples: Vec<Sample>,
 }
 
