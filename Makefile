@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: help setup setup-build lib stage install uninstall host demo fmt lint header docs test accept bench gallery
+.PHONY: help setup setup-build lib stage install uninstall host demo fmt lint header docs test accept bench gallery lab
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -102,6 +102,9 @@ accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90
 
 gallery: setup ## draw the README's pictures anew into docs/gallery
 	cargo run --locked --release --example native -- docs/gallery
+
+lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
+	cargo run --locked --release --example lab -- $(ARGS)
 
 bench: setup-build ## speed, as ratios measured within one run
 	$(if $(wildcard benches/*.rs benches/*/main.rs),cargo bench --locked --bench '*',@echo "bench: none yet")

@@ -218,6 +218,7 @@ pub fn work(s: &SkySettings) -> Work {
         let bytes = TEXEL_BYTES * pass.draws.len() as f64;
         rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
     }
+    // Scratch of a build, and two airs: the one that is shown and the one that follows it.
     let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
         + 2.0 * Name::RESULTS.iter().map(|n| texels(*n)).sum::<f64>()
         + texels(Name::Lights);

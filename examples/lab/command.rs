@@ -1,0 +1,78 @@
+//! What the lab is asked for: commands, options, and the refusal of everything else.
+
+use std::path::PathBuf;
+
+use welkin::plan::{Candidate, Effect, candidate};
+use welkin::{Error, Result, Status};
+
+use crate::{chart, compare, growth, report, stability};
+
+const USAGE: &str = "usage: lab chart [sky|fog|quadrature]    cost against error, with plots
+       lab growth                         how cost and bytes grow
+       lab stability [MAP ..]             where methods fail
+       lab compare A B [--scene NAME]     two candidates' pictures side by side
+       lab report                         everything on one HTML page
+options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
+
+/// What was asked for.
+pub struct Options {
+    /// Where results go.
+    pub out: PathBuf,
+    /// Coarser truth and fewer rounds.
+    pub quick: bool,
+    /// Forget what a stopped run left.
+    pub fresh: bool,
+    /// A scene's name.
+    pub scene: Option<String>,
+}
+
+fn usage(what: &str) -> Error {
+    Error::new(Status::InvalidArgument, format!("{what}\n{USAGE}"))
+}
+
+/// Words and options.
+fn parse(arguments: &[String]) -> Result<(Vec<String>, Options)> {
+    let mut options = Options { out: "docs/lab".into(), quick: false, fresh: false, scene: None };
+    let mut words = Vec::new();
+    let mut rest = arguments.iter();
+    while let Some(a) = rest.next() {
+        match a.as_str() {
+            "--quick" => options.quick = true,
+            "--fresh" => options.fresh = true,
+            "--out" => options.out = rest.next().ok_or_else(|| usage("--out needs a directory"))?.into(),
+            "--scene" => options.scene = Some(rest.next().ok_or_else(|| usage("--scene needs a name"))?.clone()),
+            other if other.starts_with('-') => return Err(usage(&format!("unknown option `{other}`"))),
+            word => words.push(word.to_owned()),
+        }
+    }
+    Ok((words, options))
+}
+
+/// The candidate of that name in whichever effect has it.
+fn find_candidate(name: &str) -> Result<Candidate> {
+    let faults: Vec<String> =
+        Effect::NAMES.iter().filter_map(|(_, e)| candidate(*e, name).err().map(|fault| fault.message)).collect();
+    let found = Effect::NAMES.iter().find_map(|(_, e)| candidate(*e, name).ok());
+    found.ok_or_else(|| usage(&faults.join("\n")))
+}
+
+/// Does what the arguments ask for.
+///
+/// # Errors
+/// Unknown commands, effects, candidates, maps, scenes and options; files; the GPU.
+pub fn run(arguments: &[String]) -> Result<()> {
+    let (words, options) = parse(arguments)?;
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["chart"] => ["quadrature", "fog", "sky"].iter().try_for_each(|c| chart::run(c, &options)),
+        ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
+        ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
+        ["growth"] => growth::run(&options),
+        ["stability", maps @ ..] => stability::run(maps, &options),
+        ["compare", a, b] => compare::run(&find_candidate(a)?, &find_candidate(b)?, &options),
+        ["compare", ..] => Err(usage("compare needs two candidates")),
+        ["report"] => report::run(&options),
+        [] => Err(usage("no command")),
+        other => Err(usage(&format!("unknown command `{}`", other.join(" ")))),
+    }
+}

@@ -1,0 +1,34 @@
+//! The lab: speed charted against accuracy, growth of cost, and maps of where methods fail.
+//!
+//! `make lab ARGS="chart sky"`. Results are kept row by row: a run that was stopped is continued by the same command.
+//! Wrong arguments: a message on standard error, exit code 2, nothing written.
+
+mod canvas;
+mod chart;
+mod command;
+mod compare;
+mod fog;
+mod growth;
+mod page;
+mod picture;
+mod plot;
+mod quadrature;
+mod report;
+mod scenes;
+mod sky;
+mod stability;
+mod store;
+mod timing;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match command::run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("lab: {e}");
+            ExitCode::from(2)
+        }
+    }
+}

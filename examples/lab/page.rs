@@ -1,0 +1,234 @@
+//! The page that shows and explains what the lab measured, written from the CSV files beside it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use welkin::Result;
+
+use crate::chart::points;
+use crate::plot::short;
+use crate::stability;
+use crate::store::{Table, io};
+
+/// Writes `README.md` into the lab's directory.
+///
+/// # Errors
+/// Files.
+pub fn write(directory: &Path) -> Result<()> {
+    let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
+    let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
+    let mut out = String::from(
+        "# The lab: speed against accuracy, and where methods fail\n\n\
+         Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page.\n\n",
+    );
+    if let Some(table) = &sky {
+        sky_section(&mut out, table);
+    }
+    if let Some(table) = &quadrature {
+        quadrature_section(&mut out, table);
+    }
+    if let Some(table) = &fog {
+        fog_section(&mut out, table);
+    }
+    if let Some(table) = &growth {
+        growth_section(&mut out, table);
+    }
+    stability::section(&mut out, directory)?;
+    how_section(&mut out, [&sky, &fog, &quadrature, &growth]);
+    let path = directory.join("README.md");
+    std::fs::write(&path, out).map_err(|e| io(&path, &e))
+}
+
+fn number(table: &Table, row: &[String], column: &str) -> f64 {
+    table.number(row, column).unwrap_or(f64::NAN)
+}
+
+fn percent(v: f64) -> String {
+    format!("{} %", short(100.0 * v))
+}
+
+fn bytes(v: f64) -> String {
+    if v >= 1e6 { format!("{} MB", short(v / 1e6)) } else { format!("{} kB", short(v / 1e3)) }
+}
+
+/// Rows on the front, and the default, in order of cost.
+fn front_rows(table: &Table, cost: &str) -> Vec<(bool, bool, Vec<String>)> {
+    let mut points = points(table, cost);
+    points.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let row = |name: &str| table.row(name).map(<[String]>::to_vec);
+    points.iter().filter(|p| p.front || p.default).filter_map(|p| Some((p.front, p.default, row(&p.name)?))).collect()
+}
+
+fn sky_section(out: &mut String, t: &Table) {
+    let n = |r: &[String], c: &str| number(t, r, c);
+    out.push_str("## Which sky\n\n");
+    let default = t.rows.iter().find(|r| r[2] == "true");
+    let source = ["elek-15", "elek-50"].map(|name| t.row(name));
+    if let Some(d) = default {
+        let on = front_rows(t, "cost").iter().any(|(front, default, _)| *front && *default);
+        let _ = write!(
+            out,
+            "Take the default, `{}`: 95 % of all pixels are within {} of the truth, at {} ms a frame whose sun has moved and \
+             {} ms otherwise (320x180 on this software driver), and {} once an air. It {} the front: {} here is both \
+             cheaper and better. ",
+            d[0],
+            percent(n(d, "p95")),
+            short(n(d, "moving_ms")),
+            short(n(d, "still_ms")),
+            format_args!("{} s", short(n(d, "rebuild_s"))),
+            if on { "lies on" } else { "lies beside" },
+            if on { "nothing" } else { "something" },
+        );
+        for s in source.into_iter().flatten() {
+            let _ = write!(
+                out,
+                "`{}` (the table of single scattering of 2008) errs by {} and takes {} s to build. ",
+                s[0],
+                percent(n(s, "p95")),
+                short(n(s, "rebuild_s"))
+            );
+        }
+        out.push_str("\n\n");
+    }
+    out.push_str("![cost of a frame against error](sky.svg)\n\n");
+    out.push_str(
+        "On the front, cheapest first; costs over the baseline's, quarters of the measurements in brackets:\n\n",
+    );
+    out.push_str(
+        "| sky | cost | sun at rest | build, s | error p95 | median | worst | perceptual | shared | per view |\n",
+    );
+    out.push_str("|---|---|---|---|---|---|---|---|---|---|\n");
+    for (front, default, r) in front_rows(t, "cost") {
+        let mark = match (front, default) {
+            (true, true) => " (default)",
+            (false, true) => " (default, beaten)",
+            _ => "",
+        };
+        let _ = writeln!(
+            out,
+            "| `{}`{mark} | {} ({} to {}) | {} | {} | {} | {} | {} | {} | {} | {} |",
+            r[0],
+            short(n(&r, "cost")),
+            short(n(&r, "cost_low")),
+            short(n(&r, "cost_high")),
+            short(n(&r, "still")),
+            short(n(&r, "rebuild_s")),
+            percent(n(&r, "p95")),
+            percent(n(&r, "median")),
+            percent(n(&r, "worst")),
+            percent(n(&r, "perceptual")),
+            bytes(n(&r, "shared_bytes")),
+            bytes(n(&r, "view_bytes")),
+        );
+    }
+    out.push_str(
+        "\nWhere the sun and the observer's altitude stay, the observer's tables stay too and a frame is cheaper:\n\n",
+    );
+    out.push_str("![cost of a further frame against error](sky-still.svg)\n\n");
+    let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
+    out.push_str("Error by scene, 95th percentile, per cent:\n\n| sky |");
+    scenes.iter().for_each(|s| {
+        let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
+    });
+    out.push_str("\n|---|");
+    out.push_str(&"---|".repeat(scenes.len()));
+    out.push('\n');
+    for r in &t.rows {
+        let _ = write!(out, "| `{}` |", r[0]);
+        scenes.iter().for_each(|s| {
+            let _ = write!(out, " {} |", short(100.0 * n(r, s)));
+        });
+        out.push('\n');
+    }
+    out.push_str(
+        "\n`directional` carries the orders of scattering one by one with their direction, `isotropic` takes all orders after the \
+         first as equal in all directions, `table3d` has light scattered once from a table, `march-N` marches it in every pixel \
+         with N nodes, `elek-N` is the table of 2008 with N steps an integral, mended only where it could not be computed as \
+         printed (`examples/lab/sky/elek.rs` says how). `-fine-planet` and `-fine-view` double one half of the default's \
+         tables each.\n\n",
+    );
+}
+
+fn quadrature_section(out: &mut String, t: &Table) {
+    out.push_str(
+        "## Which quadrature\n\nThe same integrals by the same shader functions, only the nodes differ. Transmittance needs no nodes: \
+         the closed form is better than any rule of its cost. Light scattered once takes Gauss panels of 4 on nodes spread as \
+         the air is (`welkin`). `offset-0.3` is the rule of much public code: its last step is missing, so it converges to first \
+         order only.\n\n\
+         ![transmittance](quadrature-transmittance.svg)\n\n![light scattered once](quadrature-scattering.svg)\n\n",
+    );
+    let at = |name: &str| t.row(name).map_or(f64::NAN, |r| number(t, r, "p95"));
+    let _ = writeln!(out, "| error p95 of light scattered once | 8 nodes | 20 | 40 | 128 |\n|---|---|---|---|---|");
+    for rule in ["offset-0.3", "midpoint", "trapezoid", "gauss-4", "midpoint-stretched", "welkin"] {
+        let cells: Vec<String> =
+            [8, 20, 40, 128].iter().map(|n| percent(at(&format!("scattering/{rule} {n}")))).collect();
+        let _ = writeln!(out, "| {rule} | {} |", cells.join(" | "));
+    }
+    out.push('\n');
+}
+
+fn fog_section(out: &mut String, t: &Table) {
+    let n = |r: &[String], c: &str| number(t, r, c);
+    out.push_str("## Which fog\n\n![cost of fog against error](fog.svg)\n\n");
+    out.push_str(
+        "| fog | cost | error p95 | median | worst | perceptual | per view |\n|---|---|---|---|---|---|---|\n",
+    );
+    for r in &t.rows {
+        let mark = if r[2] == "true" { " (default)" } else { "" };
+        let _ = writeln!(
+            out,
+            "| `{}`{mark} | {} ({} to {}) | {} | {} | {} | {} | {} |",
+            r[0],
+            short(n(r, "cost")),
+            short(n(r, "cost_low")),
+            short(n(r, "cost_high")),
+            percent(n(r, "p95")),
+            percent(n(r, "median")),
+            percent(n(r, "worst")),
+            percent(n(r, "perceptual")),
+            bytes(n(r, "view_bytes")),
+        );
+    }
+    out.push_str(
+        "\nThe truth is the closed form in f64 at every pixel, whose own error of light against adding and doubling is held in \
+         `tests/fog/light.rs`. `even` leaves the patches out: exact where there are none, and cheaper where there are. The \
+         froxels are what hosts' transparent shaders sample; in a whole picture they blur the layer's top and the near masts. \
+         The older laws have the layer's visibility and the light of a deep layer, but know neither top nor sun: good for a host \
+         that must look as it always did, and for nothing else.\n\n",
+    );
+}
+
+fn growth_section(out: &mut String, t: &Table) {
+    out.push_str("## Growth\n\n![growth of time](growth-time.svg)\n\n![growth of bytes](growth-bytes.svg)\n\n");
+    out.push_str("| what | against | exponent of time | of bytes | |\n|---|---|---|---|---|\n");
+    for (name, against, time, bytes) in crate::growth::exponents(t) {
+        let show = |v: Option<(f64, f64)>| v.map_or("-".into(), |(p, _)| short(p));
+        let worst = [time, bytes].iter().flatten().map(|p| p.0).fold(0.0, f64::max);
+        let say = if worst > crate::growth::LINEAR { "**worse than linear**" } else { "" };
+        let _ = writeln!(out, "| {name} | {against} | {} | {} | {say} |", show(time), show(bytes));
+    }
+    out.push('\n');
+}
+
+fn how_section(out: &mut String, tables: [&Option<Table>; 4]) {
+    out.push_str(
+        "## How it was measured\n\n\
+         - **Error**: |Y_A - Y_B| / (Y_B + 0.01 Y_white) in luminance after exposure, B the reference in f64, over all pixels of all \
+         scenes; white is where the logarithmic mean lies at 18 %. *Perceptual* is 1 less the similarity of structure and colour \
+         of the displayed pictures.\n\
+         - **Cost**: wall time of a submit that is waited for, over that of a fixed load (64 exponentials in every pixel of 320x180) \
+         run before and after each frame; the median of the ratios with the quarters on both sides. A point has moved when \
+         these ranges part.\n\
+         - **Truth of the sky**: every order of scattering, in double precision along each pixel's ray; its source on a grid that is \
+         good to 0.1 % (`src/sky/reference`). The ground's colour is the same for all.\n",
+    );
+    for table in tables.into_iter().flatten() {
+        let dates: Vec<&String> = table
+            .columns
+            .iter()
+            .position(|c| c == "date")
+            .map_or(Vec::new(), |i| table.rows.iter().map(|r| &r[i]).collect());
+        let date = dates.iter().max().map_or(String::new(), |d| format!("; {d}"));
+        let _ = writeln!(out, "- {}{date}.", table.note);
+    }
+}

@@ -1,0 +1,131 @@
+//! The scenes over which errors are measured.
+
+use welkin::fog::{FogLayer, FogLight, Patches, Phase, Profile, koschmieder_extinction_per_m};
+use welkin::plan::Effect;
+use welkin::sky::Planet;
+use welkin::{Error, Result};
+
+/// Which air a sky scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Air {
+    /// The Earth's on a clear day.
+    Clear,
+    /// Haze of about 12 km visibility.
+    Haze,
+}
+
+impl Air {
+    pub const ALL: [Air; 2] = [Air::Clear, Air::Haze];
+
+    pub fn planet(self) -> Planet {
+        let mut planet = Planet::earth();
+        if self == Air::Haze {
+            planet.mie.extinction_per_m = [2.4e-4; 3];
+            planet.mie.scattering_per_m = [2.2e-4; 3];
+        }
+        planet
+    }
+}
+
+/// A camera under a sun. Below the horizon it sees the planet's ground, grey, through the air.
+#[derive(Clone, Copy, Debug)]
+pub struct SkyScene {
+    pub name: &'static str,
+    pub air: Air,
+    pub altitude_m: f64,
+    pub sun_zenith_deg: f64,
+    /// The view's azimuth from the sun's, its elevation, and the angle that the picture is wide.
+    pub azimuth_deg: f64,
+    pub elevation_deg: f64,
+    pub width_deg: f64,
+}
+
+const fn sky(
+    name: &'static str,
+    air: Air,
+    altitude_m: f64,
+    sun_zenith_deg: f64,
+    azimuth_deg: f64,
+    elevation_deg: f64,
+    width_deg: f64,
+) -> SkyScene {
+    SkyScene { name, air, altitude_m, sun_zenith_deg, azimuth_deg, elevation_deg, width_deg }
+}
+
+/// From an excavator's seat to orbit, noon to twilight.
+pub const SKY: [SkyScene; 10] = [
+    sky("noon", Air::Clear, 3.0, 28.0, 55.0, 12.0, 90.0),
+    sky("afternoon-digging", Air::Clear, 3.0, 57.0, -120.0, -12.0, 75.0),
+    sky("low-sun", Air::Clear, 20.0, 80.0, 25.0, 8.0, 90.0),
+    sky("sunset", Air::Clear, 20.0, 89.6, 8.0, 8.0, 90.0),
+    sky("earth-shadow", Air::Clear, 20.0, 91.0, 180.0, 10.0, 90.0),
+    sky("twilight", Air::Clear, 20.0, 95.0, 15.0, 14.0, 90.0),
+    sky("haze", Air::Haze, 10.0, 60.0, 70.0, 5.0, 90.0),
+    sky("haze-low-sun", Air::Haze, 10.0, 82.0, 20.0, 6.0, 90.0),
+    sky("airliner", Air::Clear, 11_000.0, 72.0, 100.0, -2.0, 90.0),
+    sky("limb", Air::Clear, 400_000.0, 96.0, 40.0, -18.0, 60.0),
+];
+
+/// A camera over a flat plain in a layer of fog, with masts at several distances.
+#[derive(Clone, Copy, Debug)]
+pub struct FogScene {
+    pub name: &'static str,
+    pub layer: FogLayer,
+    pub altitude_m: f64,
+    pub elevation_deg: f64,
+    pub sun_elevation_deg: f64,
+}
+
+impl FogScene {
+    /// Sun ahead and to the right, sky brighter in the blue; sun's irradiance facing it is 1.
+    pub fn light(&self) -> FogLight {
+        let (s, c) = self.sun_elevation_deg.to_radians().sin_cos();
+        let azimuth = 35f64.to_radians();
+        FogLight {
+            to_sun: glam::DVec3::new(c * azimuth.sin(), c * azimuth.cos(), s),
+            sun_irradiance: [1.0, 0.96, 0.9],
+            sky_irradiance: [0.16, 0.2, 0.27],
+            ground_albedo: [0.18; 3],
+        }
+    }
+}
+
+/// Ground fog, mist, a layer seen from above, patches, dust, haze.
+pub fn fog() -> Vec<FogScene> {
+    let layer =
+        |visibility_m, top_m, soft_m| FogLayer::ground_fog(koschmieder_extinction_per_m(visibility_m), top_m, soft_m);
+    let patches = Patches { amount: 1.0, size_m: 90.0, seed: 7, drift_m: [0.0; 2] };
+    let thinning = Profile::Exponential { reference_m: 0.0, scale_height_m: 60.0 };
+    let dust = Phase::HenyeyGreenstein { g: 0.7 };
+    let scene = |name, layer, altitude_m, elevation_deg, sun_elevation_deg| FogScene {
+        name,
+        layer,
+        altitude_m,
+        elevation_deg,
+        sun_elevation_deg,
+    };
+    vec![
+        scene("dense", layer(60.0, 40.0, 10.0), 3.0, -4.0, 30.0),
+        scene("fog", layer(300.0, 80.0, 20.0), 3.0, -4.0, 30.0),
+        scene("mist", layer(2500.0, 250.0, 60.0), 3.0, -3.0, 20.0),
+        scene("light-haze", layer(20_000.0, 800.0, 200.0), 3.0, -3.0, 40.0),
+        scene("shallow", layer(150.0, 2.5, 1.0), 4.0, -8.0, 12.0),
+        scene("from-above", layer(250.0, 60.0, 20.0), 120.0, -14.0, 25.0),
+        scene("patches", FogLayer { patches: Some(patches), ..layer(250.0, 15.0, 6.0) }, 3.0, -4.0, 25.0),
+        scene("thinning", FogLayer { profile: thinning, ..layer(400.0, 0.0, 0.0) }, 3.0, -2.0, 15.0),
+        scene("dust", FogLayer { albedo: [0.96, 0.9, 0.8], phase: dust, ..layer(350.0, 60.0, 20.0) }, 3.0, -4.0, 35.0),
+    ]
+}
+
+/// A scene's index by name.
+///
+/// # Errors
+/// An unknown name, with the known ones.
+pub fn find(effect: Effect, name: &str) -> Result<usize> {
+    let names: Vec<&str> = match effect {
+        Effect::Sky => SKY.iter().map(|s| s.name).collect(),
+        Effect::Fog => fog().iter().map(|s| s.name).collect(),
+    };
+    let fault = || Error::range("--scene", &format!("one of {}", names.join(", ")), name);
+    names.iter().position(|n| *n == name).ok_or_else(fault)
+}

@@ -1,0 +1,154 @@
+//! Times as ratios to a fixed baseline that is measured in turn with what is timed, so that a busy machine moves both.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use welkin::Result;
+use welkin::gpu::Device;
+use welkin::plan::difference::percentile;
+
+/// A fixed load: 64 exponentials in every pixel of 320x180.
+pub struct Baseline {
+    device: Arc<Device>,
+    pipeline: wgpu::RenderPipeline,
+    target: wgpu::TextureView,
+}
+
+const BASELINE: &str = "
+@vertex fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn fragment(@builtin(position) p: vec4f) -> @location(0) vec4f {
+    var sum = vec3f(0.0);
+    for (var i = 0; i < 64; i++) {
+        sum += exp(-vec3f(0.01, 0.02, 0.03) * (f32(i) + p.xyx * 0.01));
+    }
+    return vec4f(sum / 64.0, 1.0);
+}";
+
+impl Baseline {
+    /// Makes it; its first run is not counted.
+    pub fn new(device: &Arc<Device>) -> Result<Self> {
+        let gpu = &device.device;
+        let source = wgpu::ShaderSource::Wgsl(BASELINE.into());
+        let module = gpu.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("baseline"), source });
+        let format = wgpu::TextureFormat::Rgba16Float;
+        let pipeline = gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("baseline"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let target = target(device, (320, 180), format);
+        let this = Self { device: device.clone(), pipeline, target: target.create_view(&Default::default()) };
+        this.run()?;
+        Ok(this)
+    }
+
+    /// Runs it once, ms.
+    pub fn run(&self) -> Result<f64> {
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        welkin::gpu::pass::draw(&mut encoder, "baseline", &self.pipeline, &[], &self.target);
+        timed(&self.device, encoder)
+    }
+}
+
+/// Submits and waits, ms.
+pub fn timed(device: &Device, encoder: wgpu::CommandEncoder) -> Result<f64> {
+    let start = Instant::now();
+    device.submit_and_wait(encoder)?;
+    Ok(start.elapsed().as_secs_f64() * 1e3)
+}
+
+/// A texture to draw into and to read.
+pub fn target(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("lab"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// How a time compares with the baseline.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ratio {
+    /// Middle of the ratios.
+    pub median: f64,
+    /// Quarter of the ratios are below.
+    pub low: f64,
+    /// Quarter of the ratios are above.
+    pub high: f64,
+    /// Middle of the times themselves, ms.
+    pub ms: f64,
+}
+
+impl Ratio {
+    /// Of times and the baseline's times beside them.
+    pub fn of(pairs: &[(f64, f64)]) -> Self {
+        let sorted = |of: &dyn Fn(&(f64, f64)) -> f64| {
+            let mut v: Vec<f64> = pairs.iter().map(of).collect();
+            v.sort_by(f64::total_cmp);
+            v
+        };
+        let ratios = sorted(&|p| p.0 / p.1);
+        let ms = percentile(&sorted(&|p| p.0), 0.5);
+        let at = |share| percentile(&ratios, share);
+        Self { median: at(0.5), low: at(0.25), high: at(0.75), ms }
+    }
+
+    /// This and a share of another.
+    pub fn plus(&self, other: &Self, share: f64) -> Self {
+        Self {
+            median: self.median + share * other.median,
+            low: self.low + share * other.low,
+            high: self.high + share * other.high,
+            ms: self.ms + share * other.ms,
+        }
+    }
+
+    /// Whether two measurements differ by more than both spread.
+    pub fn moved(&self, other: &Self) -> bool {
+        self.low > other.high || self.high < other.low
+    }
+}
+
+/// Work of more than this is not repeated as often, ms.
+const LONG_MS: f64 = 6000.0;
+
+/// Runs `work` in turn with the baseline: `rounds` times (5 at least, fewer if they are long), after one run that is not
+/// counted. `work` answers its ms.
+pub fn interleaved(baseline: &Baseline, rounds: usize, mut work: impl FnMut(usize) -> Result<f64>) -> Result<Ratio> {
+    let first = work(0)?;
+    let rounds = rounds.min(((LONG_MS / first.max(1e-3)) as usize).max(5));
+    let mut pairs = Vec::with_capacity(rounds);
+    for i in 0..rounds {
+        // Before and after, since the machine may turn busy in between.
+        let before = baseline.run()?;
+        let time = work(i + 1)?;
+        pairs.push((time, 0.5 * (before + baseline.run()?)));
+    }
+    Ok(Ratio::of(&pairs))
+}

@@ -1,0 +1,336 @@
+//! The lab: what its charts and maps rest on, that a stopped run is continued, and that each failing method fails.
+
+// The lab's own modules; what only its commands call is not called here.
+#![allow(dead_code)]
+
+#[path = "../examples/lab/canvas.rs"]
+mod canvas;
+#[path = "../examples/lab/chart.rs"]
+mod chart;
+#[path = "../examples/lab/command.rs"]
+mod command;
+#[path = "../examples/lab/compare.rs"]
+mod compare;
+#[path = "../examples/lab/fog.rs"]
+mod fog;
+#[path = "../examples/lab/growth.rs"]
+mod growth;
+#[path = "../examples/lab/page.rs"]
+mod page;
+#[path = "../examples/lab/picture.rs"]
+mod picture;
+#[path = "../examples/lab/plot.rs"]
+mod plot;
+#[path = "../examples/lab/quadrature.rs"]
+mod quadrature;
+#[path = "../examples/lab/report.rs"]
+mod report;
+#[path = "../examples/lab/scenes.rs"]
+mod scenes;
+#[path = "../examples/lab/sky/mod.rs"]
+mod sky;
+#[path = "../examples/lab/stability/mod.rs"]
+mod stability;
+#[path = "../examples/lab/store.rs"]
+mod store;
+#[path = "../examples/lab/timing.rs"]
+mod timing;
+
+use std::path::{Path, PathBuf};
+
+use picture::Picture;
+use stability::{Axis, Cell, Map, Panel, borders, numbers, particles, sky_maps};
+use store::{Journal, Table};
+
+/// A directory of its own, removed afterwards.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("welkin-lab-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn run(arguments: &[&str]) -> welkin::Result<()> {
+    command::run(&arguments.iter().map(|a| (*a).to_owned()).collect::<Vec<_>>())
+}
+
+fn fields(row: &[&str]) -> Vec<String> {
+    row.iter().map(|f| (*f).to_owned()).collect()
+}
+
+#[test]
+fn a_stopped_run_is_continued_and_a_line_that_was_cut_is_measured_again() {
+    let dir = Scratch::new("resume");
+    let columns = ["name", "cost"];
+    let mut first = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
+    first.push(fields(&["a", "1"])).unwrap();
+    first.push(fields(&["b", "2"])).unwrap();
+    drop(first);
+    let part = dir.0.join("sky.csv.part");
+    let text = std::fs::read_to_string(&part).unwrap();
+    std::fs::write(&part, text + "c,3").unwrap();
+
+    let mut second = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
+    assert!(second.has("a") && second.has("b") && !second.has("c"));
+    second.push(fields(&["c", "4"])).unwrap();
+    let (table, old) = second.finish().unwrap();
+    assert_eq!(table.rows.len(), 3);
+    assert!(old.is_none() && !part.exists());
+    assert_eq!(Table::read(&dir.0.join("sky.csv")).unwrap().unwrap(), table);
+
+    // Another machine's part is no start.
+    let mut other = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
+    other.push(fields(&["a", "9"])).unwrap();
+    drop(other);
+    assert!(!Journal::open(&dir.0, "sky", "sky; quick", &columns, false).unwrap().has("a"));
+    let (_, old) = Journal::open(&dir.0, "sky", "sky; quick", &columns, true).unwrap().finish().unwrap();
+    assert_eq!(old.unwrap().rows.len(), 3);
+}
+
+#[test]
+fn what_is_unknown_is_said_and_nothing_is_written() {
+    let dir = Scratch::new("unknown");
+    let out = dir.0.to_str().unwrap();
+    for (arguments, says) in [
+        (&["chart", "sea"][..], "unknown effect `sea`"),
+        (&["compare", "directional", "best"], "best"),
+        (&["compare", "directional", "exact"], "same effect"),
+        (&["compare", "directional"], "two candidates"),
+        (&["compare", "directional", "isotropic", "--scene", "moon"], "--scene"),
+        (&["stability", "everything"], "quadrature"),
+        (&["draw"], "unknown command"),
+        (&["chart", "sky", "--fast"], "--fast"),
+        (&["chart", "--out"], "--out"),
+        (&[], "usage"),
+    ] {
+        let mut all = arguments.to_vec();
+        if !arguments.contains(&"--out") {
+            all.extend(["--out", out]);
+        }
+        let e = run(&all).unwrap_err();
+        assert!(e.message.contains(says), "{arguments:?}: {}", e.message);
+        assert!(!dir.0.exists(), "{arguments:?} wrote something");
+    }
+}
+
+#[test]
+fn errors_of_pictures_are_relative_to_the_truth_as_exposed() {
+    let picture = |f: f64| Picture {
+        width: 16,
+        height: 16,
+        texels: (0..256).map(|i| [100.0 * f * (1.0 + 0.001 * f64::from(i)); 3]).collect(),
+    };
+    let truth = picture(1.0);
+    let same = truth.figures(&truth).unwrap();
+    assert!(same.luminance.worst == 0.0 && same.perceptual < 1e-6, "{same:?}");
+    let brighter = picture(1.1).figures(&truth).unwrap();
+    // A hundredth of white, which is the mean over 0.18, is added below.
+    let want = 0.1 / (1.0 + 0.01 / 0.18);
+    assert!((brighter.luminance.median - want).abs() < 0.002, "{brighter:?}, {want}");
+    assert!(brighter.perceptual > 0.001);
+    // Brightness of the whole scene does not count.
+    let scaled = |p: Picture| Picture { texels: p.texels.iter().map(|t| t.map(|v| v * 1e-6)).collect(), ..p };
+    let dim = scaled(picture(1.1)).figures(&scaled(truth)).unwrap();
+    assert!((dim.luminance.p95 - brighter.luminance.p95).abs() < 1e-9);
+}
+
+#[test]
+fn a_point_has_moved_when_its_spread_has_left_the_old_one() {
+    let table = |rows: &[&[&str]]| Table {
+        note: "x".into(),
+        columns: fields(&["name", "family", "default", "cost", "cost_low", "cost_high", "ms", "p95"]),
+        rows: rows.iter().map(|r| fields(r)).collect(),
+    };
+    let old = table(&[
+        &["a", "f", "true", "1.0", "0.9", "1.1", "1", "0.01"],
+        &["b", "f", "false", "1.0", "0.9", "1.1", "1", "0.01"],
+        &["c", "f", "false", "1.0", "0.9", "1.1", "1", "0.01"],
+    ]);
+    let new = table(&[
+        &["a", "f", "true", "1.05", "1.0", "1.2", "1", "0.01"],
+        &["b", "f", "false", "2.0", "1.9", "2.1", "1", "0.01"],
+        &["c", "f", "false", "1.0", "0.9", "1.1", "1", "0.02"],
+        &["d", "f", "false", "1.0", "0.9", "1.1", "1", "0.02"],
+    ]);
+    let lines = chart::moved(&new, &old);
+    assert_eq!(lines.len(), 3, "{lines:?}");
+    assert!(lines[0].starts_with("b: cost") && lines[1].starts_with("c: error") && lines[2] == "d: new");
+    let points = chart::points(&new, "cost");
+    let front: Vec<&str> = points.iter().filter(|p| p.front).map(|p| p.name.as_str()).collect();
+    assert!(points[0].default && front == ["a", "c", "d"], "{front:?}");
+    let ratio = timing::Ratio::of(&[(2.0, 1.0), (6.0, 2.0), (1.0, 1.0)]);
+    assert_eq!((ratio.median, ratio.low, ratio.high, ratio.ms), (2.0, 1.0, 3.0, 2.0));
+}
+
+#[test]
+fn the_rule_with_an_offset_loses_its_last_step() {
+    let medium = welkin::sky::reference::medium::Medium::of(&welkin::sky::Planet::earth());
+    let exact = |mu| {
+        let ray = welkin::sky::reference::ray::Ray::new(&medium, 2.0, mu);
+        medium.transmittance(&ray.columns_to_space(&medium))[1]
+    };
+    let error = |rule: fn(&_, f64, f64, u32) -> f64, mu, n| (rule(&medium, 2.0, mu, n) / exact(mu) - 1.0f64).abs();
+    for mu in [1.0, 0.3, 0.1] {
+        let (usual, middle) =
+            (error(sky_maps::offset_transmittance, mu, 40), error(sky_maps::midpoint_transmittance, mu, 40));
+        assert!(usual > 5.0 * middle && usual > 0.005, "{mu}: {usual} {middle}");
+        // Of first order: half the step, half the error; the midpoint's falls by four.
+        let finer = error(sky_maps::offset_transmittance, mu, 80);
+        assert!((1.6..2.4).contains(&(usual / finer)), "{mu}: {usual} {finer}");
+    }
+}
+
+#[test]
+fn differences_of_squares_lose_the_horizon() {
+    let (radius, h) = (6_371_000.0f32, 1.7f32);
+    let exact = (1.7f64 * (2.0 * 6_371_000.0 + 1.7)).sqrt();
+    let usual = f64::from(numbers::horizon_by_squares(radius, h)) / exact - 1.0;
+    let ours = f64::from(numbers::horizon_by_product(radius, h)) / exact - 1.0;
+    assert!(usual.abs() > 0.01, "{usual}");
+    assert!(ours.abs() < 1e-6, "{ours}");
+    // On the wrong side: a ray that just clears the ground from 3 m.
+    let dip = (2.0f64 * 3.0 / 6_371_000.0).sqrt();
+    let wrong = (1..40).filter(|i| {
+        let mu = -(dip * (0.9 + 0.005 * f64::from(*i))).sin();
+        sky_maps::naive_ground(radius, 3.0, mu as f32) != (mu < -dip.sin())
+    });
+    assert!(wrong.count() > 2);
+}
+
+#[test]
+fn the_forward_peak_breaks_where_equal_numbers_are_subtracted() {
+    let (g, angle) = (0.9999f32, 1e-4f64);
+    let versine = 2.0 * (0.5 * angle).sin().powi(2);
+    let exact = (1.0 - 0.9999f64.powi(2)) / ((1e-4f64).powi(2) + 2.0 * 0.9999 * versine).powf(1.5);
+    let usual = f64::from(numbers::peak_usual(g, angle.cos() as f32));
+    let ours = f64::from(numbers::peak_from_versine(g, versine as f32));
+    assert!(!usual.is_finite() || (usual / exact - 1.0).abs() > 0.5, "{usual} {exact}");
+    assert!((ours / exact - 1.0).abs() < 2e-3, "{ours} {exact}");
+}
+
+#[test]
+fn standard_depth_and_far_origins_lose_what_welkin_keeps() {
+    let map = numbers::depth().unwrap();
+    let at = |map: &Map, panel: usize, x: f64, y: f64| {
+        let near = |values: &[f64], v: f64| {
+            (0..values.len())
+                .min_by(|a, b| (values[*a] / v).ln().abs().total_cmp(&(values[*b] / v).ln().abs()))
+                .unwrap()
+        };
+        let i = near(&map.y.values, y) * map.x.values.len() + near(&map.x.values, x);
+        if let Cell::Error(e) = map.panels[panel].cells[i] { e } else { f64::INFINITY }
+    };
+    let (standard, reversed) = (at(&map, 0, 1e4, 0.1), at(&map, 1, 1e4, 0.1));
+    assert!(standard > 3e-3, "{standard}");
+    assert!(reversed < 2e-7, "{reversed}");
+    let map = numbers::origin().unwrap();
+    let (usual, ours) = (at(&map, 0, 1e7, 10.0), at(&map, 1, 1e7, 10.0));
+    assert!(usual > 0.02 && ours < 1e-6, "{usual} {ours}");
+}
+
+#[test]
+fn explicit_drag_swings_then_diverges_and_the_exponential_does_not() {
+    // Drizzle at 0.1 s, snow at 0.25 s, rain of 1 mm at 1 s; and half of v/g, where it still settles.
+    for (terminal, dt) in [(0.27, 0.1), (1.0, 0.25), (4.03, 1.0)] {
+        assert_ne!(particles::euler_cell(terminal, dt), Cell::Error(0.0));
+        assert!(matches!(particles::euler_cell(terminal, dt), Cell::Diverged | Cell::Jumps), "{terminal}");
+        assert!(matches!(particles::euler_cell(terminal, 0.5 * terminal / 9.81), Cell::Error(e) if e < 1e-6));
+        assert_eq!(particles::euler_cell(terminal, 2.1 * terminal / 9.81), Cell::Diverged);
+    }
+    for dt in [1e-4, 0.1, 10.0] {
+        let want = 1.0 - (-60.0 * dt * 9.81 / 0.27f64).exp();
+        assert!((particles::drag_exact(0.27, dt, 60) / want - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn over_relaxation_ends_at_two() {
+    assert!(particles::sor_residual(16, 1.7, 400) < 1e-9);
+    assert!(particles::sor_residual(16, 1.95, 400) < 1e-3);
+    assert!(particles::sor_residual(16, 2.0, 400) > 1e-2);
+    assert!(particles::sor_residual(16, 2.05, 400) > 1.0);
+}
+
+#[test]
+fn marches_of_public_code_are_not_finite_without_air_and_in_thin_shells() {
+    for (factor, scale) in [(0.0, 8000.0), (1.0, 0.01), (1.0, 0.0)] {
+        assert!(!sky_maps::usual_march(factor, scale).is_finite(), "{factor} {scale}");
+    }
+    assert!(sky_maps::usual_march(1.0, 8000.0).is_finite());
+}
+
+#[test]
+fn a_timeline_does_not_depend_on_the_step() {
+    let map = particles::time_steps().unwrap();
+    let worst = |panel: &Panel| {
+        let error = |c: &Cell| if let Cell::Error(e) = c { *e } else { f64::INFINITY };
+        panel.cells.iter().map(error).fold(0.0, f64::max)
+    };
+    assert!(worst(&map.panels[0]).is_infinite());
+    assert!(worst(&map.panels[1]) < 1e-12, "{}", worst(&map.panels[1]));
+    assert!(borders("time-steps", &map).is_empty());
+}
+
+#[test]
+fn a_border_is_named_where_a_method_is_accepted_and_wrong() {
+    let (x, y) = (Axis::list("a", &[1.0, 2.0]), Axis::list("b", &[3.0]));
+    let panel = |f: fn(f64, f64) -> Cell| Panel::of("ours", true, &x, &y, f);
+    let panels = vec![
+        panel(|a, _| if a > 1.5 { Cell::Error(0.5) } else { Cell::Error(0.0) }),
+        panel(|a, _| if a > 1.5 { Cell::Refused } else { Cell::Error(0.0) }),
+        panel(|_, _| Cell::NotFinite),
+    ];
+    let map = Map { title: "t", panels, tolerance: 0.1, x: Axis::list("a", &[1.0, 2.0]), y: Axis::list("b", &[3.0]) };
+    let lines = borders("m", &map);
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(lines[0].contains("1 of 2") && lines[0].contains("a in 2 to 2"));
+}
+
+#[test]
+fn labels_and_numbers_can_be_read() {
+    assert_eq!([0.0123, 1.5, 20.0, 1234.0, 2e-5].map(plot::short), ["0.012", "1.5", "20", "1234", "2e-5"]);
+    let axis = plot::LogAxis::over([1.0, 100.0].into_iter(), 0.0, 100.0);
+    assert!((axis.at(10.0) - 50.0).abs() < 1e-9);
+}
+
+/// A map that needs no GPU, the page and the report, end to end.
+#[test]
+fn a_map_is_written_and_reported() {
+    let dir = Scratch::new("map");
+    let out = dir.0.to_str().unwrap();
+    run(&["stability", "drag", "--quick", "--out", out]).unwrap();
+    let has = |file: &str| Path::new(out).join(file).exists();
+    assert!(has("stability-drag.svg") && has("stability-drag.png") && has("stability-drag.csv"));
+    page::write(&dir.0).unwrap();
+    run(&["report", "--out", out]).unwrap();
+    let html = std::fs::read_to_string(dir.0.join("report.html")).unwrap();
+    assert!(html.contains("<svg") && html.contains("explicit Euler") && !html.contains("src="));
+    // A second run of another map keeps the first.
+    run(&["stability", "over-relaxation", "--quick", "--out", out]).unwrap();
+    let table = Table::read(&dir.0.join("stability.csv")).unwrap().unwrap();
+    assert!(table.row("drag/0").is_some() && table.row("over-relaxation/1").is_some());
+}
+
+/// Fog's chart end to end on the software driver, the cheapest chart.
+#[test]
+fn no_fog_of_the_chart_is_better_than_the_default() {
+    let dir = Scratch::new("fog");
+    run(&["chart", "fog", "--quick", "--out", dir.0.to_str().unwrap()]).unwrap();
+    let table = Table::read(&dir.0.join("fog.csv")).unwrap().unwrap();
+    let error = |name: &str| table.number(table.row(name).unwrap(), "p95").unwrap();
+    assert!(error("exact") < 1e-4 && error("exact") < error("froxels-64"));
+    assert!(error("froxels-64") < error("froxels-16") && error("froxels-16") < error("exponential"));
+    // Nothing is better; what costs less is another matter on a busy machine.
+    let points = chart::points(&table, "cost");
+    let default = points.iter().find(|p| p.default).unwrap();
+    assert!(points.iter().all(|p| p.error >= default.error));
+}
