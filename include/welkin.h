@@ -2020,8 +2020,14 @@ typedef struct wk_sky_settings {
     uint32_t air_slices;
     /** Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
     uint32_t march_cells;
-    /** Must be 0. */
-    uint32_t reserved0;
+    /**
+     * Wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean the planet's
+     * own three. More of them give colours where three err: at a low sun 9 wavelengths halve the error, 15 leave about
+     * 1 % (of the luminance) in place of 10 %. Every table is then built so many times over: with 15, five times the time
+     * for a change of air and of the tables that follow a moving sun; pixels cost the same. WK_SKY_DIRECTIONAL and
+     * WK_SKY_ISOTROPIC only.
+     */
+    uint32_t wavelengths;
 } wk_sky_settings;
 
 /** Every field of `wk_sky_settings` at its default. */
@@ -2038,7 +2044,7 @@ typedef struct wk_sky_settings {
     /* sky_below */ 40, \
     /* air_slices */ 16, \
     /* march_cells */ 64, \
-    /* reserved0 */ 0 \
+    /* wavelengths */ 3 \
 }
 
 /**

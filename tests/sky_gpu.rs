@@ -2,7 +2,8 @@
 
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::sky::probe::{Probe, Question, Ray};
-use welkin::sky::reference::{Options, Reference, View};
+use welkin::sky::reference::{Options, Reference, Resolution, View};
+use welkin::sky::spectral::{Conversion, SpectralSet, luminance};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 
 fn golden_planet() -> Planet {
@@ -123,6 +124,7 @@ fn default_model_follows_the_reference_in_haze() {
 /// Every number of [`SkySettings`] at its least.
 const LEAST: SkySettings = SkySettings {
     model: SkyModel::Directional,
+    wavelengths: 3,
     orders: 3,
     suns: 16,
     altitudes: 8,
@@ -225,8 +227,17 @@ fn sphere() -> Vec<Ray> {
 
 #[test]
 fn light_for_the_host_is_the_light_that_is_drawn() {
-    let planet = golden_planet();
-    let mut probe = probe(SkyModel::Directional, &planet);
+    drawn_light_is_the_hosts(&golden_planet(), &SkySettings::default());
+}
+
+#[test]
+fn light_of_a_spectral_set_is_the_light_that_is_drawn() {
+    drawn_light_is_the_hosts(&golden_planet(), &SkySettings { wavelengths: 6, ..SkySettings::default() });
+}
+
+fn drawn_light_is_the_hosts(planet: &Planet, settings: &SkySettings) {
+    let device = Device::headless(&DeviceOptions::default()).unwrap();
+    let mut probe = Probe::new(&device, settings, planet).unwrap();
     let light = probe.tables().read_light().unwrap();
     let rays = sphere();
     let share = 4.0 * std::f32::consts::PI / rays.len() as f32;
@@ -260,4 +271,60 @@ fn light_for_the_host_is_the_light_that_is_drawn() {
             assert!((turned[1][c] - sh[3][c]).abs() < 1e-6 && (turned[8][c] + sh[8][c]).abs() < 1e-6);
         }
     }
+}
+
+/// Largest channel's error over the luminance of skies that `settings` draw, rms, against `exact`.
+fn colour_error(planet: &Planet, wavelengths: u32, exact: &[[f64; 3]]) -> f64 {
+    let device = Device::headless(&DeviceOptions::default()).unwrap();
+    let settings = SkySettings { wavelengths, ..SkySettings::default() };
+    let mut probe = Probe::new(&device, &settings, planet).unwrap();
+    let conversion = Conversion::of(planet);
+    let rays: Vec<Ray> = colour_views().iter().map(|(v, a)| Ray::at(v.to_radians(), a.to_radians(), 0.0)).collect();
+    let mut squares = Vec::new();
+    for sun in COLOUR_SUNS {
+        for a in probe.under_sun(Question::Sky, 1.0, sun.to_radians(), &rays).unwrap() {
+            let transfers = std::array::from_fn(|c| f64::from(a.radiance[c]) / planet.solar_irradiance[c]);
+            let (seen, want) = (conversion.rec709(&transfers), exact[squares.len()]);
+            let off = |c: usize| ((seen[c] - want[c]) / luminance(&want)).abs();
+            squares.push(off(0).max(off(1)).max(off(2)).powi(2));
+        }
+    }
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+const COLOUR_SUNS: [f64; 4] = [30.0, 60.0, 85.0, 90.0];
+
+fn colour_views() -> Vec<(f64, f64)> {
+    [3.0, 30.0, 60.0, 80.0, 88.0].iter().flat_map(|view| [10.0, 90.0, 170.0].map(|azimuth| (*view, azimuth))).collect()
+}
+
+#[test]
+fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
+    let planet = Planet::earth();
+    // The whole comparison is for acceptance: every three wavelengths are a planet of their own.
+    let long = std::env::var_os("WELKIN_ACCEPT").is_some();
+    let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.045) };
+    let set = SpectralSet::new(many).unwrap();
+    let coarse = Resolution {
+        altitudes: 16,
+        sun_angles: 40,
+        zeniths: 14,
+        azimuths: 8,
+        panel_points: 4,
+        haze_directions: (19, 10),
+    };
+    let resolution = if long { Options::default().resolution } else { coarse };
+    let options = Options { resolution, ..Options::default() };
+    let truths: Vec<_> = set.planets(&planet).iter().map(|p| Reference::solve(p, &options).unwrap()).collect();
+    let mut exact = Vec::new();
+    for sun in COLOUR_SUNS {
+        for (view, azimuth) in colour_views() {
+            let view = View::degrees(1.0, sun, view, azimuth);
+            let triples: Vec<_> = truths.iter().map(|t| t.radiance(&view).unwrap().radiance).collect();
+            exact.push(set.rec709_of_triples(&triples).unwrap());
+        }
+    }
+    let [three, more] = [3, some].map(|count| colour_error(&planet, count, &exact));
+    println!("worst channel, rms: 3 wavelengths {three:.4}, {some} {more:.4}");
+    assert!(three > 0.05 && more < allowed, "{three} {more}");
 }

@@ -25,6 +25,13 @@ struct SkyAir {
     ground_albedo: vec3f,
     // Edge of the planet's disc seen from the top of the air: the cosine of its zenith angle, negated.
     top_dip: f32,
+    // One triple of a set of wavelengths: what light at each of them adds to the three kept, and which of the triples it is.
+    part_a: vec3f,
+    layer: f32,
+    part_b: vec3f,
+    layers: f32,
+    part_c: vec3f,
+    unused: f32,
 }
 
 // Densities of gas, haze (1 at and below altitude 0) and ozone (1 at the centre of its tent); 0 above the top.
@@ -73,6 +80,20 @@ fn sky_encode(x: vec3f) -> vec4f {
 
 fn sky_decode(x: vec4f) -> vec3f {
     return x.rgb * x.rgb;
+}
+
+// The same for what may be negative: three transfers that stand for a set of wavelengths.
+fn sky_encode_signed(x: vec3f) -> vec4f {
+    return vec4f(sign(x) * min(sqrt(abs(x)), vec3f(65504.0)), 1.0);
+}
+
+fn sky_decode_signed(x: vec4f) -> vec3f {
+    return x.rgb * abs(x.rgb);
+}
+
+// What a triple's light adds to the three kept.
+fn air_part(air: SkyAir, light: vec3f) -> vec3f {
+    return air.part_a * light.x + air.part_b * light.y + air.part_c * light.z;
 }
 
 // arccos within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), without the branches of the exact one.

@@ -75,7 +75,7 @@ fn lamp_azimuth(lamp: SkyLamp, dir: vec3f) -> f32 {
 fn lamp_light(lamp: SkyLamp, dir: vec3f, smooth_light: vec4f, haze_light: vec4f) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let phase = mie_phase(nu, sky_view.air.asymmetry_g);
-    return lamp.irradiance * (sky_decode(smooth_light) + phase * sky_decode(haze_light));
+    return lamp.irradiance * (sky_decode_signed(smooth_light) + phase * sky_decode_signed(haze_light));
 }
 
 // The same by a march: the model that has no tables of its own but for light scattered more than once.

@@ -19,8 +19,11 @@ fn more_scattered(
 ) -> vec3f {
     let at = planet_texel(air, dims, altitude, mu_s);
     let tile = vec2f(f32(dims.suns), f32(dims.altitudes));
+    // The triples of a set lie one below the other.
+    let layer = vec2f(0.0, air.layer / air.layers);
+    let share = vec2f(1.0, 1.0 / air.layers);
     if (!DIRECTIONAL) {
-        return sky_decode(textureSampleLevel(sources, smp, at / tile, 0.0));
+        return sky_decode(textureSampleLevel(sources, smp, at / tile * share + layer, 0.0));
     }
     let sines = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1e-9));
     let cos_azimuth = clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
@@ -28,8 +31,8 @@ fn more_scattered(
     let d = source_coordinate(mu, cos_azimuth) * steps;
     let i = min(floor(d), steps - 1.0);
     let f = d - i;
-    let scale = 1.0 / (tile * (steps + 1.0));
-    let uv = (at + i * tile) * scale;
+    let scale = share / (tile * (steps + 1.0));
+    let uv = (at + i * tile) * scale + layer;
     let step = tile * scale;
     let a = textureSampleLevel(sources, smp, uv, 0.0);
     let b = textureSampleLevel(sources, smp, uv + vec2f(step.x, 0.0), 0.0);

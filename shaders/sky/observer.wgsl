@@ -20,7 +20,11 @@ struct SkyObserver {
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var once_gas: texture_2d<f32>;
 @group(0) @binding(5) var once_haze: texture_2d<f32>;
+// The triples of a set of wavelengths; where the planet's own three are all, they are not read.
+@group(0) @binding(6) var<uniform> airs: array<SkyAir, 5>;
 @group(1) @binding(0) var<uniform> observer: SkyObserver;
+
+override LAYERS: u32 = 1u;
 
 struct SkyTexel {
     @location(0) smooth_light: vec4f,
@@ -53,20 +57,42 @@ fn mu_s_at_start(ray: SkyRay, nu: Cosine) -> Cosine {
 
 // Light over the opacity of the air it comes from: the mean source, which hardly varies with distance.
 fn as_source(light: vec3f, depth: vec3f) -> vec4f {
-    return sky_encode(light / max(air_opacity(depth), vec3f(1e-30)));
+    return sky_encode_signed(light / max(air_opacity(depth), vec3f(1e-30)));
+}
+
+struct KeptLight {
+    // Scattered by gas or more than once; once by haze, the phase function left out.
+    even: vec3f,
+    haze: vec3f,
+}
+
+// Light from the ray's start to `end`, of all triples as the three that stand for them.
+fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
+    let mu_s = mu_s_at_start(ray, nu);
+    if (LAYERS == 1u) {
+        let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, panels, mu_s, nu);
+        return KeptLight(light.gas * rayleigh_phase(nu) + light.more, light.haze);
+    }
+    var sum = KeptLight(vec3f(0.0), vec3f(0.0));
+    for (var k = 0u; k < LAYERS; k++) {
+        let part = airs[k];
+        let light = sky_march(part, dims, sky_sources, sky_sampler, ray, 0.0, end, panels, mu_s, nu);
+        sum.even += air_part(part, light.gas * rayleigh_phase(nu) + light.more);
+        sum.haze += air_part(part, light.haze);
+    }
+    return sum;
 }
 
 @fragment
 fn sky(@builtin(position) position: vec4f) -> SkyTexel {
     let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_panels, mu_s_at_start(ray, view.nu), view.nu);
-    let even = light.gas * rayleigh_phase(view.nu) + light.more;
+    let light = kept_light(ray, ray.length, dims.sky_panels, view.nu);
     if (view.below) {
         let depth = air_optical_depth(air, columns_along(air, ray, ray.length));
-        return SkyTexel(as_source(even, depth), as_source(light.haze, depth));
+        return SkyTexel(as_source(light.even, depth), as_source(light.haze, depth));
     }
-    return SkyTexel(sky_encode(even), sky_encode(light.haze));
+    return SkyTexel(sky_encode_signed(light.even), sky_encode_signed(light.haze));
 }
 
 @fragment
@@ -78,10 +104,9 @@ fn volume(@builtin(position) position: vec4f) -> SkyTexel {
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
     let end = slice_distance(w, ray.length);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, dims.air_panels, mu_s_at_start(ray, view.nu), view.nu);
-    let even = light.gas * rayleigh_phase(view.nu) + light.more;
+    let light = kept_light(ray, end, dims.air_panels, view.nu);
     let depth = air_optical_depth(air, columns_along(air, ray, end));
-    return SkyTexel(as_source(even, depth), as_source(light.haze, depth));
+    return SkyTexel(as_source(light.even, depth), as_source(light.haze, depth));
 }
 
 struct TableLight {

@@ -52,7 +52,7 @@ const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 /// Adapted (von Kries) to unscattered sunlight as white, as daylight film and eyes are: on a D65 display it would look
 /// yellow.
 pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
-    let conversion = Conversion::fitted(&planet.wavelengths_nm).unwrap_or_else(|_| Conversion::per_channel());
+    let conversion = Conversion::of(planet);
     let white = sun_rec709();
     let lux = luminance(&white);
     [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))

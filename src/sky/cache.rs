@@ -6,12 +6,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use bytemuck::bytes_of;
+use bytemuck::{bytes_of, cast_slice};
 
 use super::Planet;
 use super::recipe::Name;
 use super::settings::SkySettings;
-use super::uniforms::DimsUniform;
+use super::spectral::parts;
+use super::uniforms::{AirUniform, DimsUniform};
 use crate::error::{Error, Result, Status};
 use crate::gpu::shader;
 
@@ -36,6 +37,7 @@ pub(crate) fn key(planet: &Planet, settings: &SkySettings) -> Result<u64> {
     let h = fnv(SEED, &planet.hash().to_le_bytes());
     let h = fnv(h, settings.model.name().as_bytes());
     let h = fnv(h, &settings.orders.to_le_bytes());
+    let h = fnv(h, cast_slice(&AirUniform::of_parts(&parts(planet, settings.wavelengths)?)));
     let h = fnv(h, bytes_of(&DimsUniform::of(settings)));
     Ok(fnv(h, shader::assemble("sky/build.wgsl")?.as_bytes()))
 }
@@ -115,7 +117,7 @@ fn parse(file: &[u8], key: u64, settings: &SkySettings) -> Option<Vec<Vec<u8>>> 
     let mut tables = Vec::new();
     for name in Name::RESULTS {
         let (length, tail) = rest.split_first_chunk::<8>()?;
-        let (width, height) = name.size(settings);
+        let (width, height) = name.result_size(settings);
         let expected = u64::from(width) * u64::from(height) * 8;
         if u64::from_le_bytes(*length) != expected || (tail.len() as u64) < expected {
             return None;
@@ -139,7 +141,7 @@ mod tests {
         let tables: Vec<Vec<u8>> = Name::RESULTS
             .iter()
             .enumerate()
-            .map(|(i, n)| vec![i as u8 + 1; (n.size(&settings).0 * n.size(&settings).1 * 8) as usize])
+            .map(|(i, n)| vec![i as u8 + 1; (n.result_size(&settings).0 * n.result_size(&settings).1 * 8) as usize])
             .collect();
         assert!(read(&directory, key, &settings).unwrap().is_none());
         let file = write(&directory, key, &tables).unwrap();
@@ -181,5 +183,6 @@ mod tests {
         let own = key(&earth, &settings).unwrap();
         assert_ne!(own, key(&earth.with_air_scaled(1.001), &settings).unwrap());
         assert_ne!(own, key(&earth, &SkySettings { orders: 6, ..settings }).unwrap());
+        assert_ne!(own, key(&earth, &SkySettings { wavelengths: 9, ..settings }).unwrap());
     }
 }

@@ -205,7 +205,7 @@ pub fn work(s: &SkySettings) -> Work {
     let texels = |name: Name| f64::from(name.size(s).0) * f64::from(name.size(s).1);
     let mut rebuild = Units::default();
     for pass in passes(s) {
-        let count = texels(pass.draws[0]);
+        let count = texels(pass.draws[0]) * f64::from(s.layers());
         let per_texel = pass.texel_cost(s);
         let marches = matches!(pass.kind, Kind::Gather | Kind::IsotropicGather | Kind::Once);
         let lookups = match pass.kind {
@@ -219,15 +219,16 @@ pub fn work(s: &SkySettings) -> Work {
         rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
     }
     // Scratch of a build, and two airs: the one that is shown and the one that follows it.
+    let kept = |name: &Name| f64::from(name.result_size(s).0) * f64::from(name.result_size(s).1);
     let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
-        + 2.0 * Name::RESULTS.iter().map(|n| texels(*n)).sum::<f64>()
+        + 2.0 * Name::RESULTS.iter().map(kept).sum::<f64>()
         + texels(Name::Lights);
     let sky = f64::from(s.sky_azimuths * (s.sky_above + s.sky_below));
     let air = f64::from(s.air_azimuths * s.air_slices * (s.air_above + s.air_below));
     let nodes = match s.model {
         SkyModel::BruteForce => 0.0,
         SkyModel::Table3d => sky + air,
-        _ => 4.0 * (sky * f64::from(s.sky_panels) + air * f64::from(s.air_panels)),
+        _ => 4.0 * f64::from(s.layers()) * (sky * f64::from(s.sky_panels) + air * f64::from(s.air_panels)),
     };
     let drawn = if s.model == SkyModel::BruteForce { 0.0 } else { sky + air };
     let view = Units { samples: nodes, texels: nodes * source_texels(s).max(1.0), bytes: 2.0 * TEXEL_BYTES * drawn };

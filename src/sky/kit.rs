@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use super::Planet;
 use super::cache;
-use super::passes::{Builder, FadePasses, Table};
+use super::passes::{Builder, FadePasses, PartPass, Table};
 use super::recipe::{Name, Pass, passes};
 use super::set::TableSet;
 use super::settings::SkySettings;
@@ -78,10 +78,11 @@ struct Build {
     ticket: Weak<Ticket>,
     set: Arc<TableSet>,
     scratch: Scratch,
-    shared: wgpu::BindGroup,
+    /// For each triple of wavelengths: what its passes share, and how its light is added to the others'.
+    triples: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
     /// Tables that each pass reads.
     reads: Vec<wgpu::BindGroup>,
-    /// Strips done.
+    /// Strips done, of all triples.
     next: usize,
 }
 
@@ -91,6 +92,11 @@ struct Work {
     finished: Vec<Weak<TableSet>>,
     spare: Option<Scratch>,
     count: u64,
+}
+
+/// The table that passes draw and read under a name: that of one triple where there are several.
+fn drawn<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a Table> {
+    scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
 /// What one step of a build came to, as shares of a whole one.
@@ -111,15 +117,20 @@ pub(crate) struct Kit {
     pub nothing: Table,
     observers: OnceLock<ObserverPasses>,
     passes: Vec<Pass>,
+    /// Of one triple.
     strips: Vec<Strip>,
+    /// Of all triples.
     total_cost: f64,
+    /// Where there are several triples.
+    parts: Option<PartPass>,
     work: Mutex<Work>,
 }
 
 impl Kit {
     fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let passes = passes(settings);
-        let (strips, total_cost) = strips(settings, &passes);
+        let (strips, cost) = strips(settings, &passes);
+        let parts = if settings.layers() > 1 { Some(PartPass::new(device)?) } else { None };
         let kit = Self {
             device: device.clone(),
             settings: *settings,
@@ -130,7 +141,8 @@ impl Kit {
             observers: OnceLock::new(),
             passes,
             strips,
-            total_cost,
+            total_cost: cost * f64::from(settings.layers()),
+            parts,
             work: Mutex::default(),
         };
         device.check()?;
@@ -156,23 +168,26 @@ impl Kit {
     }
 
     /// Finished tables of a checked planet, or a claim on its build, which may be another's.
-    pub fn claim(&self, planet: &Planet) -> Claim {
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn claim(&self, planet: &Planet) -> Result<Claim> {
         let mut work = self.lock();
         self.sweep(&mut work);
         let finished = work.finished.iter().filter_map(Weak::upgrade).find(|s| s.planet == *planet);
         if let Some(set) = finished {
-            return Claim::Finished(set);
+            return Ok(Claim::Finished(set));
         }
         let known = work.builds.iter().find(|b| b.set.planet == *planet).and_then(|b| b.ticket.upgrade());
         if let Some(ticket) = known {
-            return Claim::Building(ticket);
+            return Ok(Claim::Building(ticket));
         }
-        let set = Arc::new(TableSet::new(self, planet));
+        let set = Arc::new(TableSet::new(self, planet)?);
         let ticket = Arc::new(Ticket { set: set.clone() });
         let scratch = work.spare.take().unwrap_or_else(|| self.scratch());
         let build = self.build_of(Arc::downgrade(&ticket), set, scratch);
         work.builds.push(build);
-        Claim::Building(ticket)
+        Ok(Claim::Building(ticket))
     }
 
     /// Takes back the scratch of builds that nobody wants any more.
@@ -184,17 +199,32 @@ impl Kit {
 
     fn scratch(&self) -> Scratch {
         let make = |n: &Name| (*n, Table::new(&self.device, &format!("sky {n:?}"), n.size(&self.settings)));
-        Scratch(Name::SCRATCH.iter().map(make).collect())
+        let of_a_triple = if self.parts.is_some() { &Name::OF_A_TRIPLE[..] } else { &[] };
+        Scratch(Name::SCRATCH.iter().chain(of_a_triple).map(make).collect())
     }
 
     fn build_of(&self, ticket: Weak<Ticket>, set: Arc<TableSet>, scratch: Scratch) -> Build {
-        let view = |name: Name| {
-            let known = set.tables().chain(&scratch.0).find(|(n, _)| *n == name);
-            known.map_or(&self.nothing.view, |(_, t)| &t.view)
-        };
+        let view = |name: Name| drawn(&set, &scratch, name).map_or(&self.nothing.view, |t| &t.view);
         let reads = self.passes.iter().map(|p| self.builder.tables_group(&self.device, p.reads.map(view))).collect();
-        let shared = self.builder.shared_group(&self.device, &set.air);
-        Build { ticket, set, scratch, shared, reads, next: 0 }
+        let triple = |air: &wgpu::Buffer| {
+            let added = self.parts.as_ref().map(|p| p.group(&self.device, view(Name::Lights), air));
+            (self.builder.shared_group(&self.device, air), added)
+        };
+        let triples = set.airs.iter().map(triple).collect();
+        Build { ticket, set, scratch, triples, reads, next: 0 }
+    }
+
+    /// Strips of all triples.
+    fn strip_count(&self) -> usize {
+        self.strips.len() * self.settings.layers() as usize
+    }
+
+    /// Cost of the first `count` of them, as a share of all.
+    fn share_of(&self, count: usize) -> f64 {
+        let (whole, rest) = (count / self.strips.len(), count % self.strips.len());
+        let triple = self.total_cost / f64::from(self.settings.layers());
+        let cost = whole as f64 * triple + self.strips[..rest].iter().map(|s| s.cost).sum::<f64>();
+        cost / self.total_cost
     }
 
     /// Submits strips up to `share` of a whole build; the tables when the last one is submitted.
@@ -207,7 +237,7 @@ impl Kit {
         };
         let first = work.builds[i].next;
         let mut rest = share * self.total_cost * (1.0 + 1e-6);
-        while rest > 0.0 && work.builds[i].next < self.strips.len() {
+        while rest > 0.0 && work.builds[i].next < self.strip_count() {
             let part = rest.min(SUBMISSION_SHARE * self.total_cost);
             let at_least_one = work.builds[i].next == first;
             let cost = self.submit_some(&mut work.builds[i], part, at_least_one)?;
@@ -217,9 +247,9 @@ impl Kit {
             rest -= cost;
         }
         let next = work.builds[i].next;
-        let sum = |s: &[Strip]| s.iter().map(|s| s.cost).sum::<f64>() / self.total_cost;
-        let step = Step { work: sum(&self.strips[first..next]), done: sum(&self.strips[..next]) };
-        if next < self.strips.len() {
+        let done = self.share_of(next);
+        let step = Step { work: done - self.share_of(first), done };
+        if next < self.strip_count() {
             return Ok((step, None));
         }
         let build = work.builds.swap_remove(i);
@@ -233,7 +263,8 @@ impl Kit {
     /// Submits strips worth at most `budget`, or the next one if `at_least_one` is asked; answers their cost.
     fn submit_some(&self, build: &mut Build, budget: f64, at_least_one: bool) -> Result<f64> {
         let (mut cost, mut end) = (0.0, build.next);
-        while let Some(strip) = self.strips.get(end) {
+        while end < self.strip_count() {
+            let strip = &self.strips[end % self.strips.len()];
             if cost + strip.cost > budget && !(at_least_one && end == build.next) {
                 break;
             }
@@ -250,15 +281,28 @@ impl Kit {
         Ok(cost)
     }
 
-    /// Records strips up to `end`, those of one pass in one render pass.
+    /// Records strips up to `end`, those of one pass in one render pass; a triple that is done joins the others.
     fn record(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, end: usize) {
-        for strips in self.strips[build.next..end].chunk_by(|a, b| a.pass == b.pass) {
+        let count = self.strips.len();
+        let mut next = build.next;
+        while next < end {
+            let triple = next / count;
+            let last = end.min((triple + 1) * count);
+            self.record_strips(encoder, build, triple, &self.strips[next % count..=(last - 1) % count]);
+            if last.is_multiple_of(count) {
+                self.record_part(encoder, build, triple);
+            }
+            next = last;
+        }
+    }
+
+    fn record_strips(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize, strips: &[Strip]) {
+        for strips in strips.chunk_by(|a, b| a.pass == b.pass) {
             let index = strips[0].pass;
             let pass = &self.passes[index];
             let Some(pipeline) = self.builder.pipeline(pass.kind) else { continue };
             let view = |name: &Name| {
-                let known = build.set.tables().chain(&build.scratch.0).find(|(n, _)| n == name);
-                known.map(|(_, t)| wgpu::RenderPassColorAttachment {
+                drawn(&build.set, &build.scratch, *name).map(|t| wgpu::RenderPassColorAttachment {
                     view: &t.view,
                     depth_slice: None,
                     resolve_target: None,
@@ -272,12 +316,22 @@ impl Kit {
                 ..Default::default()
             });
             recorded.set_pipeline(pipeline);
-            recorded.set_bind_group(0, &build.shared, &[self.builder.job_offset(index)]);
+            recorded.set_bind_group(0, &build.triples[triple].0, &[self.builder.job_offset(index)]);
             recorded.set_bind_group(1, &build.reads[index], &[]);
             let rows: u32 = strips.iter().map(|s| s.rows).sum();
             recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&self.settings).0, rows);
             recorded.draw(0..3, 0..1);
         }
+    }
+
+    /// Puts a triple's sources below those before it, and adds its light to theirs. With one triple they are in place.
+    fn record_part(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize) {
+        let (Some(parts), Some(light)) = (&self.parts, &build.triples[triple].1) else { return };
+        let Some(from) = drawn(&build.set, &build.scratch, Name::Sources) else { return };
+        let mut to = build.set.result(Name::Sources).texture.as_image_copy();
+        to.origin.y = triple as u32 * from.texture.height();
+        encoder.copy_texture_to_texture(from.texture.as_image_copy(), to, from.texture.size());
+        parts.add(encoder, build.set.result(Name::Lights), light, triple == 0);
     }
 
     /// Tables of a checked planet: those that someone shows, those of the cache's file, or new ones, built in sixteen parts
@@ -295,7 +349,7 @@ impl Kit {
         };
         let claim = {
             let _entered = self.device.enter()?;
-            self.claim_or_load(planet, cache)
+            self.claim_or_load(planet, cache)?
         };
         let ticket = match claim {
             Claim::Finished(set) => return tell(1.0).map(|()| set),
@@ -322,31 +376,35 @@ impl Kit {
     }
 
     /// As [`Kit::claim`], with a look into the cache where nobody has finished the planet.
-    pub fn claim_or_load(&self, planet: &Planet, cache: Option<&Path>) -> Claim {
-        match (self.claim(planet), cache) {
+    ///
+    /// # Errors
+    /// As [`Kit::claim`].
+    pub fn claim_or_load(&self, planet: &Planet, cache: Option<&Path>) -> Result<Claim> {
+        Ok(match (self.claim(planet)?, cache) {
             (Claim::Building(ticket), Some(directory)) => {
-                self.load(planet, directory).map_or(Claim::Building(ticket), Claim::Finished)
+                self.load(planet, directory)?.map_or(Claim::Building(ticket), Claim::Finished)
             }
             (claim, _) => claim,
-        }
+        })
     }
 
     /// Tables from the cache's file; what is wrong with it is logged.
-    fn load(&self, planet: &Planet, directory: &Path) -> Option<Arc<TableSet>> {
+    fn load(&self, planet: &Planet, directory: &Path) -> Result<Option<Arc<TableSet>>> {
         if !self.is_real() {
-            return None;
+            return Ok(None);
         }
         let read = cache::key(planet, &self.settings).and_then(|key| cache::read(directory, key, &self.settings));
         match read {
-            Ok(tables) => {
-                let set = Arc::new(TableSet::new(self, planet));
-                set.fill(&self.device, &tables?);
+            Ok(Some(tables)) => {
+                let set = Arc::new(TableSet::new(self, planet)?);
+                set.fill(&self.device, &tables);
                 self.lock().finished.push(Arc::downgrade(&set));
-                Some(set)
+                Ok(Some(set))
             }
+            Ok(None) => Ok(None),
             Err(e) => {
                 log::warn!("the sky's tables are built anew: {}", e.message);
-                None
+                Ok(None)
             }
         }
     }

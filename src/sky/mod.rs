@@ -30,6 +30,23 @@
 //! a software driver; an observer's tables 17 ms and a picture of 640x360 32 ms there, 1/50 of a march of 64 nodes a
 //! pixel (`cargo bench --bench speed`).
 //!
+//! # Wavelengths
+//! Three by default, converted by [`spectral::Conversion`]. A set of [`SkySettings::wavelengths`] is summed while the tables
+//! are built to the three transfers that look the same ([`spectral`]), so that look-ups and pixels do not know of it. Error of
+//! the worst channel over the luminance against 40 wavelengths of the reference, rms over the sky (`tests/sky_gpu.rs`), sun
+//! at 30, 60, 85 and 90 degrees:
+//!
+//! | wavelengths | clear air without ozone | with ozone | haze of 15 km visibility | tables, times those of 3 |
+//! |---|---|---|---|---|
+//! | 3 | 2.7, 2.7, 2.5, 3.1 % | 3.7, 4.3, 6.4, 9.6 % | 3.1, 3.5, 7.5, 11 % | 1 |
+//! | 6 | 3.7, 3.2, 1.9, 1.5 % | 3.8, 3.3, 4.1, 8.4 % | 4.0, 2.8, 6.6, 10 % | 2 |
+//! | 9 | 1.4, 1.2, 0.9, 0.7 % | 1.3, 1.2, 2.4, 4.8 % | 3.3, 2.1, 4.6, 5.8 % | 3 |
+//! | 12 | 0.7, 0.6, 0.6, 0.4 % | 0.7, 0.6, 1.4, 2.7 % | 3.1, 2.0, 3.7, 4.0 % | 4 |
+//! | 15 | 0.4, 0.4, 0.5, 0.3 % | 0.4, 0.4, 0.8, 1.1 % | 3.0, 1.9, 3.2, 3.1 % | 5 |
+//!
+//! What is left in haze is the tables' own error in the glow round the sun. Transmittance, and with it the disc and the
+//! ground's direct light, stays that of the three wavelengths.
+//!
 //! # Models
 //! [`SkyModel`] names them with their errors. Transmittance is a closed form (`columns_along` in `shaders/sky/ray.wgsl`),
 //! not a table.

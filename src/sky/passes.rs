@@ -267,6 +267,58 @@ impl FadePasses {
     }
 }
 
+/// Gathers what is built of several triples of wavelengths one after the other.
+pub(crate) struct PartPass {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl PartPass {
+    pub fn new(device: &Device) -> Result<Self> {
+        let layout = layout(device, "sky part", &[Slot::Table, Slot::Uniform]);
+        let add = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let blend = Some(wgpu::BlendState { color: add, alpha: wgpu::BlendComponent::REPLACE });
+        let target = wgpu::ColorTargetState { format: TABLE_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL };
+        let desc = FullscreenDesc {
+            shader: "sky/part.wgsl",
+            entry: "part",
+            layouts: &[&layout],
+            targets: &[target],
+            constants: &[],
+            samples: 1,
+        };
+        let pipeline = fullscreen(device, &desc)?;
+        Ok(Self { layout, pipeline })
+    }
+
+    /// One triple's table and air.
+    pub fn group(&self, device: &Device, table: &wgpu::TextureView, air: &wgpu::Buffer) -> wgpu::BindGroup {
+        bind(device, &self.layout, &[tex(table), air.as_entire_binding()])
+    }
+
+    /// Adds a triple to `target`; the first one clears it.
+    pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &Table, triple: &wgpu::BindGroup, first: bool) {
+        let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("sky part"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, triple, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
 fn pipeline(
     device: &Device,
     settings: &SkySettings,

@@ -49,7 +49,16 @@ impl Name {
     /// What a finished build leaves.
     pub const RESULTS: [Name; 4] = [Name::Sources, Name::Lights, Name::OnceGas, Name::OnceHaze];
 
-    /// Size in texels.
+    /// What a build makes of one triple of wavelengths at a time, where there are several.
+    pub const OF_A_TRIPLE: [Name; 2] = [Name::Sources, Name::Lights];
+
+    /// Size in texels of a result: triples of wavelengths lie one below the other where they are kept apart.
+    pub fn result_size(self, s: &SkySettings) -> (u32, u32) {
+        let (width, height) = self.size(s);
+        (width, if self == Name::Sources { height * s.layers() } else { height })
+    }
+
+    /// Size in texels of what a build draws.
     pub fn size(self, s: &SkySettings) -> (u32, u32) {
         let (x, y) = match self {
             Name::Nothing => return (1, 1),

@@ -2,13 +2,15 @@
 
 use std::sync::{Arc, OnceLock};
 
-use bytemuck::bytes_of;
+use bytemuck::{bytes_of, cast_slice};
 
 use super::Planet;
 use super::kit::Kit;
 use super::light::LightTable;
 use super::passes::{Table, uniform_buffer};
 use super::recipe::Name;
+use super::settings::MOST_WAVELENGTHS;
+use super::spectral::parts;
 use super::uniforms::AirUniform;
 use crate::error::Result;
 use crate::gpu::Device;
@@ -16,7 +18,8 @@ use crate::gpu::Device;
 /// One planet's tables, and how observers and fades read them.
 pub(crate) struct TableSet {
     pub planet: Planet,
-    pub air: wgpu::Buffer,
+    /// The air at each triple of wavelengths.
+    pub airs: Vec<wgpu::Buffer>,
     /// Group 0 of the observers' passes.
     pub observer_group: wgpu::BindGroup,
     /// The light, for a fade.
@@ -28,21 +31,31 @@ pub(crate) struct TableSet {
 
 impl TableSet {
     /// Empty tables.
-    pub fn new(kit: &Kit, planet: &Planet) -> Self {
+    ///
+    /// # Errors
+    /// For a planet whose wavelengths are no set.
+    pub fn new(kit: &Kit, planet: &Planet) -> Result<Self> {
         let device = &kit.device;
-        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.size(&kit.settings)));
+        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.result_size(&kit.settings)));
         let results: Vec<_> = Name::RESULTS.iter().map(table).collect();
         let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(planet)));
+        let mut each = AirUniform::of_parts(&parts(planet, kit.settings.wavelengths)?);
+        // A build has one triple's sources before it at a time.
+        let alone = |a: &AirUniform| AirUniform { layer: 0.0, layers: 1.0, ..*a };
+        let buffer = |a| uniform_buffer(device, "sky air of a triple", bytes_of(&alone(a)));
+        let airs = each.iter().map(buffer).collect();
+        each.resize(MOST_WAVELENGTHS as usize / 3, AirUniform::of(planet));
+        let all = uniform_buffer(device, "sky airs", cast_slice(&each));
         let of = |name: Name| &find(&results, name).view;
         let sources = [of(Name::Sources), of(Name::OnceGas), of(Name::OnceHaze)];
-        Self {
+        Ok(Self {
             planet: *planet,
-            observer_group: kit.observer_layouts.planet_group(device, &kit.builder, &air, sources),
+            observer_group: kit.observer_layouts.planet_group(device, &kit.builder, [&air, &all], sources),
             light_group: kit.fades.group(device, of(Name::Lights)),
-            air,
+            airs,
             results,
             light: OnceLock::new(),
-        }
+        })
     }
 
     /// One of [`Name::RESULTS`].

@@ -58,6 +58,11 @@ impl SkyModel {
 pub struct SkySettings {
     /// Which model draws, default [`SkyModel::Directional`].
     pub model: SkyModel,
+    /// Wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`, default 3: the planet's own. More of them
+    /// are spread over what the eye sees, and summed to the three transfers at the planet's wavelengths that look the same
+    /// (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]): colours are then right where three cannot tell
+    /// them, at the price of building every table so many times. See [`crate::sky`] for errors and costs.
+    pub wavelengths: u32,
     /// Orders of scattering that are carried one by one, `[3, 16]`, default 5; the rest is a geometric series.
     pub orders: u32,
     /// Sun angles of the planet's tables, `[16, 128]`, default 64.
@@ -96,10 +101,14 @@ pub struct SkySettings {
     pub march_cells: u32,
 }
 
+/// Most wavelengths of a set, as `sky/observer.wgsl` has room for.
+pub(crate) const MOST_WAVELENGTHS: u32 = 15;
+
 impl Default for SkySettings {
     fn default() -> Self {
         Self {
             model: SkyModel::default(),
+            wavelengths: 3,
             orders: 5,
             suns: 64,
             altitudes: 22,
@@ -128,12 +137,18 @@ impl SkySettings {
         Self { model, ..Self::default() }
     }
 
+    /// Triples of wavelengths.
+    pub(crate) fn layers(&self) -> u32 {
+        self.wavelengths / 3
+    }
+
     /// Checks every number against its range.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and the range.
     pub fn check(&self) -> Result<()> {
         let fields = [
+            ("wavelengths", self.wavelengths, 3, MOST_WAVELENGTHS),
             ("orders", self.orders, 3, 16),
             ("suns", self.suns, 16, 128),
             ("altitudes", self.altitudes, 8, 64),
@@ -158,12 +173,19 @@ impl SkySettings {
                 return Err(Error::range(name, &format!("in [{lo}, {hi}]"), value));
             }
         }
+        if !self.wavelengths.is_multiple_of(3) {
+            return Err(Error::range("wavelengths", "a multiple of 3", self.wavelengths));
+        }
+        if self.layers() > 1 && !matches!(self.model, SkyModel::Directional | SkyModel::IsotropicTables) {
+            let accepted = format!("3 with the model {}", self.model.name());
+            return Err(Error::range("wavelengths", &accepted, self.wavelengths));
+        }
         // Every device draws into 2048 texels; an atlas must not be wider.
         for (name, a, b) in [
             ("suns x rule_azimuths", self.suns, self.rule_azimuths),
             ("suns x azimuths", self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES)),
             ("altitudes x 2 rule_zeniths", self.altitudes, 2 * self.rule_zeniths),
-            ("altitudes x zeniths", self.altitudes, self.zeniths),
+            ("altitudes x zeniths x wavelengths/3", self.altitudes * self.layers(), self.zeniths),
             ("air_azimuths x air_slices", self.air_azimuths, self.air_slices),
         ] {
             if a * b > 2048 {
@@ -188,6 +210,11 @@ mod tests {
         assert!(SkySettings::default().check().is_ok());
         let e = SkySettings { sky_panels: 0, ..Default::default() }.check().unwrap_err();
         assert!(e.message.contains("sky_panels") && e.message.contains("[1, 32]"), "{}", e.message);
+        let uneven = SkySettings { wavelengths: 10, ..Default::default() };
+        assert!(uneven.check().unwrap_err().message.contains("wavelengths must be a multiple of 3"));
+        let marched = SkySettings { wavelengths: 9, ..SkySettings::with_model(SkyModel::BruteForce) };
+        assert!(marched.check().unwrap_err().message.contains("wavelengths must be 3 with the model brute-force"));
+        assert!(SkySettings { wavelengths: 15, ..Default::default() }.check().is_ok());
         let wide = SkySettings { suns: 128, azimuths: 24, ..Default::default() };
         assert!(wide.check().unwrap_err().message.contains("suns x azimuths"));
     }

@@ -82,6 +82,20 @@ pub(crate) fn between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     if x < at[b] { line(a, b) } else { line(b, c) }
 }
 
+/// Value at `x` of the powers of x through neighbours of three points in any order, going on beyond the outer two; of the
+/// broken line where a value is 0 or two points coincide.
+pub(crate) fn power_between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| at[*a].total_cmp(&at[*b]));
+    let [a, b, c] = order;
+    let (i, j) = if x < at[b] { (a, b) } else { (b, c) };
+    let range = (at[j] / at[i]).ln();
+    if range <= 0.0 || values[i] <= 0.0 || values[j] <= 0.0 {
+        return between(at, values, x);
+    }
+    values[i] * (x / at[i]).powf((values[j] / values[i]).ln() / range)
+}
+
 /// Colour matching functions of the CIE 1931 standard observer (2 degrees), by the sums of lobes of Wyman, Sloan and
 /// Shirley 2013 (table 1; within 1 % of the tabulated ones' integrals). Wavelength in nm.
 pub fn cie_1931(wavelength_nm: f64) -> [f64; 3] {
@@ -213,6 +227,46 @@ impl SpectralSet {
     }
 }
 
+/// A planet at three of a set's wavelengths, and what light there counts among the three that stand for all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// The planet there; lights do not matter.
+    pub planet: Planet,
+    /// Columns: what a transfer at each wavelength adds to the three transfers at the whole planet's wavelengths that look
+    /// the same.
+    pub columns: [[f64; 3]; 3],
+}
+
+/// `planet` as a set of `count` wavelengths, a multiple of 3. The set's colour, taken back by the conversion of the planet's
+/// own wavelengths, is a triple of transfers: whoever converts these sees the set's colour. With 3 it is the planet itself.
+///
+/// # Errors
+/// As [`SpectralSet::new`].
+pub(crate) fn parts(planet: &Planet, count: u32) -> Result<Vec<Part>> {
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    if count <= 3 {
+        return Ok(vec![Part { planet: *planet, columns: unit }]);
+    }
+    let set = SpectralSet::new(count as usize)?;
+    let back = inverse(&Conversion::of(planet).matrix);
+    let part = |(planet, weights): (Planet, &[[f64; 3]])| Part {
+        planet,
+        columns: std::array::from_fn(|i| weights.get(i).map_or([0.0; 3], |w| apply(&back, w))),
+    };
+    Ok(set.planets(planet).into_iter().zip(set.weights.chunks(3)).map(part).collect())
+}
+
+/// Inverse of a matrix that has one, by its adjugate.
+fn inverse(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let minor = |r: usize, c: usize| {
+        let (a, b) = ((r + 1) % 3, (r + 2) % 3);
+        let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+        m[a][d] * m[b][e] - m[a][e] * m[b][d]
+    };
+    let determinant: f64 = (0..3).map(|c| m[0][c] * minor(0, c)).sum();
+    std::array::from_fn(|r| std::array::from_fn(|c| minor(c, r) / determinant))
+}
+
 /// How the transfers at three wavelengths become a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
@@ -229,6 +283,11 @@ impl Conversion {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|c| matrix[c][c] = sun[c]);
         Self { matrix }
+    }
+
+    /// That of a planet's wavelengths: fitted, or per channel where two of them are too close to tell colours apart.
+    pub fn of(planet: &Planet) -> Self {
+        Self::fitted(&planet.wavelengths_nm).unwrap_or_else(|_| Self::per_channel())
     }
 
     /// The matrix that fits best in relative least squares for a family of transfers of air: direct sunlight, thin and
@@ -413,6 +472,25 @@ mod tests {
         let a = Conversion::fitted(&[620.0, 550.0, 450.0]).unwrap().rec709(&[0.9, 0.6, 0.2]);
         let b = Conversion::fitted(&[450.0, 620.0, 550.0]).unwrap().rec709(&[0.2, 0.9, 0.6]);
         assert!((0..3).all(|c| (a[c] / b[c] - 1.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn parts_of_a_set_stand_for_its_colour() {
+        let earth = Planet::earth();
+        let own = parts(&earth, 3).unwrap();
+        assert_eq!((own.len(), own[0].planet, own[0].columns[1]), (1, earth, [0.0, 1.0, 0.0]));
+        let set = SpectralSet::new(12).unwrap();
+        let parts = parts(&earth, 12).unwrap();
+        let transfer = |nm: f64| 0.2 + (550.0 / nm).powi(4);
+        let mut three = [0.0; 3];
+        for part in &parts {
+            for (nm, column) in part.planet.wavelengths_nm.iter().zip(part.columns) {
+                (0..3).for_each(|c| three[c] += transfer(*nm) * column[c]);
+            }
+        }
+        let direct: Vec<f64> = set.wavelengths_nm.iter().map(|nm| transfer(*nm)).collect();
+        let (seen, exact) = (Conversion::of(&earth).rec709(&three), set.rec709(&direct).unwrap());
+        assert!((0..3).all(|c| (seen[c] / exact[c] - 1.0).abs() < 1e-9), "{seen:?} {exact:?}");
     }
 
     #[test]

@@ -117,7 +117,7 @@ impl SkyTables {
         };
         if next != Some(planet) && (at_once || matches!(self.state, State::Idle)) {
             planet.check()?;
-            self.state = match self.kit.claim(planet) {
+            self.state = match self.kit.claim(planet)? {
                 Claim::Finished(set) => State::Fading(set, 0.0),
                 Claim::Building(ticket) => State::Building(ticket),
             };
@@ -211,7 +211,7 @@ impl SkyTables {
     /// changing weather makes one after the other.
     pub(crate) fn begin_with(&mut self, planet: &Planet, cache: &Path) -> Result<()> {
         planet.check()?;
-        let ticket = match self.kit.claim_or_load(planet, Some(cache)) {
+        let ticket = match self.kit.claim_or_load(planet, Some(cache))? {
             Claim::Finished(set) => return self.show_now(set),
             Claim::Building(ticket) => ticket,
         };

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::Planet;
 use super::settings::SkySettings;
+use super::spectral::Part;
 
 /// Tiles of the table of light: irradiance and six moments.
 pub(crate) const LIGHT_TILES: u32 = 7;
@@ -28,6 +29,12 @@ pub(crate) struct AirUniform {
     pub ozone_half_width_m: f32,
     pub ground_albedo: [f32; 3],
     pub top_dip: f32,
+    pub part_a: [f32; 3],
+    pub layer: f32,
+    pub part_b: [f32; 3],
+    pub layers: f32,
+    pub part_c: [f32; 3],
+    pub unused: f32,
 }
 
 impl AirUniform {
@@ -54,14 +61,30 @@ impl AirUniform {
             ozone_half_width_m: (ozone.half_width_m as f32).max(1.0),
             ground_albedo: f(planet.ground_albedo),
             top_dip: (1.0 - ratio * ratio).sqrt() as f32,
+            part_a: [1.0, 0.0, 0.0],
+            layer: 0.0,
+            part_b: [0.0, 1.0, 0.0],
+            layers: 1.0,
+            part_c: [0.0, 0.0, 1.0],
+            unused: 0.0,
         }
+    }
+
+    /// All triples of wavelengths of a set.
+    pub fn of_parts(parts: &[Part]) -> Vec<Self> {
+        let one = |(layer, part): (usize, &Part)| {
+            let [part_a, part_b, part_c] = part.columns.map(|c| c.map(|v| v as f32));
+            let (layer, layers) = (layer as f32, parts.len() as f32);
+            Self { part_a, part_b, part_c, layer, layers, ..Self::of(&part.planet) }
+        };
+        parts.iter().enumerate().map(one).collect()
     }
 
     /// Between two airs: how look-ups follow a change while the tables fade.
     pub fn mix(&self, other: &Self, t: f32) -> Self {
-        let a: [f32; 24] = bytemuck::cast(*self);
-        let b: [f32; 24] = bytemuck::cast(*other);
-        bytemuck::cast::<[f32; 24], Self>(std::array::from_fn(|i| {
+        let a: [f32; 36] = bytemuck::cast(*self);
+        let b: [f32; 36] = bytemuck::cast(*other);
+        bytemuck::cast::<[f32; 36], Self>(std::array::from_fn(|i| {
             if a[i] == b[i] { a[i] } else { a[i] + (b[i] - a[i]) * t }
         }))
     }
@@ -205,7 +228,7 @@ mod tests {
         let build = assemble("sky/build.wgsl").unwrap();
         let observer = assemble("sky/observer.wgsl").unwrap();
         for (text, name, size, count) in [
-            (&lookup, "SkyAir", size_of::<AirUniform>(), 14),
+            (&lookup, "SkyAir", size_of::<AirUniform>(), 20),
             (&lookup, "SkyDims", size_of::<DimsUniform>(), 16),
             (&lookup, "SkyEdges", size_of::<EdgesUniform>(), 4),
             (&lookup, "SkyLamp", size_of::<LampUniform>(), 11),
@@ -221,6 +244,8 @@ mod tests {
             members.iter().find(|(n, _)| n == member).unwrap().1 as usize
         };
         assert_eq!(at("SkyAir", "ground_albedo"), offset_of!(AirUniform, ground_albedo));
+        assert_eq!(at("SkyAir", "layers"), offset_of!(AirUniform, layers));
+        assert_eq!(at("SkyAir", "part_c"), offset_of!(AirUniform, part_c));
         assert_eq!(at("SkyAir", "mie_extinction"), offset_of!(AirUniform, mie_extinction));
         assert_eq!(at("SkyLamp", "lit_from"), offset_of!(LampUniform, lit_from));
         assert_eq!(at("SkyLamp", "level"), offset_of!(LampUniform, level));

@@ -56,7 +56,7 @@ impl ObserverLayouts {
     pub fn new(device: &Device) -> Self {
         use Slot::{Sampler, Table, Uniform};
         Self {
-            planet: layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table]),
+            planet: layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table, Uniform]),
             observer: layout(device, "sky observer", &[Uniform]),
             view: SkyVolume::view_layout(device),
         }
@@ -67,12 +67,13 @@ impl ObserverLayouts {
         &self,
         device: &Device,
         builder: &Builder,
-        air: &wgpu::Buffer,
+        [air, airs]: [&wgpu::Buffer; 2],
         [sources, gas, haze]: [&wgpu::TextureView; 3],
     ) -> wgpu::BindGroup {
         let sampler = wgpu::BindingResource::Sampler(&builder.sampler);
         let (air, dims) = (air.as_entire_binding(), builder.dims.as_entire_binding());
-        bind(device, &self.planet, &[air, dims, tex(sources), sampler, tex(gas), tex(haze)])
+        let airs = airs.as_entire_binding();
+        bind(device, &self.planet, &[air, dims, tex(sources), sampler, tex(gas), tex(haze), airs])
     }
 }
 
@@ -293,7 +294,10 @@ fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGro
             entry,
             layouts,
             targets: &[target.clone(), target],
-            constants: &[("DIRECTIONAL", f64::from(u8::from(s.model.is_directional())))],
+            constants: &[
+                ("DIRECTIONAL", f64::from(u8::from(s.model.is_directional()))),
+                ("LAYERS", f64::from(s.layers())),
+            ],
             samples: 1,
         };
         fullscreen(device, &desc)

@@ -1,0 +1,11 @@
+//!include "common/fullscreen.wgsl"
+//!include "sky/air.wgsl"
+// Adds the light of one triple of wavelengths, as the three that stand for all, to a blending target.
+
+@group(0) @binding(0) var triple: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> air: SkyAir;
+
+@fragment
+fn part(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return vec4f(air_part(air, textureLoad(triple, vec2u(position.xy), 0).rgb), 1.0);
+}
