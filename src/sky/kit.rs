@@ -360,13 +360,22 @@ impl Kit {
             let (step, set) = self.advance(&ticket, 1.0 / 16.0)?;
             self.device.wait()?;
             drop(entered);
-            tell(step.done)?;
-            let Some(set) = set else { continue };
-            if let Some(directory) = cache {
-                let _entered = self.device.enter()?;
-                self.keep(&set, directory);
+            match (tell(step.done), set) {
+                (Ok(()), None) => {}
+                (Ok(()), Some(set)) => {
+                    if let Some(directory) = cache {
+                        let _entered = self.device.enter()?;
+                        self.keep(&set, directory);
+                    }
+                    return Ok(set);
+                }
+                (Err(e), set) => {
+                    // What is given up goes in the host's context.
+                    let _entered = self.device.enter()?;
+                    drop((set, ticket));
+                    return Err(e);
+                }
             }
-            return Ok(set);
         }
     }
 

@@ -26,7 +26,7 @@
 //! Against [`reference`] solved finely, over altitudes 1 m to 200 km, suns down to 95 degrees, all directions and
 //! distances from 500 m (`tests/sky_gpu.rs` holds them): radiance of clear air median 0.3 %, 95th percentile 1.1 %; with
 //! ozone 0.3 % and 2.2 %; in haze of 30 km visibility 0.4 % and 2.4 %. Transmittance 0.02 % where it is above 1 %. Not held:
-//! light below 1e-7 of the sun's on the night side of the limb. Building a planet's tables takes 2 to 3 s on two cores of
+//! light below 1e-7 of the sun's on the night side of the limb. Building a planet's tables takes 1.1 s on two idle cores of
 //! a software driver; an observer's tables 17 ms and a picture of 640x360 32 ms there, 1/50 of a march of 64 nodes a
 //! pixel (`cargo bench --bench speed`).
 //!

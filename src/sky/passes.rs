@@ -258,11 +258,15 @@ impl FadePasses {
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);
-        for (group, t) in [Some((first, 1.0)), other].into_iter().flatten() {
-            let t = f64::from(t.clamp(0.0, 1.0));
+        let mut over = |group, share: f32| {
+            let t = f64::from(share.clamp(0.0, 1.0));
             pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
             pass.set_bind_group(0, group, &[]);
             pass.draw(0..3, 0..1);
+        };
+        over(first, 1.0);
+        if let Some((group, share)) = other {
+            over(group, share);
         }
     }
 }

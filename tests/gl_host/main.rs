@@ -12,6 +12,7 @@ mod images;
 mod kinds;
 mod life;
 mod pictures;
+mod sky;
 mod snapshot;
 mod state;
 mod unusual;
