@@ -2809,6 +2809,12 @@ typedef uint32_t wk_frame_flags;
  * viewport of positive height. Without it the first row lies at clip y = +1.
  */
 #define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
+/**
+ * Measure what each effect costs: wk_report.ms, wk_view_get_costs. Stages are drawn one by one and each is waited for, so
+ * such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
+ * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
+ */
+#define WK_FRAME_MEASURE 16
 
 /** What the numbers in the host's colour mean. */
 typedef uint32_t wk_color_space;
@@ -2990,6 +2996,12 @@ typedef uint32_t wk_stage_flags;
 /** Everything in one call. */
 #define WK_STAGE_ALL 127
 
+/** Which of a report's optional fields are set. */
+typedef uint32_t wk_report_flags;
+
+/** wk_report.ms. */
+#define WK_REPORT_HAS_MS 1
+
 /** What the last frame of a view took and showed. */
 typedef struct wk_report {
     /** sizeof(wk_report) of your header. */
@@ -3008,6 +3020,14 @@ typedef struct wk_report {
     double exposure;
     /** Bytes of GPU memory that the view holds for itself. */
     uint64_t bytes;
+    /** Which of the following are set. */
+    wk_report_flags has;
+    /** 0. */
+    uint32_t reserved0;
+    /**
+     * What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
+     */
+    double ms;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3019,8 +3039,45 @@ typedef struct wk_report {
     /* passes */ 0, \
     /* tables_rebuilt */ 0, \
     /* exposure */ 0.0, \
-    /* bytes */ UINT64_C(0) \
+    /* bytes */ UINT64_C(0), \
+    /* has */ 0, \
+    /* reserved0 */ 0, \
+    /* ms */ 0.0 \
 }
+
+/** What a frame spends time on, in the order in which it happens. */
+typedef uint32_t wk_effect;
+
+/** Tables over the planet: built when the air changes. */
+#define WK_EFFECT_SKY_TABLES 0
+/** The sky and the air as seen from the camera's height: built when height, sun or air change. */
+#define WK_EFFECT_SKY_VIEW 1
+/** Sky behind everything. */
+#define WK_EFFECT_BACKGROUND 2
+/** Fog and aerial perspective. */
+#define WK_EFFECT_MEDIUM 3
+/** Exposure, tone curve, encoding. */
+#define WK_EFFECT_TONE 4
+/** Stages in one draw that the target's format does not let be drawn one by one. */
+#define WK_EFFECT_COMPOSITION 5
+/** Textures for the host's own transparent shaders. */
+#define WK_EFFECT_VEIL 6
+/** Taking over the host's context and images, and giving them back. */
+#define WK_EFFECT_HAND_OVER 7
+
+/** What one effect of a frame cost; plain values of a list. */
+typedef struct wk_effect_cost {
+    /** Which effect. */
+    wk_effect effect;
+    /** 0. */
+    uint32_t reserved0;
+    /** Its name for people, English; lives as long as the library. */
+    const char *name;
+    /**
+     * Milliseconds: wall time round a submission that is waited for, the CPU's part included. 0 if it did not run.
+     */
+    double ms;
+} wk_effect_cost;
 
 /**
  * Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
@@ -3049,6 +3106,20 @@ WK_API wk_status wk_view_record(wk_view *view, const wk_frame *frame, wk_stage_f
  * Thread: exclusive on the view.
  */
 WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
+
+/**
+ * Says what each effect of the view's last frame cost, in the order in which they happen. `*out_count` gets their number,
+ * 0 if the frame was not measured (WK_FRAME_MEASURE), also where `capacity` is too small (then nothing else is written
+ * and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later versions may
+ * know more effects.
+ * Thread: exclusive on the view.
+ */
+WK_API
+wk_status wk_view_get_costs(wk_view *view,
+                            wk_effect_cost *costs,
+                            uint32_t capacity,
+                            uint32_t cost_size,
+                            uint32_t *out_count);
 
 /**
  * Writes the default of every field: the same bytes as `WK_VIEW_DESC_INIT`. `struct_size` is `sizeof(wk_view_desc)`

@@ -112,7 +112,9 @@ bool demo_draw(demo *d)
     scene_draw(&d->scene, &c, &l, p->width, p->height, p->reversed, p->frame);
     glFinish(); /* for the figures only: a simulator would not wait here */
     double drawn = demo_clock_ms();
-    if (weather && !weather_draw(&d->weather, p, &c, l.cd_m2_per_unit, d->frame, d->cut || !d->moving))
+    if (weather && d->measure && !weather_measure(&d->weather, p, &c, l.cd_m2_per_unit, d->frame))
+        return false;
+    if (weather && !d->measure && !weather_draw(&d->weather, p, &c, l.cd_m2_per_unit, d->frame, d->cut || !d->moving))
         return false;
     glFinish();
     double end = demo_clock_ms();

@@ -19,6 +19,7 @@ typedef struct demo {
     int report, hour, camera;
     bool bare; /* without weather: what the host draws by itself */
     bool cut;  /* the camera jumped */
+    bool measure; /* time each effect of the next frame, whose picture is of no use */
     bool moving; /* time runs, and weather changes over some seconds */
     double started_ms;
     uint64_t frame;

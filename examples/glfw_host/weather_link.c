@@ -80,7 +80,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     return true;
 }
 
-bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still)
+static bool record(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, uint32_t flags)
 {
     wk_opengl_target target = WK_OPENGL_TARGET_INIT;
     target.color.kind = target.depth.kind = WK_OPENGL_TEXTURE;
@@ -99,11 +99,33 @@ bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_
     memcpy(f.view, view.m, sizeof f.view);
     memcpy(f.projection, projection.m, sizeof f.projection);
     f.clip_space = p->reversed ? WK_CLIP_ZERO_TO_ONE : WK_CLIP_MINUS_ONE_TO_ONE;
-    f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | (still ? WK_FRAME_CUT | WK_FRAME_NO_HISTORY : 0);
+    f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | flags;
     f.color_space = WK_COLOR_SCENE_LINEAR;
     f.cd_m2_per_unit = cd_m2_per_unit;
     f.target = &target;
     return check(wk_view_record(w->view, &f, WK_STAGE_ALL));
+}
+
+bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still)
+{
+    return record(w, p, c, cd_m2_per_unit, frame, still ? WK_FRAME_CUT | WK_FRAME_NO_HISTORY : 0);
+}
+
+bool weather_measure(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame)
+{
+    wk_effect_cost costs[16];
+    const uint32_t room = sizeof costs / sizeof costs[0];
+    const uint32_t flags = WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE;
+    /* Once for what is compiled at its first use, under a frame number of its own. */
+    if (!record(w, p, c, cd_m2_per_unit, ~frame, flags) || !record(w, p, c, cd_m2_per_unit, frame, flags) ||
+        !check(wk_view_get_costs(w->view, costs, room, sizeof costs[0], &w->cost_count)))
+        return false;
+    for (uint32_t i = 0; i < w->cost_count; i++) {
+        costs[i].ms += w->costs[i].ms;
+        w->costs[i] = costs[i];
+    }
+    w->measured_frames++;
+    return true;
 }
 
 void weather_resized(weather_link *w)
@@ -130,6 +152,11 @@ const char *weather_summary(weather_link *w)
 void weather_print_costs(weather_link *w)
 {
     wk_report report = WK_REPORT_INIT;
+    if (w->measured_frames > 0)
+        printf("ms per effect, each waited for, mean of %u frames:\n", (unsigned)w->measured_frames);
+    for (uint32_t i = 0; i < w->cost_count; i++)
+        if (w->costs[i].ms > 0.0)
+            printf("  %-12s %7.2f\n", w->costs[i].name, w->costs[i].ms / w->measured_frames);
     if (check(wk_view_get_report(w->view, &report)))
         printf("last frame: %u full-screen passes, %u tables rebuilt, %.1f MiB of the view's own\n",
                (unsigned)report.passes, (unsigned)report.tables_rebuilt, (double)report.bytes / 1048576.0);

@@ -23,6 +23,8 @@ typedef struct weather_link {
     uint64_t generation; /* of the picture's textures */
     wk_caps caps;
     char summary[128];
+    wk_effect_cost costs[16]; /* what the effects of all measured frames took together */
+    uint32_t cost_count, measured_frames;
 } weather_link;
 
 /* Once, when the host has made its contexts. */
@@ -43,6 +45,12 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l);
  * picture that stands alone and has no frames before it.
  */
 bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still);
+
+/*
+ * The same once more, with each effect waited for and timed: for figures, slower than weather_draw. Adds to what
+ * weather_print_costs says.
+ */
+bool weather_measure(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame);
 
 /* After the picture's textures were made anew. */
 void weather_resized(weather_link *w);

@@ -64,6 +64,10 @@ pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
 /// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
 /// viewport of positive height. Without it the first row lies at clip y = +1.
 pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
+/// Measure what each effect costs: wk_report.ms, wk_view_get_costs. Stages are drawn one by one and each is waited for, so
+/// such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
+/// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
+pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
 
 /// One frame of one view.
 #[repr(C)]
@@ -211,7 +215,7 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         cd_m2_per_unit: c.cd_m2_per_unit,
         exposure,
         origin_bottom_left: bottom_left || c.flags & WK_FRAME_FIRST_ROW_AT_MINUS_Y != 0,
-        flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY)),
+        flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE)),
     })
 }
 

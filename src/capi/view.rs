@@ -16,28 +16,29 @@
 //! work is submitted to the device's queue, not finished.
 
 use std::{
-    ffi::c_void,
+    ffi::{c_char, c_void},
     ptr::null,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
+    time::Instant,
 };
 
 use super::{
     boundary::guard,
     context::{ContextObject, wk_context},
     device_cell::DeviceCell,
-    frame::wk_frame,
+    frame::{WK_FRAME_MEASURE, wk_frame},
     handles::{self, Object},
     host,
-    input::out,
+    input::{Room, out},
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
     error::Status,
-    frame::{Stages, View},
+    frame::{Effect, Stages, View},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
@@ -83,6 +84,11 @@ impl wk_view_desc {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_VIEW_DESC, next: null() };
 }
 
+/// Which of a report's optional fields are set.
+pub type wk_report_flags = u32;
+/// wk_report.ms.
+pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
+
 /// What the last frame of a view took and showed.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -103,6 +109,12 @@ pub struct wk_report {
     pub exposure: f64,
     /// Bytes of GPU memory that the view holds for itself.
     pub bytes: u64,
+    /// Which of the following are set.
+    pub has: wk_report_flags,
+    /// 0.
+    pub reserved0: u32,
+    /// What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
+    pub ms: f64,
 }
 
 impl wk_report {
@@ -115,7 +127,43 @@ impl wk_report {
         tables_rebuilt: 0,
         exposure: 0.0,
         bytes: 0,
+        has: 0,
+        reserved0: 0,
+        ms: 0.0,
     };
+}
+
+/// What a frame spends time on, in the order in which it happens.
+pub type wk_effect = u32;
+/// Tables over the planet: built when the air changes.
+pub const WK_EFFECT_SKY_TABLES: wk_effect = 0;
+/// The sky and the air as seen from the camera's height: built when height, sun or air change.
+pub const WK_EFFECT_SKY_VIEW: wk_effect = 1;
+/// Sky behind everything.
+pub const WK_EFFECT_BACKGROUND: wk_effect = 2;
+/// Fog and aerial perspective.
+pub const WK_EFFECT_MEDIUM: wk_effect = 3;
+/// Exposure, tone curve, encoding.
+pub const WK_EFFECT_TONE: wk_effect = 4;
+/// Stages in one draw that the target's format does not let be drawn one by one.
+pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
+/// Textures for the host's own transparent shaders.
+pub const WK_EFFECT_VEIL: wk_effect = 6;
+/// Taking over the host's context and images, and giving them back.
+pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
+
+/// What one effect of a frame cost; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_effect_cost {
+    /// Which effect.
+    pub effect: wk_effect,
+    /// 0.
+    pub reserved0: u32,
+    /// Its name for people, English; lives as long as the library.
+    pub name: *const c_char,
+    /// Milliseconds: wall time round a submission that is waited for, the CPU's part included. 0 if it did not run.
+    pub ms: f64,
 }
 
 /// A view, its context and the lock that makes its calls exclusive.
@@ -212,8 +260,12 @@ pub unsafe extern "C" fn wk_view_record(
         layout::WK_STAGE_FLAGS.check(&"stages", stages.into())?;
         let stages = Stages::from_bits(stages)?;
         object.cell.drain();
+        let measured = (c.flags & WK_FRAME_MEASURE != 0).then(Instant::now);
         // SAFETY: as above.
         unsafe { host::record(call, &object, &c, stages)? };
+        if let Some(start) = measured {
+            object.lock().add_hand_over(start);
+        }
         Ok(Status::Ok)
     })
 }
@@ -233,8 +285,44 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
             tables_rebuilt: report.tables_rebuilt,
             exposure: report.exposure,
             bytes: report.bytes,
+            has: if report.costs.is_some() { WK_REPORT_HAS_MS } else { 0 },
+            ms: report.costs.map_or(0.0, |c| c.whole_ms),
             ..wk_report::INIT
         });
+        Ok(Status::Ok)
+    })
+}
+
+/// Says what each effect of the view's last frame cost, in the order in which they happen. `*out_count` gets their number,
+/// 0 if the frame was not measured (WK_FRAME_MEASURE), also where `capacity` is too small (then nothing else is written
+/// and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later versions may
+/// know more effects.
+/// Thread: exclusive on the view.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_costs(
+    view: *mut wk_view,
+    costs: *mut wk_effect_cost,
+    capacity: u32,
+    cost_size: u32,
+    out_count: *mut u32,
+) -> wk_status {
+    guard("wk_view_get_costs", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let count = out("out_count", out_count)?;
+        let room = Room::new("costs", "cost_size", costs, capacity, cost_size)?;
+        let found = object.lock().report().costs;
+        let effects: &[Effect] = if found.is_some() { &Effect::ALL } else { &[] };
+        // SAFETY: `count` was checked and is the caller's.
+        unsafe { count.write(effects.len() as u32) };
+        if capacity > 0 {
+            room.check_capacity("capacity", effects.len())?;
+            for (i, &effect) in effects.iter().enumerate() {
+                let ms = found.map_or(0.0, |c| c.ms(effect));
+                let cost = wk_effect_cost { effect: effect as u32, reserved0: 0, name: effect.name().as_ptr(), ms };
+                // SAFETY: `i` is below the capacity that the caller promises.
+                unsafe { room.write(i, &cost) };
+            }
+        }
         Ok(Status::Ok)
     })
 }

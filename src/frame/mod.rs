@@ -5,6 +5,7 @@
 
 mod composite;
 mod froxels;
+mod measure;
 mod shared;
 mod target;
 pub mod tone;
@@ -12,6 +13,7 @@ mod uniform;
 mod view;
 
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
+pub use measure::{Costs, Effect};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};
@@ -31,6 +33,9 @@ impl FrameFlags {
     pub const CUT: Self = Self(1);
     /// Draw the pure function of (seed, time, view): no history at all.
     pub const NO_HISTORY: Self = Self(2);
+    /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so such
+    /// a frame is slower, and its picture may differ by rounding. For [`View::record`] only.
+    pub const MEASURE: Self = Self(16);
 
     /// Whether any flag of `other` is set.
     pub fn has(self, other: Self) -> bool {

@@ -1,6 +1,9 @@
 //! A view: one camera or projector channel, with what it keeps between frames.
 
-use std::sync::Arc;
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use glam::{DMat4, DVec3};
 
@@ -8,6 +11,7 @@ use super::{
     Frame, FrameFlags,
     composite::Variant,
     froxels::{FrameTextures, Froxels},
+    measure::{Costs, Effect, Recording},
     shared::Shared,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
     uniform::FrameUniform,
@@ -35,6 +39,8 @@ pub struct Report {
     pub exposure: f64,
     /// Bytes of GPU memory the view holds for itself.
     pub bytes: u64,
+    /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`]).
+    pub costs: Option<Costs>,
 }
 
 /// The textures of one bind group: it is made anew only when the host hands over others.
@@ -60,6 +66,8 @@ pub struct View {
     light_scale: f32,
     recorded: Stages,
     report: Report,
+    /// What the last measured call took, its wait for earlier work included.
+    last_call: Option<Duration>,
 }
 
 impl View {
@@ -97,6 +105,7 @@ impl View {
             light_scale: 0.0,
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
+            last_call: None,
         })
     }
 
@@ -148,21 +157,57 @@ impl View {
         let _entered = device.enter()?;
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
-        self.record_into(context, frame, stages, &mut encoder)?;
+        let mut to = Recording::new(&device, &mut encoder);
+        if frame.flags.has(FrameFlags::MEASURE) {
+            let so_far = if frame.frame_id == self.report.frame_id { self.report.costs } else { None };
+            to.measure(so_far.unwrap_or_default())?;
+        }
+        self.record_stages(context, frame, stages, &mut to)?;
+        if let Some((costs, inside)) = to.costs() {
+            self.report.costs = Some(costs);
+            self.last_call = Some(inside);
+        }
         device.submit(encoder);
         device.check()
+    }
+
+    /// Counts what a measured call that began at `start` took beyond its recording: the host's context and images came
+    /// and went.
+    pub(crate) fn add_hand_over(&mut self, start: Instant) {
+        if let (Some(costs), Some(inside)) = (&mut self.report.costs, self.last_call) {
+            let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;
+            costs.add(Effect::HandOver, ms);
+            costs.whole_ms += ms;
+        }
     }
 
     /// As [`View::record`], into a Rust host's own encoder; the host submits.
     ///
     /// # Errors
-    /// As [`View::record`].
+    /// As [`View::record`]; [`Status::Unsupported`] for a frame that is to be measured, which only who submits can.
     pub fn record_into(
         &mut self,
         context: &Context,
         frame: &Frame<'_>,
         stages: Stages,
         encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        if frame.flags.has(FrameFlags::MEASURE) {
+            return Err(Error::unsupported(
+                "flags MEASURE where the host submits, or lends its images for one submission: measure there by the host's own \
+                 timestamps",
+            ));
+        }
+        let device = self.device.clone();
+        self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
+    }
+
+    fn record_stages(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        stages: Stages,
+        to: &mut Recording<'_>,
     ) -> Result<()> {
         Stages::from_bits(stages.0)?;
         self.check_order(frame.frame_id, stages)?;
@@ -175,27 +220,27 @@ impl View {
             self.recorded = Stages(0);
         }
         if self.recorded == Stages(0) {
-            self.prepare(context, frame, &scene, encoder)?;
+            self.prepare(context, frame, &scene, to)?;
         }
         if let Some(rays) = rays {
-            self.draw(context, frame, stages, &scene, &rays, encoder)?;
+            let apart = to.is_measured() && can_be_apart(frame, stages);
+            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0)] };
+            for stages in draws.into_iter().filter(|s| s.0 != 0) {
+                self.draw(context, frame, stages, &scene, &rays, to)?;
+            }
         }
         self.recorded = self.recorded.with(stages);
         Ok(())
     }
 
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
-    fn prepare(
-        &mut self,
-        context: &Context,
-        frame: &Frame<'_>,
-        scene: &Scene,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<()> {
+    fn prepare(&mut self, context: &Context, frame: &Frame<'_>, scene: &Scene, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = context.sky()?;
         let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
-        let work = tables.follow(&self.device, encoder, &scene.planet, frame.frame_id, pure)?;
-        let drawn = self.sky.prepare(encoder, &tables, &scene.observer(pure))?;
+        let work = tables.follow(&self.device, to.encoder, &scene.planet, frame.frame_id, pure)?;
+        to.ends(Effect::SkyTables, work)?;
+        let drawn = self.sky.prepare(to.encoder, &tables, &scene.observer(pure))?;
+        to.ends(Effect::SkyView, drawn)?;
         self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
         Ok(())
     }
@@ -254,7 +299,7 @@ impl View {
         stages: Stages,
         scene: &Scene,
         rays: &ViewRays,
-        encoder: &mut wgpu::CommandEncoder,
+        to: &mut Recording<'_>,
     ) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
         let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
@@ -303,31 +348,33 @@ impl View {
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
-            encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
+            to.encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
         }
         let mut composite = self.shared.composite()?;
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
         let pipeline = composite.pipeline(&self.device, least)?;
         let groups = [group, self.sky.bind_group()];
-        crate::gpu::pass::draw(encoder, "composite", pipeline, &groups, target);
+        crate::gpu::pass::draw(to.encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
         if variant.stages.has(Stages::MEDIUM)
             && let Some(gauge) = self.planner.due(&situation)
         {
             let (multi, constants) = (variant.samples > 1, variant.constants());
-            gauge.record(&self.device, encoder, (multi, &constants), &composite.layouts(multi), &groups)?;
+            gauge.record(&self.device, to.encoder, (multi, &constants), &composite.layouts(multi), &groups)?;
             self.report.passes += 1;
         }
         drop(composite);
+        to.ends(effect_of(variant.stages), true)?;
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (exposure * frame.cd_m2_per_unit)) as f32,
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
             let variant = (variant.samples > 1, variant.fog.is_some(), variant.march);
-            froxels.draw(&self.device, &self.shared, encoder, variant, &groups)?;
+            froxels.draw(&self.device, &self.shared, to.encoder, variant, &groups)?;
             self.report.passes += 1;
+            to.ends(Effect::Veil, true)?;
         }
         Ok(())
     }
@@ -365,6 +412,28 @@ fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
     Situation { position: frame.camera.position, forward, sun: scene.sun.direction, conditions: scene.conditions }
 }
 
+/// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a
+/// display's steps.
+fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
+    let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
+    !tone || frame.color.is_some_and(|c| is_float(c.format()))
+}
+
+fn is_float(format: wgpu::TextureFormat) -> bool {
+    use wgpu::TextureFormat as F;
+    matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
+}
+
+/// Whose a draw of these stages is.
+fn effect_of(stages: Stages) -> Effect {
+    match stages {
+        Stages::BACKGROUND => Effect::Background,
+        Stages::MEDIUM => Effect::Medium,
+        Stages::TONE => Effect::Tone,
+        _ => Effect::Composition,
+    }
+}
+
 /// A texture like the host's colour, to read while the host's is written.
 fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
     let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -394,11 +463,7 @@ fn uniform(
 ) -> FrameUniform {
     let format = color.format();
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
-    let float = matches!(
-        format,
-        wgpu::TextureFormat::Rgba16Float | wgpu::TextureFormat::Rgba32Float | wgpu::TextureFormat::Rg11b10Ufloat
-    );
-    let plain_display = display && !float && !format.is_srgb();
+    let plain_display = display && !is_float(format) && !format.is_srgb();
     let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
     // In an sRGB format the hardware encodes after us: a step there is not a step here, so only plain formats dither.
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);

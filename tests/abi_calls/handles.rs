@@ -98,6 +98,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_get_frame_textures", "view", false, |h| unsafe {
             wk_view_get_frame_textures(h.cast(), null_mut())
         }),
+        case("wk_view_get_costs", "view", false, |h| unsafe {
+            wk_view_get_costs(h.cast(), null_mut(), 0, 0, null_mut())
+        }),
         case("wk_view_set_budget", "view", false, |h| unsafe { wk_view_set_budget(h.cast(), null()) }),
         case("wk_view_get_plan", "view", false, |h| unsafe { wk_view_get_plan(h.cast(), null_mut()) }),
         case("wk_view_get_part_plan", "view", false, |h| unsafe {

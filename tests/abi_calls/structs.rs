@@ -146,6 +146,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_vulkan_image",
     "wk_vulkan_semaphore",
     "wk_vulkan_target",
+    "wk_effect_cost",
 ];
 
 /// Records a frame of another number, after which every number but that begins a new frame.

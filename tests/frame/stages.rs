@@ -2,7 +2,7 @@
 
 use welkin::{
     Status,
-    frame::{Frame, Stages},
+    frame::{Effect, Frame, FrameFlags, Stages},
 };
 
 use crate::host::{Host, SIZE, camera};
@@ -80,4 +80,36 @@ fn a_target_that_does_not_fit_is_refused_by_name() {
     let e = host.view.record(&host.context, &frame, Stages::ALL).unwrap_err();
     assert!(e.message.contains("color"), "{e}");
     host.view.record(&host.context, &frame, Stages::PREPARE).unwrap();
+}
+
+#[test]
+fn a_measured_frame_says_what_each_effect_cost() {
+    let mut host = Host::new(FORMAT);
+    host.clear([100.0, 2000.0, 300.0, 1.0], 1e-4);
+    host.record(1, Stages::ALL).unwrap();
+    assert!(host.view.report().costs.is_none(), "who does not ask does not wait");
+    let mut measured = |frame_id, stages| {
+        let flags = FrameFlags::MEASURE;
+        let frame = Frame { flags, ..Frame::new(frame_id, camera(), &host.color, Some(&host.depth)) };
+        host.view.record(&host.context, &frame, stages).unwrap();
+        host.view.report().costs.unwrap()
+    };
+    measured(2, Stages::ALL); // what is compiled at its first use
+    let all = measured(3, Stages::ALL);
+    let sum: f64 = Effect::ALL.iter().map(|e| all.ms(*e)).sum();
+    assert!((0.6..=1.1).contains(&(sum / all.whole_ms)), "{sum} of {} ms", all.whole_ms);
+    for effect in [Effect::Background, Effect::Medium, Effect::Tone] {
+        assert!(all.ms(effect) > 0.0, "{effect:?}");
+    }
+    assert_eq!(all.ms(Effect::SkyTables), 0.0, "nothing changed");
+    let sky = measured(4, Stages::BACKGROUND);
+    assert!(sky.ms(Effect::Background) > 0.0 && sky.ms(Effect::Medium) == 0.0 && sky.ms(Effect::Tone) == 0.0);
+    let both = measured(4, Stages::MEDIUM);
+    assert!(both.ms(Effect::Background) == sky.ms(Effect::Background) && both.ms(Effect::Medium) > 0.0);
+    host.record(5, Stages::ALL).unwrap();
+    assert!(host.view.report().costs.is_none());
+    let mut encoder = host.device.device.create_command_encoder(&Default::default());
+    let frame = Frame { flags: FrameFlags::MEASURE, ..Frame::new(6, camera(), &host.color, Some(&host.depth)) };
+    let e = host.view.record_into(&host.context, &frame, Stages::ALL, &mut encoder).unwrap_err();
+    assert!(e.status == Status::Unsupported && e.message.contains("MEASURE"), "{e}");
 }

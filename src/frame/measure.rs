@@ -1,0 +1,139 @@
+//! What each effect of a frame costs, where the host asks for it ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
+//!
+//! Wall time round a submission that is waited for, one an effect: true on every driver (timestamps of software drivers are
+//! not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds an effect on a
+//! GPU. Frames that are not measured submit once and wait for nothing.
+
+use std::time::{Duration, Instant};
+
+use crate::{error::Result, gpu::Device};
+
+/// What a frame spends time on, in the order in which it happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Effect {
+    /// Tables over the planet: built when the air changes.
+    SkyTables = 0,
+    /// The sky and the air as seen from the camera's height: built when height, sun or air change.
+    SkyView = 1,
+    /// Sky behind everything.
+    Background = 2,
+    /// Fog and aerial perspective.
+    Medium = 3,
+    /// Exposure, tone curve, encoding.
+    Tone = 4,
+    /// Stages in one draw that this target's format does not let be drawn one by one.
+    Composition = 5,
+    /// Textures for the host's own transparent shaders.
+    Veil = 6,
+    /// Taking over the host's context and images, and giving them back.
+    HandOver = 7,
+}
+
+impl Effect {
+    /// All of them, in order.
+    pub const ALL: [Self; 8] = [
+        Self::SkyTables,
+        Self::SkyView,
+        Self::Background,
+        Self::Medium,
+        Self::Tone,
+        Self::Composition,
+        Self::Veil,
+        Self::HandOver,
+    ];
+
+    /// Its name, for people.
+    pub const fn name(self) -> &'static std::ffi::CStr {
+        match self {
+            Self::SkyTables => c"sky tables",
+            Self::SkyView => c"sky view",
+            Self::Background => c"background",
+            Self::Medium => c"air and fog",
+            Self::Tone => c"tone",
+            Self::Composition => c"composition",
+            Self::Veil => c"veil",
+            Self::HandOver => c"hand-over",
+        }
+    }
+}
+
+/// Milliseconds of one measured frame so far.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Costs {
+    /// From the first call's beginning to the last one's end, less what lay between the calls.
+    pub whole_ms: f64,
+    ms: [f64; Effect::ALL.len()],
+}
+
+impl Costs {
+    /// What `effect` cost, ms; 0 if it did not run.
+    pub fn ms(&self, effect: Effect) -> f64 {
+        self.ms[effect as usize]
+    }
+
+    pub(crate) fn add(&mut self, effect: Effect, ms: f64) {
+        self.ms[effect as usize] += ms;
+    }
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// When a measured call came, when its own work began, when its last effect ended, and what the frame cost before.
+struct Watch {
+    came: Instant,
+    start: Instant,
+    last: Instant,
+    costs: Costs,
+}
+
+/// The encoder of one call, with a stopwatch if it is measured.
+pub(super) struct Recording<'a> {
+    device: &'a Device,
+    pub encoder: &'a mut wgpu::CommandEncoder,
+    watch: Option<Watch>,
+}
+
+impl<'a> Recording<'a> {
+    pub fn new(device: &'a Device, encoder: &'a mut wgpu::CommandEncoder) -> Self {
+        Self { device, encoder, watch: None }
+    }
+
+    /// Starts the stopwatch, once all earlier work of the queue is done.
+    pub fn measure(&mut self, so_far: Costs) -> Result<()> {
+        let came = Instant::now();
+        self.device.queue.submit([]);
+        self.device.wait()?;
+        let start = Instant::now();
+        self.watch = Some(Watch { came, start, last: start, costs: so_far });
+        Ok(())
+    }
+
+    /// Whether this call is measured.
+    pub fn is_measured(&self) -> bool {
+        self.watch.is_some()
+    }
+
+    /// What was recorded since the last effect is `effect`'s: where it is measured, it is submitted and waited for. If
+    /// it did not run, the time goes to nobody.
+    pub fn ends(&mut self, effect: Effect, ran: bool) -> Result<()> {
+        let Some(watch) = &mut self.watch else { return Ok(()) };
+        if ran {
+            let next = self.device.device.create_command_encoder(&Default::default());
+            let encoder = std::mem::replace(self.encoder, next);
+            self.device.submit_and_wait(encoder)?;
+            watch.costs.add(effect, ms_since(watch.last));
+        }
+        watch.last = Instant::now();
+        Ok(())
+    }
+
+    /// What the frame cost up to here, and how long this call has lasted, if it is measured.
+    pub fn costs(&self) -> Option<(Costs, Duration)> {
+        let watch = self.watch.as_ref()?;
+        let costs = Costs { whole_ms: watch.costs.whole_ms + ms_since(watch.start), ..watch.costs };
+        Some((costs, watch.came.elapsed()))
+    }
+}
