@@ -1,7 +1,7 @@
 //! Weathers with names, to begin with or to test with.
 
 use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
-use super::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Surface, Weather, Wind};
+use super::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Surface, Swell, Weather, Wind};
 use crate::error::{Error, Result};
 
 /// A preset: its name, one line for a menu, and how it is made.
@@ -39,6 +39,7 @@ const PRESETS: &[Preset] = &[
     Preset { name: "dust_storm", what: "wall of dust, 400 m", make: dust_storm },
     Preset { name: "sand_storm", what: "blowing sand, 800 m", make: sand_storm },
     Preset { name: "gale", what: "gale over open land under torn cloud", make: gale },
+    Preset { name: "storm_at_sea", what: "storm of force 10, waves of 9 m, spray, 3 km", make: storm_at_sea },
 ];
 
 impl Weather {
@@ -241,6 +242,18 @@ fn gale() -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Stratocumulus, 0.6, 700.0)];
     let wind = Wind { gust_m_s: Some(28.0), ..Wind::of(19.0, 260.0) };
     Weather { clouds, wind, pressure_hpa: 985.0, ..day(20_000.0, 9.0, 0.7) }
+}
+
+/// Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8 (code table 3700), and spray that
+/// lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at sea (Harper, Kepert and Ginger 2010, table 1.1).
+fn storm_at_sea() -> Weather {
+    let clouds = vec![CloudLayer::of(CloudKind::Stratocumulus, 1.0, 500.0)];
+    let wind = Wind { gust_m_s: Some(32.0), ..Wind::of(26.0, 250.0) };
+    let swell = Some(Swell { height_m: 4.0, period_s: 13.0, from_deg: 270.0 });
+    let sea = Sea { state: Some(8), significant_wave_height_m: Some(9.0), temperature_c: Some(9.0), swell };
+    let (aerosol, lofted) = (Aerosol::of(AerosolKind::Maritime), Lofted::of(LoftedKind::BlowingSpray));
+    let precipitation = Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 2.0) };
+    Weather { clouds, wind, sea, aerosol, lofted, precipitation, pressure_hpa: 968.0, ..day(3000.0, 8.0, 0.88) }
 }
 
 #[cfg(test)]

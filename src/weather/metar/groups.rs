@@ -1,6 +1,8 @@
 //! The groups of figures: wind, visibility, runway visual range, cloud, temperatures, pressure, sea. Each function reads one word
 //! and answers `None` if the word is not that group.
 
+use std::ops::RangeInclusive;
+
 use super::super::kinds::CloudKind;
 use super::RunwayVisualRange;
 
@@ -47,8 +49,11 @@ fn speed(text: &str) -> Option<f64> {
 }
 
 /// `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `P99KT` speeds; the outer `None` is "not a wind", the inner one a
-/// wind that is missing (`/////KT`).
+/// wind that is missing (`/////KT`, `/////`).
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
+    if missing(text, 5) {
+        return Some(None);
+    }
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
         .find_map(|(suffix, unit)| text.strip_suffix(suffix).map(|f| (f, *unit)))?;
@@ -85,13 +90,16 @@ pub(super) struct VisibilityGroup {
     pub at_least: bool,
 }
 
-/// `0150`, `9999`, `4500NDV`, `12KM`; the inner `None` is missing (`////`). 0000 is below 50 m: 25 m.
+/// `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////`). 0000 is below 50 m: 25 m.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
     if missing(text, 4) || text == "////NDV" {
         return Some(None);
     }
     if let Some(km) = text.strip_suffix("KM").and_then(digits).filter(|km| (1..=999).contains(km)) {
         return Some(Some(VisibilityGroup { metres: f64::from(km) * 1000.0, at_least: km >= 10 }));
+    }
+    if let Some(metres) = directional_visibility(text) {
+        return Some(Some(VisibilityGroup { metres, at_least: metres > 9998.0 }));
     }
     let figures = text.strip_suffix("NDV").unwrap_or(text);
     let metres = if figures.len() == 4 { digits(figures)? } else { return None };
@@ -116,7 +124,13 @@ pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Readin
         return None;
     }
     let part = match bare.split_once('/') {
-        Some((a, b)) => f64::from(digits(a)?) / f64::from(digits(b).filter(|b| *b > 0)?),
+        Some((a, b)) => {
+            let below = digits(b).filter(|b| *b > 0)?;
+            // The space of a mixed number is often lost: 11/2SM is one and a half, 11/16SM is not.
+            let (glued, above) =
+                if whole.is_none() && a.len() == 2 && digits(a)? >= below { split(a, 1)? } else { ("0", a) };
+            f64::from(digits(glued)?) + f64::from(digits(above)?) / f64::from(below)
+        }
         None if whole.is_some() => return None,
         None => f64::from(digits(bare)?),
     };
@@ -209,6 +223,9 @@ pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
     Some(CloudGroup::Layer { cover: eighths / 8.0, base_m: height(base)?, kind })
 }
 
+/// Temperatures that a report may carry, C: those that a `Weather` takes.
+const CELSIUS: RangeInclusive<f64> = -90.0..=60.0;
+
 /// A temperature: two digits, M for below zero, or missing.
 fn celsius(text: &str) -> Option<Reading<f64>> {
     if matches!(text, "//" | "" | "XX") {
@@ -219,15 +236,20 @@ fn celsius(text: &str) -> Option<Reading<f64>> {
         return None;
     }
     // Minus zero says that the reading was between 0 and -0.5; a plain 0 keeps equality simple.
-    digits(figures).map(|t| Some(f64::from(t) * sign + 0.0)).filter(|t| t.is_none_or(|t| t <= 60.0))
+    let t = f64::from(digits(figures)?) * sign + 0.0;
+    CELSIUS.contains(&t).then_some(Some(t))
 }
 
-/// `11/10`, `M03/M05`, `03/`, `/////`: temperature and dew point.
+/// `11/10`, `M03/M05`, `03/`, `///05`, `/////`: temperature and dew point.
 pub(super) fn temperatures(text: &str) -> Option<(Reading<f64>, Reading<f64>)> {
     if missing(text, 5) {
         return Some((None, None));
     }
-    let (t, d) = text.strip_suffix("///").map_or_else(|| text.split_once('/'), |t| Some((t, "//")))?;
+    let (t, d) = match (text.strip_suffix("///"), text.strip_prefix("///")) {
+        (Some(t), _) => (t, "//"),
+        (_, Some(d)) => ("//", d),
+        _ => text.split_once('/')?,
+    };
     // A lone slash or two are no temperatures: `//` is present weather that an instrument could not tell.
     if text.len() > 2 { Some((celsius(t)?, celsius(d)?)) } else { None }
 }
@@ -255,21 +277,23 @@ pub(super) struct SeaGroup {
     pub wave_height_m: Reading<f64>,
 }
 
-/// `W10/S5`, `WM01/S2`, `W///S3`, `W19/H75` (height in decimetres).
+/// `W10/S5`, `WM01/S2`, `W///S3`, `W10/S/`, `W19/H75` (height in decimetres), `W///H///`: what could not be measured is slashes.
 pub(super) fn sea(text: &str) -> Option<SeaGroup> {
     let body = text.strip_prefix('W')?;
-    let (water, surface) = split(body, body.len().checked_sub(body.bytes().rev().position(|b| b == b'/')?)?)?;
-    let temperature_c = celsius(water.strip_suffix('/')?)?.filter(|t| (-3.0..=45.0).contains(t));
-    let (kind, figures) = split(surface, 1)?;
+    let (water, surface) = split(body, if body.starts_with('M') { 3 } else { 2 })?;
+    let (kind, figures) = split(surface.strip_prefix('/')?, 1)?;
+    let unknown = (1..=3).contains(&figures.len()) && missing(figures, figures.len());
+    let temperature_c = celsius(water)?;
     let mut group = SeaGroup { temperature_c, ..SeaGroup::default() };
     match kind {
+        "S" if figures == "/" => {}
         "S" if figures.len() == 1 => group.state = Some(u8::try_from(digits(figures)?).ok()?),
-        "H" if figures.len() <= 3 => {
-            group.wave_height_m = Some(f64::from(digits(figures)?) * 0.1).filter(|h| *h <= 30.0);
-        }
+        "H" if unknown => {}
+        "H" if figures.len() <= 3 => group.wave_height_m = Some(f64::from(digits(figures)?) * 0.1),
         _ => return None,
     }
-    Some(group)
+    let possible = temperature_c.is_none_or(|t| (-3.0..=45.0).contains(&t));
+    (possible && group.wave_height_m.is_none_or(|h| h <= 30.0)).then_some(group)
 }
 
 #[cfg(test)]
@@ -313,6 +337,7 @@ mod tests {
         let miles = |w, t| visibility_miles(w, t).and_then(|v| v.map(|v| (v.metres.round(), v.at_least)));
         assert_eq!(miles(Some("1"), "1/2SM"), Some((2414.0, false)));
         assert_eq!(miles(None, "1/2SM"), Some((805.0, false)));
+        assert_eq!((miles(None, "11/2SM"), miles(None, "11/16SM")), (Some((2414.0, false)), Some((1106.0, false))));
         assert_eq!(miles(None, "M1/4SM"), Some((402.0, false)));
         assert_eq!(miles(None, "10SM"), Some((16_093.0, true)));
         assert_eq!(miles(None, "P6SM"), Some((9656.0, true)));
@@ -358,6 +383,8 @@ mod tests {
         assert_eq!(temperatures("00/M01"), Some((Some(0.0), Some(-1.0))));
         assert_eq!((temperatures("03/"), temperatures("03///")), (Some((Some(3.0), None)), Some((Some(3.0), None))));
         assert_eq!((temperatures("/////"), temperatures("/")), (Some((None, None)), None));
+        assert_eq!(temperatures("///M05"), Some((None, Some(-5.0))));
+        assert_eq!((temperatures("M90/M90"), temperatures("M91/M95")), (Some((Some(-90.0), Some(-90.0))), None));
         assert_eq!((temperatures("99/10"), temperatures("1/1"), temperatures("11-10")), (None, None, None));
         assert!(near(pressure("A2992").unwrap().unwrap(), 1_013.207_888));
         assert_eq!((pressure("Q0991"), pressure("Q////")), (Some(Some(991.0)), Some(None)));
@@ -366,7 +393,12 @@ mod tests {
         assert_eq!(sea("WM01/S2").unwrap().temperature_c, Some(-1.0));
         assert_eq!(sea("W///S3"), Some(SeaGroup { temperature_c: None, state: Some(3), wave_height_m: None }));
         assert_eq!(sea("W19/H75").unwrap().wave_height_m, Some(7.5));
-        for bad in ["W10", "W10/S", "W10/S12", "WS", "W/", "W10/X5"] {
+        for unknown in ["W///S/", "W///H///", "W///H/"] {
+            assert_eq!(sea(unknown), Some(SeaGroup::default()), "{unknown}");
+        }
+        assert_eq!(sea("W10/S/").unwrap().temperature_c, Some(10.0));
+        for bad in ["W10", "W10/S", "W10/S12", "WS", "W/", "W10/X5", "W10/H", "W60/S3", "W10/H999", "WM9/S1", "W///S//"]
+        {
             assert_eq!(sea(bad), None, "{bad}");
         }
     }

@@ -101,7 +101,8 @@ fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Opt
 fn precipitation(p: &Parsed, w: &Weather) -> Precipitation {
     use Phenomenon as P;
     let here = |g: &&WeatherGroup| g.intensity != Intensity::Vicinity;
-    let thunder = p.weather.iter().any(|g| g.descriptor == Some(Descriptor::Thunderstorm));
+    // Thunder in the vicinity (VCTS) is another place's.
+    let thunder = p.weather.iter().filter(here).any(|g| g.descriptor == Some(Descriptor::Thunderstorm));
     let falls = |g: &&WeatherGroup| {
         here(g) && g.descriptor != Some(Descriptor::Blowing) && g.descriptor != Some(Descriptor::Drifting)
     };
@@ -166,7 +167,7 @@ fn clouds(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     for group in &p.clouds {
         match *group {
             CloudGroup::Layer { cover, base_m, kind } if w.clouds.len() < MAX_CLOUD_LAYERS => {
-                if base_m.is_none() {
+                if base_m.is_none() && !assumed.contains(&"clouds[].base_m") {
                     assumed.push("clouds[].base_m");
                 }
                 w.clouds.push(CloudLayer::of(kind, cover, base_m.unwrap_or(ASSUMED_BASE_M).min(20_000.0)));

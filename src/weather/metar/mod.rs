@@ -7,6 +7,8 @@
 mod fault;
 mod groups;
 mod map;
+#[cfg(test)]
+mod odd_reports;
 mod parse;
 mod phenomena;
 

@@ -112,8 +112,16 @@ fn is_supplement(text: &str) -> bool {
     let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED");
     let recent = text.strip_prefix("RE").is_some_and(|w| phenomena::weather(w).is_some());
     let runway = text.strip_prefix('R').is_some_and(|r| r.contains('/') || r.starts_with(|c: char| c.is_ascii_digit()));
+    // Runway and state in eight figures, an older form: 88490391.
+    let figures = text.len() == 8 && text.bytes().all(|b| b.is_ascii_digit() || b == b'/') && text != "////////";
     let shear = matches!(text, "WS" | "ALL" | "RWY" | "TKOF" | "LDG") || text.starts_with("RWY");
-    colour || text.starts_with("BLACK") || recent || runway || shear || matches!(text, "$" | "SNOCLO" | "R/SNOCLO")
+    colour
+        || text.starts_with("BLACK")
+        || recent
+        || runway
+        || figures
+        || shear
+        || matches!(text, "$" | "SNOCLO" | "R/SNOCLO")
 }
 
 /// Whether a word is a group that stands after the pressure.
@@ -134,14 +142,18 @@ fn is_after_visibility(text: &str) -> bool {
         || groups::temperatures(text).is_some()
 }
 
-/// Whether a word is a visibility: what stands after the wind.
+/// Whether a word is a visibility or a group after it: what stands after the wind.
 fn is_after_wind(text: &str) -> bool {
-    text == "CAVOK" || groups::visibility_metres(text).is_some() || groups::visibility_miles(None, text).is_some()
+    text == "CAVOK"
+        || groups::visibility_metres(text).is_some()
+        || groups::visibility_miles(None, text).is_some()
+        || is_after_visibility(text)
 }
 
 /// Beginning of a trend forecast.
 fn is_trend(text: &str) -> bool {
-    matches!(text, "NOSIG" | "BECMG" | "TEMPO" | "INTER" | "FM") || text.starts_with("PROB")
+    let from = text.strip_prefix("FM").is_some_and(|t| t.bytes().all(|b| b.is_ascii_digit()));
+    matches!(text, "NOSIG" | "BECMG" | "TEMPO" | "INTER") || from || text.starts_with("PROB")
 }
 
 /// Reads the groups in their order.
@@ -185,7 +197,11 @@ fn heading(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
     loop {
         match r.peek(0) {
             Some("AUTO") => p.automatic = true,
-            Some("COR" | "CCA" | "CCB" | "CCC") => p.corrected = true,
+            Some("COR") => p.corrected = true,
+            // Canada numbers its corrections by letters.
+            Some(w) if w.len() == 3 && w.starts_with("CC") => p.corrected = true,
+            // Sent late (Canada, United States).
+            Some("RTD") => {}
             _ => return Ok(()),
         }
         r.next += 1;
@@ -216,13 +232,15 @@ fn wind_and_visibility(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
             groups::visibility_miles(None, t).or_else(|| groups::visibility_metres(t))
         })?,
     };
-    p.lowest_visibility_m = r.optional(groups::directional_visibility);
+    while let Some(metres) = r.optional(groups::directional_visibility) {
+        p.lowest_visibility_m = Some(p.lowest_visibility_m.map_or(metres, |m| m.min(metres)));
+    }
     Ok(())
 }
 
 fn temperature_and_pressure(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
     let expected = if !p.clouds.is_empty() || p.cavok {
-        "cloud, such as SCT042, or temperature and dew point, such as 11/10 or M03/M05"
+        "cloud, such as SCT042, or temperature and dew point, such as 11/10 or M03/M05 (M90 to 60)"
     } else if !p.weather.is_empty() {
         "present weather, such as -RA or BR, cloud, such as SCT042, VV001 or CLR, or temperature and dew point, such as 11/10"
     } else {
