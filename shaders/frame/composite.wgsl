@@ -17,12 +17,13 @@ fn sky_behind(d: vec3f) -> vec3f {
     if (!CLEAR_SKY || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
-    var spectrum = sky_radiance(d);
+    let spectrum = sky_radiance(d);
     if d.z < 0.0 {
         return color_of(spectrum + ground_radiance(d)) * frame.medium_share + frame.night_floor;
     }
-    spectrum += disc_radiance(d, frame.pixel_angle) * frame.direct_share;
-    let clear = color_of(spectrum) * drawn.z + frame.night_floor;
+    // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
+    let disc = max(color_of(disc_radiance(d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
+    let clear = (color_of(spectrum) + disc) * drawn.z + frame.night_floor;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 

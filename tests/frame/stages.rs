@@ -1,8 +1,11 @@
 //! Stages: what each draws, their order, and what is refused.
 
+use glam::DVec3;
 use welkin::{
     Status,
+    context::GivenDirection,
     frame::{Effect, Frame, FrameFlags, Stages},
+    scene::Camera,
 };
 
 use crate::host::{Host, SIZE, camera};
@@ -112,4 +115,26 @@ fn a_measured_frame_says_what_each_effect_cost() {
     let frame = Frame { flags: FrameFlags::MEASURE, ..Frame::new(6, camera(), &host.color, Some(&host.depth)) };
     let e = host.view.record_into(&host.context, &frame, Stages::ALL, &mut encoder).unwrap_err();
     assert!(e.status == Status::Unsupported && e.message.contains("MEASURE"), "{e}");
+}
+
+#[test]
+fn a_low_sun_takes_no_colour_from_the_sky_round_it() {
+    let mut host = Host::new(FORMAT);
+    for (id, elevation_deg) in [0.5f64, 1.5, 3.0, 6.0, 20.0].into_iter().enumerate() {
+        host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg })).unwrap();
+        host.clear([0.0; 4], 0.0);
+        let (up, north) = elevation_deg.to_radians().sin_cos();
+        let (eye, forward) = (DVec3::new(0.0, 0.0, 50.0), DVec3::new(0.0, north, up));
+        let camera = Camera::look_to(eye, forward, DVec3::Z, 0.5, 160.0 / 90.0, 0.1);
+        let mut frame = Frame::new(id as u64, camera, &host.color, Some(&host.depth));
+        frame.cd_m2_per_unit = 1e4; // the disc has 1e9 cd/m^2
+        host.view.record(&host.context, &frame, Stages::BACKGROUND).unwrap();
+        let pixels = host.pixels();
+        let sky = pixels[(SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2 + 8) as usize];
+        // Refraction lifts the disc by some pixels.
+        let disc: Vec<_> = pixels.iter().filter(|p| p[0] > 3.0 * sky[0]).collect();
+        assert!(!disc.is_empty(), "sun {elevation_deg}");
+        let whole = |pixel: &[f32; 4]| (0..3).all(|c| pixel[c] > 0.9 * sky[c]);
+        assert!(disc.iter().all(|p| whole(p)), "sun {elevation_deg}: {disc:?} in {sky:?}");
+    }
 }
