@@ -122,9 +122,11 @@ struct Sums {
 }
 
 // What a geometric series adds to its last term. In thick haze two small neighbouring orders can have any ratio, which a
-// series near 1 would turn into colours out of nothing: no air of the acceptance range has a true one above 0.8.
+// series near 1 would turn into colours out of nothing. The bound is measured against the f64 reference: with 0.8 haze of
+// 7 km visibility erred by 17 % (95th percentile) and of 3 km by 41, with 0.55 by 6.0 and 11.5; with 0.5 white ground
+// under haze begins to lose light (3.1 to 4.6 %).
 fn tail(before: vec3f, term: vec3f) -> vec3f {
-    let ratio = clamp(term / max(before, vec3f(1e-12)), vec3f(0.0), vec3f(0.8));
+    let ratio = clamp(term / max(before, vec3f(1e-12)), vec3f(0.0), vec3f(0.55));
     return term * ratio / (1.0 - ratio);
 }
 
