@@ -119,7 +119,7 @@ fn fog_pixels(series: &mut Series<'_>) -> Result<()> {
 
 fn sky_tables(series: &mut Series<'_>) -> Result<()> {
     let device = series.lab.device.clone();
-    for name in ["directional-eighth", "directional-quarter", "directional-half", "directional", "directional-double"] {
+    for name in ["directional-eighth", "directional-quarter", "directional-half", "directional"] {
         let c = candidate(Effect::Sky, name)?;
         let Method::Sky(s) = c.method else { continue };
         let texels = c.work.shared_bytes as f64 / 8.0;

@@ -24,6 +24,9 @@ const RULES: [(&str, u32); 6] =
     [("offset-0.3", 0), ("midpoint", 1), ("trapezoid", 2), ("gauss-4", 3), ("welkin", 4), ("midpoint-stretched", 5)];
 const COUNTS: [u32; 7] = [8, 16, 20, 32, 40, 64, 128];
 
+/// Errors of light scattered once by the sun's zenith angle.
+pub const SUN_COLUMNS: [&str; 4] = ["p95_sun_30", "p95_sun_75", "p95_sun_88", "p95_sun_92"];
+
 /// The air that is integrated: the Earth's with a point sun.
 fn planet() -> Planet {
     Planet { sun_angular_radius_deg: 0.0, ..Planet::earth() }
@@ -202,12 +205,24 @@ fn normal(values: &[f64], means: &[f64]) -> Vec<f64> {
     values.iter().enumerate().map(|(i, v)| v / means[i / (4 * COLUMN_COUNT as usize)]).collect()
 }
 
+/// The 95th percentile under each sun: rows go by altitude, sun, azimuth.
+fn by_sun(drawn: &[f64], truth: &[f64]) -> Result<[f64; 4]> {
+    let group = 4 * COLUMN_COUNT as usize;
+    let mut out = [0.0; 4];
+    for (i, slot) in out.iter_mut().enumerate() {
+        let of = |v: &[f64]| -> Vec<f64> { v.chunks(group).skip(i).step_by(4).flatten().copied().collect() };
+        *slot = difference(&of(drawn), &of(truth), 1.0 / 0.18)?.p95;
+    }
+    Ok(out)
+}
+
 /// Measures all rules and draws both charts.
 ///
 /// # Errors
 /// Files and the GPU.
 pub fn chart(lab: &Lab, options: &Options) -> Result<()> {
-    let columns: Vec<&str> = COLUMNS.iter().copied().chain(["integral", "nodes", "date"]).collect();
+    let columns: Vec<&str> =
+        COLUMNS.iter().copied().chain(["integral", "nodes"]).chain(SUN_COLUMNS).chain(["date"]).collect();
     let note = lab.note("quadrature", options);
     let mut journal = Journal::open(&options.out, "quadrature", &note, &columns, options.fresh)?;
     let rules = Rules::new(&lab.device)?;
@@ -236,10 +251,13 @@ pub fn chart(lab: &Lab, options: &Options) -> Result<()> {
                 } else {
                     difference(&normal(&drawn, &means), truth, 1.0 / 0.18)?
                 };
+                let by_sun = if entry == "transmittance" { [0.0; 4] } else { by_sun(&normal(&drawn, &means), truth)? };
                 let cost = interleaved(&lab.baseline, lab.rounds, |_| rules.run(&pipeline, *n, &small))?;
                 let default = number == 4 && (closed || *n == 4 * SkySettings::default().sky_panels);
                 let mut row = first_fields(&name, rule, default, &cost, &error);
-                row.extend([entry.to_owned(), if closed { "0".into() } else { n.to_string() }, today()]);
+                row.extend([entry.to_owned(), if closed { "0".into() } else { n.to_string() }]);
+                row.extend(by_sun.map(|e| format!("{e:.6e}")));
+                row.push(today());
                 journal.push(row)?;
             }
         }

@@ -117,7 +117,7 @@ pub fn depth() -> Result<Map> {
 pub fn origin() -> Result<Map> {
     let x = Axis::ratios("world's origin away, m", 1.0, 1e9, 37);
     let y = Axis::ratios("distance of the point, m", 0.1, 1e4, 26);
-    let direction = DVec3::new(0.36, 0.48, 0.8);
+    let direction = DVec3::new(0.353, 0.517, 0.779).normalize();
     let usual = |offset: f64, distance: f64| {
         let eye = DVec3::splat(offset / 3f64.sqrt());
         let point = eye + direction * distance;

@@ -248,7 +248,7 @@ pub fn media(lab: &Lab, options: &Options) -> Result<Map> {
     let (factors, scales): (&[f64], &[f64]) = if options.quick {
         (&[0.0, 1.0, 1e4], &[0.0, 0.01, 8e3])
     } else {
-        (&[0.0, 1e-3, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4], &[0.0, 0.01, 1.0, 100.0, 1e3, 8e3, 5e4, 1e6])
+        (&[0.0, 0.1, 1.0, 10.0, 100.0, 1e4], &[0.0, 0.01, 1.0, 1e3, 8e3, 1e6])
     };
     let x = Axis::list("air over the Earth's", factors);
     let y = Axis::list("scale height, m", scales);
