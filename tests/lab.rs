@@ -74,6 +74,7 @@ fn a_stopped_run_is_continued_and_a_line_that_was_cut_is_measured_again() {
     let mut first = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
     first.push(fields(&["a", "1"])).unwrap();
     first.push(fields(&["b", "2"])).unwrap();
+    assert!(first.push(fields(&["wide", "2", "3"])).unwrap_err().message.contains("3 fields"));
     drop(first);
     let part = dir.0.join("sky.csv.part");
     let text = std::fs::read_to_string(&part).unwrap();

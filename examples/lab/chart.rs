@@ -135,8 +135,17 @@ fn family(c: &Candidate) -> &'static str {
 
 fn sky_chart(lab: &Lab, options: &Options) -> Result<()> {
     let names: Vec<String> = scenes::SKY.iter().map(|s| format!("p95_{}", s.name)).collect();
-    let more =
-        ["still", "still_low", "still_high", "still_ms", "rebuild_s", "shared_bytes", "view_bytes", "perceptual"];
+    let more = [
+        "moving_ms",
+        "still",
+        "still_low",
+        "still_high",
+        "still_ms",
+        "rebuild_s",
+        "shared_bytes",
+        "view_bytes",
+        "perceptual",
+    ];
     let units = ["units", "units_still", "units_rebuild", "date"];
     let columns: Vec<&str> =
         COLUMNS.iter().chain(&more).copied().chain(names.iter().map(String::as_str)).chain(units).collect();

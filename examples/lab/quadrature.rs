@@ -9,7 +9,7 @@ use welkin::plan::difference;
 use welkin::sky::reference::medium::Medium;
 use welkin::sky::reference::ray::{Ray, horizon_mu};
 use welkin::sky::reference::{Options as Truth, Orders, Reference, View};
-use welkin::sky::{Planet, SkySettings};
+use welkin::sky::{Planet, SkySettings, air_uniform};
 use welkin::{Error, Result, Status};
 
 use crate::chart::{COLUMNS, Lab, first_fields, plot, say_what_moved, today};
@@ -30,24 +30,6 @@ pub const SUN_COLUMNS: [&str; 4] = ["p95_sun_30", "p95_sun_75", "p95_sun_88", "p
 /// The air that is integrated: the Earth's with a point sun.
 fn planet() -> Planet {
     Planet { sun_angular_radius_deg: 0.0, ..Planet::earth() }
-}
-
-/// `SkyAir` of `sky/air.wgsl`.
-fn air_uniform(p: &Planet) -> [f32; 24] {
-    let mut out = [0.0; 24];
-    let ratio = p.bottom_radius_m / p.top_radius_m;
-    let three = |v: [f64; 3], last: f64| [v[0], v[1], v[2], last];
-    let head = [p.bottom_radius_m, p.thickness_m(), p.sun_angular_radius_deg.to_radians(), p.mie.asymmetry_g];
-    let rows = [
-        head,
-        three(p.rayleigh.scattering_per_m, p.rayleigh.scale_height_m),
-        three(p.mie.scattering_per_m, p.mie.scale_height_m),
-        three(p.mie.extinction_per_m, p.absorption.center_altitude_m),
-        three(p.absorption.extinction_per_m, p.absorption.half_width_m),
-        three(p.ground_albedo, (1.0 - ratio * ratio).sqrt()),
-    ];
-    rows.iter().flatten().zip(&mut out).for_each(|(v, o)| *o = *v as f32);
-    out
 }
 
 /// The passes of the lab.
@@ -98,7 +80,7 @@ impl<'a> Rules<'a> {
         let s = SkySettings { azimuths: 3, zeniths: 4, suns: 16, altitudes: 8, ..Default::default() };
         let mut dims = [0u32; 16];
         dims[..4].copy_from_slice(&[s.suns, s.altitudes, s.zeniths, s.azimuths]);
-        let (air, dims) = (buffer(bytemuck::cast_slice(&air_uniform(&planet()))), buffer(bytemuck::cast_slice(&dims)));
+        let (air, dims) = (buffer(&air_uniform(&planet())), buffer(bytemuck::cast_slice(&dims)));
         let quad = buffer(bytemuck::cast_slice(&[ROWS, COLUMN_COUNT, 0, 16]));
         let nothing = target(device, (64, 64), wgpu::TextureFormat::Rgba16Float).create_view(&Default::default());
         let linear = gpu.create_sampler(&wgpu::SamplerDescriptor {

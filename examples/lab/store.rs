@@ -96,8 +96,12 @@ impl Journal {
     /// Appends a row, on disk before this returns.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// A row of another width; a file that cannot be written.
     pub fn push(&mut self, row: Vec<String>) -> Result<()> {
+        if row.len() != self.table.columns.len() {
+            let what = format!("a row of {} fields under {} columns", row.len(), self.table.columns.len());
+            return Err(Error::new(Status::Internal, what));
+        }
         let mut file = fs::OpenOptions::new().append(true).open(&self.part).map_err(|e| io(&self.part, &e))?;
         file.write_all((row.join(",") + "\n").as_bytes()).map_err(|e| io(&self.part, &e))?;
         self.table.rows.push(row);

@@ -82,4 +82,5 @@ pub use planet::Planet;
 pub use probe_csv::probe_csv;
 pub use settings::{SkyModel, SkySettings};
 pub use tables::{SkyTables, TablesProgress};
+pub use uniforms::air_uniform;
 pub use volume::SkyVolume;

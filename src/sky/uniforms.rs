@@ -37,6 +37,11 @@ pub(crate) struct AirUniform {
     pub unused: f32,
 }
 
+/// Contents of a uniform buffer of `SkyAir` (`sky/air.wgsl`), for shaders that include Welkin's functions of the air.
+pub fn air_uniform(planet: &Planet) -> Vec<u8> {
+    bytemuck::bytes_of(&AirUniform::of(planet)).to_vec()
+}
+
 impl AirUniform {
     /// The planet in f32. Media without thickness become thin ones without effect, so that no shader divides by 0.
     pub fn of(planet: &Planet) -> Self {
