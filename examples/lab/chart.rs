@@ -356,13 +356,11 @@ fn calibrate(table: &Table) {
     let mut data = Vec::new();
     for r in &table.rows {
         let Some(c) = find(&r[0]) else { continue };
-        for (column, scale, work) in [
-            ("moving_ms", 1.0, c.work.frame(pixels, true)),
-            ("still_ms", 1.0, c.work.frame(pixels, false)),
-            ("rebuild_s", 1e3, c.work.rebuild),
-        ] {
+        // Ratios to the baseline, which a busy machine moves less than times.
+        let moving = c.work.frame(pixels, true).plus(c.work.rebuild, 1.0 / FRAMES_AN_AIR);
+        for (column, work) in [("cost", moving), ("still", c.work.frame(pixels, false))] {
             if let Some(v) = table.number(r, column) {
-                data.push((format!("{} {column}", r[0]), v * scale, work));
+                data.push((format!("{} {column}", r[0]), v, work));
             }
         }
     }
@@ -376,7 +374,7 @@ fn calibrate(table: &Table) {
     let best = prices.min_by(|a, b| fit(a).0.total_cmp(&fit(b).0)).unwrap_or_default();
     let (variance, mean) = fit(&best);
     println!(
-        "  work units: a look-up {} samples, a byte {}; {} ns a sample; times follow within a factor {} (1 sigma)",
+        "  work units: a look-up {} samples, a byte {}; {} baselines a million samples; costs follow within a factor {} (1 sigma)",
         short(best.texel),
         short(best.byte),
         short(mean.exp() * 1e6),

@@ -69,6 +69,9 @@ fn sky_section(out: &mut String, t: &Table) {
     let default = t.rows.iter().find(|r| r[2] == "true");
     let source = ["elek-15", "elek-50"].map(|name| t.row(name));
     if let Some(d) = default {
+        // The machine at its calmest: what a unit of cost then takes.
+        let unit = |r: &Vec<String>| n(r, "moving_ms") / n(r, "cost");
+        let calm = t.rows.iter().map(unit).fold(f64::INFINITY, f64::min);
         let on = front_rows(t, "cost").iter().any(|(front, default, _)| *front && *default);
         let _ = write!(
             out,
@@ -77,8 +80,8 @@ fn sky_section(out: &mut String, t: &Table) {
              cheaper and better. ",
             d[0],
             percent(n(d, "p95")),
-            short(n(d, "moving_ms")),
-            short(n(d, "still_ms")),
+            short(calm * n(d, "cost")),
+            short(calm * n(d, "still")),
             format_args!("{} s", short(n(d, "rebuild_s"))),
             if on { "lies on" } else { "lies beside" },
             if on { "nothing" } else { "something" },

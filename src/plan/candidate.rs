@@ -129,7 +129,7 @@ pub struct Price {
 impl Default for Price {
     /// Fitted by `lab chart` to a software driver, where look-ups are dear (docs/lab).
     fn default() -> Self {
-        Self { texel: 1.0, byte: 0.8 }
+        Self { texel: 6.4, byte: 0.8 }
     }
 }
 

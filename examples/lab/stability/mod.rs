@@ -350,7 +350,7 @@ const SAYS: [(&str, &str); 13] = [
     ),
     (
         "media",
-        "Air from none to ten thousand times the Earth's, and scale heights from 0 to 1000 km. The usual step (S - S T)/sigma gives 0/0 where the density underflows, and its series 1/(1 - f) diverges.",
+        "Air from none to ten thousand times the Earth's, and scale heights from 0 to 1000 km. The usual step (S - S T)/sigma gives 0/0 where the density underflows, and its series 1/(1 - f) diverges. Welkin stays finite and never below nothing; errors grow with optical depth, and beyond a depth of about ten the reference, cut at 40 orders, is no truth either: there only finiteness is shown.",
     ),
     (
         "half-floats",
