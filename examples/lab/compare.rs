@@ -85,7 +85,7 @@ fn draw(names: [&str; 2], scene: &str, [a, b, truth]: &[Picture; 3]) -> Result<C
         canvas.text(title, (x, y - 10.0), 13.0, INK, Anchor::Left);
         for (px, py, c) in image.enumerate_pixels() {
             let (left, top) = (x + f64::from(px) * ZOOM, y + f64::from(py) * ZOOM);
-            canvas.fill([left, top, left + ZOOM - 1.0, top + ZOOM - 1.0], (c[0], c[1], c[2]));
+            canvas.fill([left, top, left + ZOOM, top + ZOOM], (c[0], c[1], c[2]));
         }
         let e = figures.luminance;
         let of = if i == 3 { "between them" } else { "from the truth" };
@@ -96,6 +96,7 @@ fn draw(names: [&str; 2], scene: &str, [a, b, truth]: &[Picture; 3]) -> Result<C
             short(100.0 * e.worst),
             short(100.0 * figures.perceptual)
         );
+        let text = if i == 2 { "the reference in f64".to_owned() } else { text };
         canvas.text(&text, (x, y + h + 10.0), 12.0, INK, Anchor::Left);
         if i < 2 {
             println!("  {title}: {text}");

@@ -270,7 +270,7 @@ fn draw(map: &Map) -> Canvas {
     let y = TOP + SIDE + 82.0;
     for i in 0..70 {
         let x = GAP + 4.0 * f64::from(i);
-        canvas.fill([x, y, x + 3.0, y + 12.0], heat(10f64.powf(-7.0 + 0.1 * f64::from(i))));
+        canvas.fill([x, y, x + 4.0, y + 12.0], heat(10f64.powf(-7.0 + 0.1 * f64::from(i))));
     }
     for e in [-7, -5, -3, -1] {
         canvas.text(&format!("1e{e}"), (GAP + 40.0 * f64::from(e + 7), y + 24.0), 12.0, INK, Anchor::Center);
