@@ -70,7 +70,8 @@ struct FogUniform {
     sky_radiance: vec3f,
     kind: u32,
     ground_radiance: vec3f,
-    pad: f32,
+    // Of the forward lobe in elevation, rad.
+    spread: f32,
     // ln(1 - weight of Draine), sign of the Henyey-Greenstein g, share of scattering counted as forward, asymmetry of
     // the rest.
     scattering: vec4f,
@@ -101,8 +102,8 @@ struct LayerPath {
 }
 
 // The phase function per steradian, at the angle whose 1 - cos is `versine`, for sunlight that has travelled the
-// optical path `slant`; derivation in src/fog/phase.rs, fog_phase_after.
-fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> f32 {
+// optical path `slant`: the smooth part, and the peak above it; derivation in src/fog/phase.rs, fog_phase_after.
+fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> vec2f {
     let forward = u.scattering.z;
     let fs = min(forward * slant, 1e4);
     let share = select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
@@ -116,7 +117,7 @@ fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> f32 {
     let m2 = met * met;
     let draine = lobe.y * (m2 + u.lobes.z * c * c) / (m2 + u.lobes.z * (0.33333333 + 0.66666667 * g.y * g.y));
     let even = (1.0 - forward) * lobe.z;
-    return even + share * (mix(draine, lobe.x, e.z) - even);
+    return vec2f(even, share * (mix(draine, lobe.x, e.z) - even));
 }
 
 fn layer_rise(curvature: f32, mu: f32, t: f32) -> f32 {
@@ -304,37 +305,85 @@ fn source_at(u: FogUniform, mu: f32, beam: vec3f, a: vec3f) -> vec3f {
     return j;
 }
 
-fn layer_radiance(u: FogUniform, mu: f32, versine: f32, path: LayerPath, above: vec2f, depth: f32) -> vec3f {
-    let scaling = fog_channels(u.scaling);
-    let a0 = scaling * above.x;
-    let a1 = scaling * above.y;
-    let p = scaling * depth;
-    let through = fog_exp(-p);
-    let slant = select(mu, clamp((above.x - above.y) / max(depth, 1e-12), -1.0, 1.0), depth > 1e-12);
-    let way = depth * mean_place((1.0 - slant * u.inverse_mu0) * (1.0 - u.scattering.z) * depth);
-    let sunlight = max((above.x - slant * way) * u.inverse_mu0 + way, 0.0);
-    let beam = fog_term(u.beam, mu) + u.first * fog_phase_after(u, sunlight, versine);
-
-    let filled = filled_by(p, through);
-    let ramp = a0 * filled - slant * (filled - p * through);
+// The source integrated over the optical `path` between the scaled depths a0 and a1 below the top.
+fn source_along(
+    u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: vec3f, path: vec3f, through: vec3f,
+) -> vec3f {
+    let filled = filled_by(path, through);
+    let ramp = a0 * filled - slant * (filled - path * through);
     let b0 = fog_exp(-a0 * u.inverse_mu0);
     let b1 = fog_exp(-a1 * u.inverse_mu0);
     var l = fog_term(u.constant, mu) * filled
         + fog_term(u.slope, mu) * ramp
-        + beam * attenuated(vec3f(1.0 - slant * u.inverse_mu0), b0, b1 * through, p);
-    let total = scaling * u.depth_total;
+        + beam * attenuated(1.0 - slant * u.inverse_mu0, b0, b1 * through, path);
     if FOG_ABSORBING && u.absorbing != 0u {
-        l += fog_term(u.rise, mu) * attenuated(1.0 - slant * u.k, fog_exp(-u.k * a0), fog_exp(-u.k * a1) * through, p);
+        let below0 = fog_channels(u.scaling) * u.depth_total - a0;
+        let below1 = fog_channels(u.scaling) * u.depth_total - a1;
+        l += fog_term(u.rise, mu) * attenuated(1.0 - slant * u.k, fog_exp(-u.k * a0), fog_exp(-u.k * a1) * through, path);
         l += fog_term(u.fall, mu)
-            * attenuated(1.0 + slant * u.k, fog_exp(-u.k * (total - a0)), fog_exp(-u.k * (total - a1)) * through, p);
+            * attenuated(1.0 + slant * u.k, fog_exp(-u.k * below0), fog_exp(-u.k * below1) * through, path);
     }
-    let toward_sky = clamp(path.end_mu * 100.0 + 0.5, 0.0, 1.0);
-    let behind = mix(u.ground_radiance, u.sky_radiance, toward_sky);
-    let rest = mix(total - a1, a1, vec3f(toward_sky)) / max(abs(path.end_mu), 0.005);
+    return l;
+}
+
+// Light in a ray near the level: see the reference.
+fn grazing_light(
+    u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: f32, path: vec3f, left: vec3f,
+) -> vec3f {
+    let total = fog_channels(u.scaling) * u.depth_total;
+    let unforward = fog_channels(u.scaling / u.ratio);
+    let s = unforward * slant;
+    let spread = sqrt(slant * slant + u.spread * u.spread);
+    let up = 0.5 * (1.0 + slant / spread);
+    let near = min(0.5 * total, vec3f(spread));
+    let to_sky = (u.sky_radiance - source_at(u, mu, beam, near)) * up;
+    let to_ground = (u.ground_radiance - source_at(u, mu, beam, total - near)) * (1.0 - up);
+    let sky1 = fog_exp(-a1 / spread) * left;
+    let ground1 = fog_exp((a1 - total) / spread) * left;
+    let edges = to_sky * attenuated(1.0 - s / spread, fog_exp(-a0 / spread), sky1, path)
+        + to_ground * attenuated(1.0 + s / spread, fog_exp((a0 - total) / spread), ground1, path);
+    return source_along(u, mu, beam, a0, a1, s, path, left) + (1.0 - unforward) * edges;
+}
+
+fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec2f, depth: f32) -> vec3f {
+    let above = select(ends, max(2.0 * u.depth_total - ends, vec2f(0.5 * u.depth_total)), ends > vec2f(u.depth_total));
+    let scaling = fog_channels(u.scaling);
+    let a0 = scaling * above.x;
+    let a1 = scaling * above.y;
+    let total = scaling * u.depth_total;
+    let path = scaling * depth;
+    let full = fog_channels(u.ratio) * depth;
+    let through = fog_exp(-path);
+    let left = fog_exp(-full);
+    let mean = select(entry_mu, clamp((ends.x - ends.y) / max(depth, 1e-12), -1.0, 1.0), depth > 1e-12);
+    let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
+    let level = vec3f(slant);
+    let way = depth * mean_place((1.0 - slant * u.inverse_mu0) * (1.0 - 0.5 * u.scattering.z) * depth);
+    let sunlight = max((above.x - slant * way) * u.inverse_mu0 + way, 0.0);
+    let phase = fog_phase_after(u, sunlight, versine);
+    let beam = fog_term(u.beam, mu) + u.first * phase.x;
+    let toward_sky = clamp(slant * 100.0 + 0.5, 0.0, 1.0);
+    let rest = mix(total - a1, a1, vec3f(toward_sky)) / max(abs(slant), 0.005);
+    let edge = a1 - level * rest;
     let clear = fog_exp(-rest);
-    let end = behind * clear + source_at(u, mu, beam, a1) * (1.0 - clear);
-    l += end * (through - fog_exp(-fog_channels(u.ratio) * depth));
-    return max(l, vec3f(0.0));
+
+    let rate = vec3f(1.0 - slant * u.inverse_mu0);
+    let b0 = fog_exp(-a0 * u.inverse_mu0);
+    let b1 = fog_exp(-a1 * u.inverse_mu0);
+    let beyond = attenuated(rate, b1, fog_exp(-edge * u.inverse_mu0) * clear, rest);
+    let aureole = u.first * phase.y * (attenuated(rate, b0, b1 * through, path) + beyond * (through - left));
+
+    let steep = smoothstep(0.5, 2.0, abs(slant) / u.spread);
+    var l = vec3f(0.0);
+    if steep < 1.0 {
+        l = (1.0 - steep) * grazing_light(u, mu, beam, a0, a1, slant, full, left);
+    }
+    if steep > 0.0 {
+        let behind = mix(u.ground_radiance, u.sky_radiance, toward_sky);
+        let end = behind * clear + source_along(u, mu, beam, a1, edge, level, rest, clear);
+        l += steep * (source_along(u, mu, beam, a0, a1, level, path, through) + end * (through - left));
+    }
+    return max(l + aureole, vec3f(0.0));
 }
 
 fn patch_wave(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> f32 {
@@ -372,10 +421,11 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog 
     if FOG_PATCHES && u.patch_amount > 0.0 {
         depth *= patch_mean(u, origin, direction, path.first, path.last);
     }
-    let above = min(vec2f(layer_depth_above(u, h0), layer_depth_above(u, path.end_altitude)), vec2f(u.depth_total));
+    let ends = vec2f(layer_depth_above(u, h0), layer_depth_above(u, path.end_altitude));
     let to_sun = direction - u.to_sun;
     var fog: Fog;
-    fog.radiance = layer_radiance(u, mu, 0.5 * dot(to_sun, to_sun), path, above, depth);
+    let entry_mu = clamp(mu + u.curvature * path.first, -1.0, 1.0);
+    fog.radiance = layer_radiance(u, mu, entry_mu, 0.5 * dot(to_sun, to_sun), ends, depth);
     fog.transmittance = fog_exp(-fog_channels(u.ratio) * depth);
     fog.distance = path.first + (path.last - path.first) * mean_place(depth);
     return fog;

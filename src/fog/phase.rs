@@ -73,12 +73,14 @@ pub fn fog_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
 /// (1 - e^(-f s)) are first ones, and the peak they leave is wider. So the part of the phase function beyond the smooth,
 /// scaled one (Henyey-Greenstein of `smooth`) is weighted by E = (1 - e^(-f s))/(f s) and taken of order 1/sqrt(E).
 /// That exponent is fitted to adding-and-doubling (`tests/fog/light.rs`): without bias from 4 to 40 degrees off the sun.
-pub fn fog_phase_after(lobes: &PhaseLobes, forward: f64, smooth: f64, slant: f64, versine: f64) -> f64 {
+///
+/// Answers the smooth part, and the peak above it.
+pub fn fog_phase_after(lobes: &PhaseLobes, forward: f64, smooth: f64, slant: f64, versine: f64) -> [f64; 2] {
     let fs = (forward * slant).min(1e4);
     let share = if fs < 1e-3 { 1.0 - 0.5 * fs } else { (1.0 - (-fs).exp()) / fs };
     let d = (1.0 - smooth) * (1.0 - smooth) + 2.0 * smooth * versine;
     let even = (1.0 - forward) * (1.0 - smooth * smooth) / (d * d.sqrt()) / (4.0 * PI);
-    even + share * (fog_phase(lobes, 1.0 / share.sqrt(), versine) - even)
+    [even, share * (fog_phase(lobes, 1.0 / share.sqrt(), versine) - even)]
 }
 
 #[cfg(test)]

@@ -9,12 +9,19 @@
 //! with linear flanks is three path lengths; a flank counts with its mean, in which the path's curvature enters.
 //!
 //! # Light along the ray
-//! The source of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the ray
-//! that depth is taken as linear in optical path between its exact values at both ends (exact for flat layers), so
-//! each exponential of it integrates to an exponential. Forward-scattered light is not lost: the source is
-//! attenuated by the scaled depth, while a host's object is attenuated by the full depth; the difference is filled
-//! with the radiance of the fog behind the object, as the transfer equation demands:
-//! L = integral of J' e^(-t') dt' + I_behind (e^(-tau') - e^(-tau)).
+//! The source J of scattered light (see [`super::light`]) depends on the depth below the layer's top only. Along the ray
+//! that depth is taken as linear in optical path (exact for flat layers), so
+//! each exponential of it integrates to an exponential. Of all scattering the share f is forward, about the ray, and
+//! leaves what arrives there; the transfer equation, whose extinction is the full one, becomes
+//! dI/dt = I - (1 - f) J - f K, with K the mean of the radiance over the forward lobe. A host's object is attenuated by
+//! the full depth, and what it hides is its share of the same field: a black target's contrast is e^-t.
+//!
+//! * **Steep rays**: the lobe is narrow beside the angle to the horizon, K is the field in the ray's own direction, and
+//!   the solution is the scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t), with scaled depth t'.
+//! * **Rays near the level**: the lobe sees the light of the fog above and the dark of the ground below. With s the
+//!   ray's cosine, w the lobe's spread and r = sqrt(s^2 + w^2), the share (1 + s/r)/2 of it looks up with the mean
+//!   cosine r (from E max(x, 0) = (s + r)/2 of a spread distribution), and each half is J, seen through to its edge
+//!   (sky or ground) by e^(-depth/r). Without this, dark ground shone through fog of any depth toward the horizon.
 
 use glam::DVec3;
 
@@ -42,6 +49,10 @@ pub enum FogKind {
 
 /// A band of this height, rad, or more covers all of the sky: pi, less what f32 rounds away.
 const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
+
+/// Spread of the forward lobe in elevation, rad: how far from the level a ray must be to see only ground or only sky
+/// through it. Fitted to adding and doubling (`tests/fog/light.rs`): .1 to .2 serve droplets and haze alike.
+pub(super) const FORWARD_SPREAD: f64 = 0.12;
 
 /// Number of plane waves in the patches' pattern: the pairs of four.
 pub const PATCH_WAVES: usize = 6;
@@ -321,42 +332,88 @@ fn source_at(m: &FogModel, mu: f64, beam: DVec3, a: DVec3) -> DVec3 {
     j
 }
 
-/// Light scattered into a ray of `path` through the layer, looking with cosine `mu`, `versine` = 1 - cos of its angle
-/// with the sun, depths above its ends `above0` and `above1`.
-fn layer_radiance(m: &FogModel, mu: f64, versine: f64, path: &LayerPath, above: [f64; 2], depth: f64) -> DVec3 {
-    let [a0, a1] = above.map(|a| m.scaling * a);
-    let p = m.scaling * depth;
-    let through = exp3(-p);
-    // Change of scaled depth below the top per scaled path: the mean of mu, exact in flat layers.
-    let slant = if depth > 1e-12 { ((above[0] - above[1]) / depth).clamp(-1.0, 1.0) } else { mu };
-    let slant3 = DVec3::splat(slant);
+/// The source of scattered light, integrated over the optical `path` between the scaled depths `a` below the top, of
+/// which `through` is left at its end; `slant` is the loss of depth per unit of path.
+fn source_along(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: DVec3, path: DVec3, through: DVec3) -> DVec3 {
     let one = DVec3::ONE;
-    // Optical path of the sunlight by way of the mean place where the ray scatters it.
-    let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - m.forward) * depth);
-    let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
-    let beam = m.beam.at(mu) + m.first * fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
-
-    let filled = attenuated(one, one, through, p);
-    let ramp = a0 * filled - slant * (filled - p * through);
-    let (b0, b1) = (exp3(-a0 * m.inverse_mu0), exp3(-a1 * m.inverse_mu0));
+    let filled = attenuated(one, one, through, path);
+    let ramp = a[0] * filled - slant * (filled - path * through);
+    let [b0, b1] = a.map(|a| exp3(-a * m.inverse_mu0));
     let mut l = m.constant.at(mu) * filled
         + m.slope.at(mu) * ramp
-        + beam * attenuated(one - slant3 * m.inverse_mu0, b0, b1 * through, p);
+        + beam * attenuated(one - slant * m.inverse_mu0, b0, b1 * through, path);
     if m.absorbing {
-        let total = m.scaling * m.depth_total;
-        l += m.rise.at(mu) * attenuated(one - slant3 * m.k, exp3(-m.k * a0), exp3(-m.k * a1) * through, p);
-        l += m.fall.at(mu)
-            * attenuated(one + slant3 * m.k, exp3(-m.k * (total - a0)), exp3(-m.k * (total - a1)) * through, p);
+        let below = a.map(|a| m.scaling * m.depth_total - a);
+        l += m.rise.at(mu) * attenuated(one - slant * m.k, exp3(-m.k * a[0]), exp3(-m.k * a[1]) * through, path);
+        l +=
+            m.fall.at(mu) * attenuated(one + slant * m.k, exp3(-m.k * below[0]), exp3(-m.k * below[1]) * through, path);
     }
-    // The fog behind the object fills what its full extinction takes beyond the scaled one.
-    let grazing = 0.005;
-    let toward_sky = ((path.end_mu / grazing) * 0.5 + 0.5).clamp(0.0, 1.0);
-    let behind = m.ground_radiance.lerp(m.sky_radiance, toward_sky);
-    let rest = (m.scaling * m.depth_total - a1).lerp(a1, toward_sky) / path.end_mu.abs().max(grazing);
+    l
+}
+
+/// Light scattered into a ray through the layer, looking with cosine `mu`, `entry_mu` where it enters; `versine` = 1 -
+/// cos of its angle with the sun, `ends` the depths above its ends at 550 nm, `depth` along it.
+///
+/// Below the ground's level (a hollow of the host's terrain) the field is mirrored: it has fog below it, not the bare
+/// ground that is known at the level only.
+fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64; 2], depth: f64) -> DVec3 {
+    let mirrored = |a: f64| if a > m.depth_total { (2.0 * m.depth_total - a).max(0.5 * m.depth_total) } else { a };
+    let above = ends.map(mirrored);
+    let a = above.map(|a| m.scaling * a);
+    let total = m.scaling * m.depth_total;
+    let path = m.scaling * depth;
+    let full = m.ratio * depth;
+    let (through, left) = (exp3(-path), exp3(-full));
+    // Loss of depth below the top per path, where the light comes from: the mean cosine of a short path, that of the
+    // entry for one whose end is not seen.
+    let mean = if depth > 1e-12 { ((ends[0] - ends[1]) / depth).clamp(-1.0, 1.0) } else { entry_mu };
+    let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
+    let level = DVec3::splat(slant);
+    // Optical path of the sunlight by way of the mean place where the ray scatters it: half of what is scattered forward
+    // counts as lost. All of it leaves a seam where rays pass from ground to sky; none, too bright an aureole in haze.
+    let way = depth * mean_place((1.0 - slant * m.inverse_mu0) * (1.0 - 0.5 * m.forward) * depth);
+    let sunlight = ((above[0] - slant * way) * m.inverse_mu0 + way).max(0.0);
+    let [even, peak] = fog_phase_after(&m.lobes, m.forward, m.smooth, sunlight, versine);
+    let beam = m.beam.at(mu) + m.first * even;
+    // The ray's way on, to the ground or out of the top.
+    let toward_sky = (slant * 100.0 + 0.5).clamp(0.0, 1.0);
+    let rest = (total - a[1]).lerp(a[1], toward_sky) / slant.abs().max(0.005);
+    let edge = a[1] - level * rest;
     let clear = exp3(-rest);
-    let end = behind * clear + source_at(m, mu, beam, a1) * (one - clear);
-    l += end * (through - exp3(-m.ratio * depth));
-    l.max(DVec3::ZERO)
+
+    // Sunlight scattered once, about the sun: its peak is as narrow as the scaling takes it to be.
+    let rate = DVec3::splat(1.0 - slant * m.inverse_mu0);
+    let [b0, b1, b2] = [a[0], a[1], edge].map(|a| exp3(-a * m.inverse_mu0));
+    let beyond = attenuated(rate, b1, b2 * clear, rest);
+    let aureole = m.first * peak * (attenuated(rate, b0, b1 * through, path) + beyond * (through - left));
+
+    let x = ((slant.abs() / FORWARD_SPREAD - 0.5) / 1.5).clamp(0.0, 1.0);
+    let steep = x * x * (3.0 - 2.0 * x);
+    let wide = grazing_light(m, mu, beam, a, slant, [full, left]);
+    let behind = m.ground_radiance.lerp(m.sky_radiance, toward_sky);
+    let end = behind * clear + source_along(m, mu, beam, [a[1], edge], level, rest, clear);
+    let narrow = source_along(m, mu, beam, a, level, path, through) + end * (through - left);
+    (wide.lerp(narrow, steep) + aureole).max(DVec3::ZERO)
+}
+
+/// Light in a ray near the level, whose forward lobe reaches up and down: every scattering on the way counts, the
+/// forward ones with the mean of what the lobe sees ([`FORWARD_SPREAD`]). `full`: the unscaled path and what it leaves.
+fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, full: [DVec3; 2]) -> DVec3 {
+    let [path, left] = full;
+    let one = DVec3::ONE;
+    let total = m.scaling * m.depth_total;
+    let unforward = m.scaling / m.ratio;
+    let s = unforward * slant;
+    let spread = (slant * slant + FORWARD_SPREAD * FORWARD_SPREAD).sqrt();
+    let up = 0.5 * (1.0 + slant / spread);
+    let near = (0.5 * total).min(DVec3::splat(spread));
+    let to_sky = (m.sky_radiance - source_at(m, mu, beam, near)) * up;
+    let to_ground = (m.ground_radiance - source_at(m, mu, beam, total - near)) * (1.0 - up);
+    let [sky0, sky1] = a.map(|a| exp3(-a / spread));
+    let [ground0, ground1] = a.map(|a| exp3((a - total) / spread));
+    let edges = to_sky * attenuated(one - s / spread, sky0, sky1 * left, path)
+        + to_ground * attenuated(one + s / spread, ground0, ground1 * left, path);
+    source_along(m, mu, beam, a, s, path, left) + (one - unforward) * edges
 }
 
 /// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
@@ -402,9 +459,10 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSa
     if m.patch_amount > 0.0 {
         depth *= patch_mean(m, origin, direction, path.first, path.last);
     }
-    let above = [h0, path.end_altitude].map(|h| layer_depth_above(m, h).min(m.depth_total));
+    let ends = [h0, path.end_altitude].map(|h| layer_depth_above(m, h));
     let versine = 0.5 * (direction - m.to_sun).length_squared();
-    let radiance = layer_radiance(m, mu, versine, &path, above, depth);
+    let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);
+    let radiance = layer_radiance(m, mu, entry_mu, versine, ends, depth);
     let transmittance = exp3(-m.ratio * depth);
     // Mean distance of the scattered light, as in an even medium between entry and exit.
     let distance = path.first + (path.last - path.first) * mean_place(depth);

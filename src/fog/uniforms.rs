@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::laws::{Curve, DistanceKind};
 use super::light::{Slab, Solution, delta_scaling};
 use super::phase::PhaseLobes;
-use super::reference::{FogKind, FogModel, PATCH_WAVES, Term, layer_depth_above};
+use super::reference::{FORWARD_SPREAD, FogKind, FogModel, PATCH_WAVES, Term, layer_depth_above};
 use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
 use crate::error::Result;
 
@@ -223,7 +223,7 @@ impl FogModel {
             sky_radiance: v(self.sky_radiance),
             kind: self.kind as u32,
             ground_radiance: v(self.ground_radiance),
-            pad: 0.0,
+            spread: FORWARD_SPREAD as f32,
             scattering: [(1.0 - lobes.w_draine).ln(), lobes.g_hg.signum(), self.forward, self.smooth].map(|k| k as f32),
             constant: term(&self.constant),
             slope: term(&self.slope),
@@ -311,7 +311,7 @@ pub struct FogUniform {
     pub sky_radiance: [f32; 3],
     pub kind: u32,
     pub ground_radiance: [f32; 3],
-    pub pad: f32,
+    pub spread: f32,
     pub scattering: [f32; 4],
     pub constant: [[f32; 4]; 2],
     pub slope: [[f32; 4]; 2],

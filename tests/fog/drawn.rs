@@ -192,14 +192,15 @@ fn no_seam_at_the_horizon() {
     }
 }
 
-/// Everything far away in deep fog has one radiance: ground and sky converge.
+/// Everything far away in deep fog has one radiance: ground and sky converge, but for what the forward lobe sees of the
+/// dark ground, which changes by 2 % over these angles (adding and doubling).
 #[test]
 fn far_ground_and_sky_converge() {
     let m = model(slab(150.0, -1e4, 150.0, 30.0), &view(2.0, EARTH_M));
     let far = |mu: f32, range: f32| drawn(&m, &[[0.2, mu, range, range]])[0];
     let sky = far(0.001, RANGE_SKY_M as f32);
     for ground in [far(-0.001, 1900.0), far(-0.0005, RANGE_SKY_M as f32), far(0.0, 5000.0)] {
-        assert!((ground[0] / sky[0] - 1.0).abs() < 0.01 && ground[1] < 1e-4, "{ground:?} {sky:?}");
+        assert!((ground[0] / sky[0] - 1.0).abs() < 0.02 && ground[1] < 1e-4, "{ground:?} {sky:?}");
     }
 }
 
@@ -283,7 +284,7 @@ fn offsets_are_those_of_the_shader() {
         sky_radiance,
         kind,
         ground_radiance,
-        pad,
+        spread,
         scattering,
         constant,
         slope,

