@@ -88,9 +88,9 @@ fn light_near_the_level_follows_adding_and_doubling() {
                 };
                 let truth = case.solve(&[1.6]);
                 let m = model(total, share, mu0, light, phase);
-                for i in 0..5 {
+                for (i, &x) in x.iter().enumerate().take(5) {
                     for (mu, want, behind) in
-                        [(x[i], truth.down[0][i], m.sky_radiance.y), (-x[i], truth.up[0][i], m.ground_radiance.y)]
+                        [(x, truth.down[0][i], m.sky_radiance.y), (-x, truth.up[0][i], m.ground_radiance.y)]
                     {
                         let [l, t] = along(&m, 1.6, mu, RANGE_SKY_M);
                         logs.push(((l + t * behind) / want).ln());
