@@ -3215,6 +3215,8 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
  * composes with everything and without each part of the weather, and reads the differences back some frames later
  * without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+ * Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
+ * perceived for the time they save, and come back when there is room to spare.
  * After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
  * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
@@ -3232,6 +3234,10 @@ typedef uint32_t wk_budget_has_flags;
 #define WK_BUDGET_HAS_TOLERANCE 1
 /** pinned_parts */
 #define WK_BUDGET_HAS_PINNED_PARTS 2
+/** milliseconds */
+#define WK_BUDGET_HAS_MILLISECONDS 4
+/** importance_air, importance_fog and importance_sky */
+#define WK_BUDGET_HAS_IMPORTANCE 8
 
 /** Parts of the weather that a picture may do without. */
 typedef uint32_t wk_part_flags;
@@ -3243,7 +3249,7 @@ typedef uint32_t wk_part_flags;
 /** The clear sky above the horizon, behind clouds. */
 #define WK_PART_SKY 4
 
-/** How wrong a view's pictures may be. */
+/** How wrong a view's pictures may be, and how long they may take. */
 typedef struct wk_budget {
     /** sizeof(wk_budget) of your header. */
     uint32_t struct_size;
@@ -3260,6 +3266,20 @@ typedef struct wk_budget {
     wk_part_flags pinned_parts;
     /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
     double tolerance;
+    /**
+     * Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
+     * times from wk_view_report_time only.
+     */
+    double milliseconds;
+    /**
+     * Optional, all three: how much the parts matter to those who look, which says what is left out first under a budget
+     * of time. Range [0, 1], default 0.9, 0.9 and 0.2.
+     */
+    double importance_air;
+    /** As importance_air. */
+    double importance_fog;
+    /** As importance_air. */
+    double importance_sky;
 } wk_budget;
 
 /** Every field of `wk_budget` at its default. */
@@ -3269,8 +3289,22 @@ typedef struct wk_budget {
     /* next */ NULL, \
     /* has */ 0, \
     /* pinned_parts */ 0, \
-    /* tolerance */ 0.0 \
+    /* tolerance */ 0.0, \
+    /* milliseconds */ 0.0, \
+    /* importance_air */ 0.0, \
+    /* importance_fog */ 0.0, \
+    /* importance_sky */ 0.0 \
 }
+
+/** What of a budget could not be kept, by the estimates. */
+typedef uint32_t wk_gave_way;
+
+/** Nothing had to give way. */
+#define WK_GAVE_WAY_NOTHING 0
+/** The tolerance: the time allows no better picture. */
+#define WK_GAVE_WAY_TOLERANCE 1
+/** Time, and the tolerance: even with every part left out the picture takes longer than the budget. */
+#define WK_GAVE_WAY_TIME 2
 
 /** What a view's last frame left out. Errors are estimates from the gauged pixels. */
 typedef struct wk_plan {
@@ -3282,8 +3316,8 @@ typedef struct wk_plan {
     const void *next;
     /** The parts of which anything is drawn. */
     wk_part_flags drawn;
-    /** 0. */
-    uint32_t reserved;
+    /** What of the budget could not be kept. */
+    wk_gave_way gave_way;
     /** Error of all that is left out together: 95th percentile over the gauged pixels. */
     double error;
     /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
@@ -3294,6 +3328,8 @@ typedef struct wk_plan {
     double work;
     /** Work of the picture with everything, likewise. */
     double work_of_everything;
+    /** What the picture should take by the times reported so far, ms; 0 before the first. */
+    double milliseconds;
 } wk_plan;
 
 /** Every field of `wk_plan` at its default. */
@@ -3302,12 +3338,13 @@ typedef struct wk_plan {
     /* struct_type */ WK_STRUCT_TYPE_PLAN, \
     /* next */ NULL, \
     /* drawn */ 0, \
-    /* reserved */ 0, \
+    /* gave_way */ 0, \
     /* error */ 0.0, \
     /* error_bound */ 0.0, \
     /* worst */ 0.0, \
     /* work */ 0.0, \
-    /* work_of_everything */ 0.0 \
+    /* work_of_everything */ 0.0, \
+    /* milliseconds */ 0.0 \
 }
 
 /** Why a part is drawn or not. */
@@ -3325,6 +3362,8 @@ typedef uint32_t wk_plan_reason;
 #define WK_PLAN_REASON_WITHIN_TOLERANCE 4
 /** The host pinned it. */
 #define WK_PLAN_REASON_PINNED 5
+/** The time allows no more. */
+#define WK_PLAN_REASON_OUT_OF_TIME 6
 
 /** One part of a plan. */
 typedef struct wk_part_plan {
@@ -3370,6 +3409,14 @@ typedef struct wk_part_plan {
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
+
+/**
+ * Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
+ * call). Under a budget of time the plan follows the median of the last three reports.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
+ */
+WK_API wk_status wk_view_report_time(wk_view *view, double milliseconds);
 
 /**
  * Says what the view's last frame left out.

@@ -12,10 +12,11 @@ use std::{
 
 use glam::DVec3;
 use welkin::{
-    context::{Context, ContextDesc, GivenDirection},
+    context::{Context, ContextDesc},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
     scene::Camera,
+    weather::Weather,
 };
 
 struct Counting;
@@ -74,7 +75,8 @@ impl Bench {
         let device = Device::headless(&options).expect("a driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
-        context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 30.0 })).unwrap();
+        // Cloud layers, precipitation, mist: everything that a frame may ask of the weather.
+        context.set_weather(&Weather::preset("rain").unwrap(), 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
         let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -95,9 +97,10 @@ impl Bench {
         }
     }
 
-    /// One frame of a camera that turns.
+    /// One frame of a camera that turns while time goes on.
     fn record(&mut self, id: u64) {
         let angle = id as f64 * 0.01;
+        self.context.update(id as f64 / 60.0).unwrap();
         let camera = Camera::look_to(
             DVec3::new(0.0, 0.0, 50.0),
             DVec3::new(angle.sin(), angle.cos(), 0.1),
@@ -111,10 +114,12 @@ impl Bench {
         self.device.wait().unwrap();
     }
 
-    /// The same wgpu calls without Welkin: an upload, a copy, a pass of one draw.
+    /// The same wgpu calls without Welkin: uploads for frame, fog and moved lamps, a copy, a pass of one draw.
     fn bare(&self) {
         let device = &self.device.device;
-        self.device.queue.write_buffer(&self.uniform, 0, &[0; 512]);
+        for _ in 0..3 {
+            self.device.queue.write_buffer(&self.uniform, 0, &[0; 512]);
+        }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
         encoder.copy_texture_to_texture(self.color.as_image_copy(), self.copy.as_image_copy(), self.color.size());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

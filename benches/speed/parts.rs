@@ -71,7 +71,7 @@ impl Bench {
 
     /// The least time of a frame, ms, with these parts.
     fn time(&mut self, parts: [bool; 3]) -> Fallible<f64> {
-        self.view.set_budget(Budget { tolerance: None, pinned: Some(parts) })?;
+        self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() })?;
         let mut least = f64::INFINITY;
         for _ in 0..31 {
             least = least.min(self.frame()?);
@@ -105,7 +105,7 @@ pub fn run() -> Fallible<()> {
     bench.world(180);
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
     let pinned = bench.time([true; 3])?;
-    bench.view.set_budget(Budget { tolerance: Some(1e-6), pinned: None })?;
+    bench.view.set_budget(Budget { tolerance: Some(1e-6), ..Budget::default() })?;
     for _ in 0..16 {
         bench.frame()?;
     }

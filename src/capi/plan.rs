@@ -3,6 +3,8 @@
 //! With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
 //! composes with everything and without each part of the weather, and reads the differences back some frames later
 //! without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+//! Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
+//! perceived for the time they save, and come back when there is room to spare.
 //! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
@@ -24,7 +26,7 @@ use super::{
 };
 use crate::{
     error::{Error, Status},
-    plan::{Budget, Part, PartPlan, Reason},
+    plan::{Budget, GaveWay, Part, PartPlan, Reason},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
@@ -44,6 +46,10 @@ pub type wk_budget_has_flags = u32;
 pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
 /// pinned_parts
 pub const WK_BUDGET_HAS_PINNED_PARTS: wk_budget_has_flags = 2;
+/// milliseconds
+pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 4;
+/// importance_air, importance_fog and importance_sky
+pub const WK_BUDGET_HAS_IMPORTANCE: wk_budget_has_flags = 8;
 
 /// Why a part is drawn or not.
 pub type wk_plan_reason = u32;
@@ -59,8 +65,19 @@ pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
 pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
 /// The host pinned it.
 pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
+/// The time allows no more.
+pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// How wrong a view's pictures may be.
+/// What of a budget could not be kept, by the estimates.
+pub type wk_gave_way = u32;
+/// Nothing had to give way.
+pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
+/// The tolerance: the time allows no better picture.
+pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
+/// Time, and the tolerance: even with every part left out the picture takes longer than the budget.
+pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
+
+/// How wrong a view's pictures may be, and how long they may take.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_budget {
@@ -77,6 +94,16 @@ pub struct wk_budget {
     pub pinned_parts: wk_part_flags,
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
+    /// Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
+    /// times from wk_view_report_time only.
+    pub milliseconds: f64,
+    /// Optional, all three: how much the parts matter to those who look, which says what is left out first under a budget
+    /// of time. Range [0, 1], default 0.9, 0.9 and 0.2.
+    pub importance_air: f64,
+    /// As importance_air.
+    pub importance_fog: f64,
+    /// As importance_air.
+    pub importance_sky: f64,
 }
 
 impl wk_budget {
@@ -87,6 +114,10 @@ impl wk_budget {
         has: 0,
         pinned_parts: 0,
         tolerance: 0.0,
+        milliseconds: 0.0,
+        importance_air: 0.0,
+        importance_fog: 0.0,
+        importance_sky: 0.0,
     };
 }
 
@@ -102,8 +133,8 @@ pub struct wk_plan {
     pub next: *const c_void,
     /// The parts of which anything is drawn.
     pub drawn: wk_part_flags,
-    /// 0.
-    pub reserved: u32,
+    /// What of the budget could not be kept.
+    pub gave_way: wk_gave_way,
     /// Error of all that is left out together: 95th percentile over the gauged pixels.
     pub error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
@@ -114,6 +145,8 @@ pub struct wk_plan {
     pub work: f64,
     /// Work of the picture with everything, likewise.
     pub work_of_everything: f64,
+    /// What the picture should take by the times reported so far, ms; 0 before the first.
+    pub milliseconds: f64,
 }
 
 impl wk_plan {
@@ -122,12 +155,13 @@ impl wk_plan {
         struct_type: WK_STRUCT_TYPE_PLAN,
         next: null(),
         drawn: 0,
-        reserved: 0,
+        gave_way: 0,
         error: 0.0,
         error_bound: 0.0,
         worst: 0.0,
         work: 0.0,
         work_of_everything: 0.0,
+        milliseconds: 0.0,
     };
 }
 
@@ -180,6 +214,7 @@ impl wk_part_plan {
             Reason::WithinTolerance => {
                 (WK_PLAN_REASON_WITHIN_TOLERANCE, c"the error without it is within the tolerance")
             }
+            Reason::OutOfTime => (WK_PLAN_REASON_OUT_OF_TIME, c"the time allows no more"),
             Reason::Pinned => (WK_PLAN_REASON_PINNED, c"the host pinned it"),
         };
         Self {
@@ -210,12 +245,29 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
             layout::WK_BUDGET_HAS_FLAGS.check(&"budget.has", c.has.into())?;
             layout::WK_PART_FLAGS.check(&"budget.pinned_parts", c.pinned_parts.into())?;
             asked.tolerance = (c.has & WK_BUDGET_HAS_TOLERANCE != 0).then_some(c.tolerance);
+            asked.milliseconds = (c.has & WK_BUDGET_HAS_MILLISECONDS != 0).then_some(c.milliseconds);
+            if c.has & WK_BUDGET_HAS_IMPORTANCE != 0 {
+                asked.importance = [c.importance_air, c.importance_fog, c.importance_sky];
+            }
             let pinned = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY].map(|p| c.pinned_parts & p != 0);
             asked.pinned = (c.has & WK_BUDGET_HAS_PINNED_PARTS != 0).then_some(pinned);
         }
         asked.validate()?;
         object.cell.drain();
         object.lock().set_budget(asked)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
+/// call). Under a budget of time the plan follows the median of the last three reports.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_report_time(view: *mut wk_view, milliseconds: f64) -> wk_status {
+    guard("wk_view_report_time", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        object.lock().report_time(milliseconds)?;
         Ok(Status::Ok)
     })
 }
@@ -237,6 +289,12 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
             worst: plan.error.worst,
             work: plan.work,
             work_of_everything: plan.work_of_everything,
+            milliseconds: plan.milliseconds.unwrap_or(0.0),
+            gave_way: match plan.gave_way {
+                GaveWay::Nothing => WK_GAVE_WAY_NOTHING,
+                GaveWay::Tolerance => WK_GAVE_WAY_TOLERANCE,
+                GaveWay::Time => WK_GAVE_WAY_TIME,
+            },
             ..wk_plan::INIT
         });
         Ok(Status::Ok)

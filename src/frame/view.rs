@@ -126,6 +126,15 @@ impl View {
         device.check()
     }
 
+    /// Says what the weather took in the last frame, ms of whatever the host's budget counts (its GPU timer, or the
+    /// waited call): under a budget of time the plan follows it.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; nothing changes then.
+    pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
+        self.planner.report_time(milliseconds)
+    }
+
     /// What the last frame drew of the weather, and why.
     pub fn plan(&self) -> &Plan {
         self.planner.plan()

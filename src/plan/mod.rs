@@ -23,11 +23,13 @@ mod candidate;
 pub mod difference;
 pub mod front;
 mod gauge;
+pub mod governor;
 pub mod parts;
 mod planner;
 
 pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
 pub use difference::{Difference, difference};
+pub use governor::GaveWay;
 pub use parts::{Estimate, Part, Reason};
 pub use planner::{Budget, PartPlan, Plan};
 pub(crate) use planner::{Planner, Present, Situation};

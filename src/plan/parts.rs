@@ -48,6 +48,8 @@ pub enum Reason {
     Needed,
     /// The error without it is within the tolerance.
     WithinTolerance,
+    /// The time allows no more.
+    OutOfTime,
 }
 
 impl Reason {
@@ -60,6 +62,7 @@ impl Reason {
             Self::Absent => "there is none of it",
             Self::Needed => "without it the error would be beyond the tolerance",
             Self::WithinTolerance => "the error without it is within the tolerance",
+            Self::OutOfTime => "the time allows no more",
         }
     }
 }
@@ -85,12 +88,15 @@ impl Estimate {
     }
 }
 
+/// Leaving out takes a tenth more certainty than staying out, so that a picture at the border does not flicker.
+pub(super) const CERTAINTY: f64 = 0.9;
+
 /// What a gauge saw at one pixel: change of luminance without each part, and whether the host drew there (1), did not
 /// (-1), or keeps the pixel for itself (0).
 pub type Sample = [f32; 4];
 
-/// Estimates for every set of parts; holds its memory between calls.
-pub(super) struct Chooser {
+/// Estimates the error of leaving out sets of parts; holds its memory between calls.
+pub(super) struct Estimator {
     scratch: Vec<f32>,
 }
 
@@ -99,7 +105,7 @@ fn bit(part: usize) -> usize {
     1 << part
 }
 
-impl Chooser {
+impl Estimator {
     pub fn new(samples: usize) -> Self {
         Self { scratch: Vec::with_capacity(samples) }
     }
@@ -128,24 +134,24 @@ impl Chooser {
         };
         Estimate { p95, bound, worst: f64::from(worst) }
     }
-
-    /// The parts to leave out: those present that save most `work` while the error keeps `tolerance`.
-    pub fn choose(&mut self, samples: &[Sample], present: [bool; 3], work: [f64; 3], tolerance: f64) -> usize {
-        let saved = |set: usize| (0..3).filter(|i| set & bit(*i) != 0).map(|i| work[i]).sum::<f64>();
-        let candidates = (1..8usize).filter(|set| (0..3).all(|i| set & bit(i) == 0 || present[i]));
-        let mut best = 0;
-        for set in candidates {
-            if saved(set) > saved(best) && self.estimate(samples, set).keeps(tolerance) {
-                best = set;
-            }
-        }
-        best
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::governor::{Choice, Governor};
     use super::*;
+
+    /// The set that a tolerance leaves out.
+    fn choose(samples: &[Sample], present: [bool; 3], work: [f64; 3], tolerance: f64) -> usize {
+        let mut estimator = Estimator::new(2000);
+        let choices = std::array::from_fn(|set| Choice {
+            possible: (0..3).all(|i| set & (1 << i) == 0 || present[i]),
+            error: estimator.estimate(samples, set),
+            loss: 0.0,
+            work: 10.0 - (0..3).filter(|i| set & (1 << i) != 0).map(|i| work[i]).sum::<f64>(),
+        });
+        Governor::default().choose(&choices, Some(tolerance), None, 0).0
+    }
 
     fn picture(changes: impl Fn(usize) -> [f32; 3]) -> Vec<Sample> {
         (0..2000)
@@ -156,49 +162,41 @@ mod tests {
 
     #[test]
     fn what_saves_most_is_left_out_while_the_error_allows_it() {
-        let mut chooser = Chooser::new(2000);
         let even = picture(|_| [0.01, 0.015, 0.0]);
-        let choose = |c: &mut Chooser, tolerance| c.choose(&even, [true; 3], [1.0, 3.0, 0.5], tolerance);
-        assert_eq!(choose(&mut chooser, 0.005), 0b100, "the sky is worth nothing here");
-        assert_eq!(choose(&mut chooser, 0.012), 0b101);
-        assert_eq!(choose(&mut chooser, 0.02), 0b110, "fog saves more than air");
-        assert_eq!(choose(&mut chooser, 0.03), 0b111);
-        assert_eq!(
-            chooser.choose(&even, [true, false, true], [1.0; 3], 0.03),
-            0b101,
-            "what is not there saves nothing"
-        );
-        assert_eq!(chooser.choose(&[], [true; 3], [1.0; 3], 0.1), 0b111, "a picture under the mask needs nothing");
+        let left_out = |tolerance| choose(&even, [true; 3], [1.0, 3.0, 0.5], tolerance);
+        assert_eq!(left_out(0.005), 0b100, "the sky is worth nothing here");
+        assert_eq!(left_out(0.012), 0b101);
+        assert_eq!(left_out(0.02), 0b110, "fog saves more than air");
+        assert_eq!(left_out(0.03), 0b111);
+        assert_eq!(choose(&even, [true, false, true], [1.0; 3], 0.03), 0b101, "what is not there saves nothing");
+        assert_eq!(choose(&[], [true; 3], [1.0; 3], 0.1), 0b111, "a picture under the mask needs nothing");
     }
 
     #[test]
     fn opposite_changes_cancel_only_where_they_meet() {
-        let mut chooser = Chooser::new(2000);
         let both = picture(|_| [0.3, -0.3, 0.0]);
-        assert_eq!(chooser.choose(&both, [true; 3], [1.0; 3], 0.01) & 0b11, 0b11);
+        assert_eq!(choose(&both, [true; 3], [1.0; 3], 0.01) & 0b11, 0b11);
         let apart = picture(|i| if i < 1000 { [0.3, 0.0, 0.0] } else { [0.0, -0.3, 0.0] });
-        assert_eq!(chooser.choose(&apart, [true; 3], [1.0; 3], 0.01) & 0b11, 0);
+        assert_eq!(choose(&apart, [true; 3], [1.0; 3], 0.01) & 0b11, 0);
     }
 
     #[test]
     fn the_bound_lies_above_the_percentile_and_a_few_pixels_cannot_be_ruined() {
-        let mut chooser = Chooser::new(2000);
         let ramp = picture(|i| [i as f32 / 2000.0, 0.0, 0.0]);
-        let e = chooser.estimate(&ramp, 1);
+        let e = Estimator::new(2000).estimate(&ramp, 1);
         assert!((e.p95 - 0.95).abs() < 1e-3 && e.bound > 0.956 && e.bound < 0.96 && e.worst > 0.99, "{e:?}");
         let ridge = picture(|i| [if i < 60 { 0.5 } else { 0.0 }, 0.0, 0.0]);
-        assert!(chooser.estimate(&ridge, 1).p95 == 0.0);
-        assert_eq!(chooser.choose(&ridge, [true, false, false], [1.0; 3], 0.02), 0, "a far ridge keeps its haze");
-        assert_eq!(chooser.choose(&ridge, [true, false, false], [1.0; 3], 0.06), 1);
+        assert!(Estimator::new(2000).estimate(&ridge, 1).p95 == 0.0);
+        assert_eq!(choose(&ridge, [true, false, false], [1.0; 3], 0.02), 0, "a far ridge keeps its haze");
+        assert_eq!(choose(&ridge, [true, false, false], [1.0; 3], 0.06), 1);
         let broken = picture(|_| [f32::NAN, 0.0, 0.0]);
-        assert_eq!(chooser.choose(&broken, [true, false, false], [1.0; 3], 1.0), 0);
+        assert_eq!(choose(&broken, [true, false, false], [1.0; 3], 1.0), 0);
     }
 
     #[test]
     fn masked_pixels_do_not_count() {
-        let mut chooser = Chooser::new(2000);
         let mut half = picture(|i| [if i < 1000 { 0.5 } else { 0.0 }, 0.0, 0.0]);
         half[..1000].iter_mut().for_each(|s| s[3] = 0.0);
-        assert_eq!(chooser.estimate(&half, 1), Estimate::default());
+        assert_eq!(Estimator::new(2000).estimate(&half, 1), Estimate::default());
     }
 }

@@ -4,20 +4,27 @@ use glam::DVec3;
 
 use super::{
     gauge::{EVERY, Gauge},
-    parts::{Chooser, Estimate, Part, Reason, Sample},
+    governor::{Choice, GaveWay, Governor, IMPORTANCE},
+    parts::{Estimate, Estimator, Part, Reason, Sample},
 };
 use crate::{
-    error::{Error, Result},
+    error::{Error, Result, check_range},
     gpu::Device,
     weather::Conditions,
 };
 
 /// What a view may spend on a picture, and how wrong it may be.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Largest error of what is left out, (0, 1]: 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
     /// exposure, and ten times as much at the worst pixel. Default `None`: everything is drawn. 0.01 is not seen.
     pub tolerance: Option<f64>,
+    /// Longest time of the weather in a frame, ms, (0, 1000]: parts are left out as the times reported by
+    /// [`View::report_time`](crate::frame::View::report_time) demand. It wins over the tolerance. Default `None`.
+    pub milliseconds: Option<f64>,
+    /// How much parts matter to those who look, [0, 1], in the order of [`Part::ALL`]: what is left out first under a
+    /// budget of time. Default [`IMPORTANCE`].
+    pub importance: [f64; 3],
     /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance, so that all channels of a simulator
     /// draw alike. Default `None`: plan.
     pub pinned: Option<[bool; 3]>,
@@ -29,10 +36,29 @@ impl Budget {
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
     pub fn validate(&self) -> Result<()> {
-        match self.tolerance {
-            Some(t) if !(t.is_finite() && t > 0.0 && t <= 1.0) => Err(Error::range("budget.tolerance", "in (0, 1]", t)),
+        let above_zero = |name: &str, value: Option<f64>, most: f64| match value {
+            Some(v) if !(v.is_finite() && v > 0.0 && v <= most) => {
+                Err(Error::range(name, &format!("in (0, {most}]"), v))
+            }
             _ => Ok(()),
+        };
+        above_zero("budget.tolerance", self.tolerance, 1.0)?;
+        above_zero("budget.milliseconds", self.milliseconds, 1000.0)?;
+        for (part, value) in Part::ALL.iter().zip(self.importance) {
+            check_range(&format!("budget.importance of {}", part.name()), value, 0.0, 1.0, "")?;
         }
+        Ok(())
+    }
+
+    /// Whether parts may be left out by what pictures show.
+    fn plans(&self) -> bool {
+        self.pinned.is_none() && (self.tolerance.is_some() || self.milliseconds.is_some())
+    }
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { tolerance: None, milliseconds: None, importance: IMPORTANCE, pinned: None }
     }
 }
 
@@ -62,6 +88,10 @@ pub struct Plan {
     pub work: f64,
     /// Work of the picture with everything.
     pub work_of_everything: f64,
+    /// What the picture should take, ms, by the times reported so far; `None` before the first.
+    pub milliseconds: Option<f64>,
+    /// What could not be kept of the budget.
+    pub gave_way: GaveWay,
 }
 
 impl Default for Plan {
@@ -73,7 +103,14 @@ impl Default for Plan {
             worth: Estimate::default(),
             work: 0.0,
         };
-        Self { parts: Part::ALL.map(part), error: Estimate::default(), work: 0.0, work_of_everything: 0.0 }
+        Self {
+            parts: Part::ALL.map(part),
+            error: Estimate::default(),
+            work: 0.0,
+            work_of_everything: 0.0,
+            milliseconds: None,
+            gave_way: GaveWay::Nothing,
+        }
     }
 }
 
@@ -110,18 +147,32 @@ impl Situation {
             && self.sun.dot(other.sun) >= 0.9998
             && self.conditions == other.conditions
     }
+
+    /// Whether the next frame shows another picture altogether: nothing fades then.
+    fn is_cut(&self, next: &Self) -> bool {
+        let (a, b) = (self.conditions.visibility_m(), next.conditions.visibility_m());
+        self.position.distance(next.position) > (0.05 * a.min(b)).max(100.0)
+            || self.forward.dot(next.forward) < 0.9
+            || self.sun.dot(next.sun) < 0.998
+            || a.max(b) > 1.2 * a.min(b)
+    }
 }
 
-/// A part fades in or out in so many frames.
-const FADE_FRAMES: f32 = 8.0;
+/// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
+const FADE_STEP: f64 = 0.005;
+const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
 pub(crate) struct Planner {
     budget: Budget,
     gauge: Option<Gauge>,
-    chooser: Chooser,
-    /// Of the gauge under way, and of the one that the plan stands on.
+    estimator: Estimator,
+    governor: Governor,
+    /// Of the gauge under way, and of the one that the choices stand on.
     gauging: Option<Situation>,
     planned: Option<Situation>,
+    last: Option<Situation>,
+    /// Every set of parts that could be left out, as last gauged.
+    choices: [Choice; 8],
     left_out: usize,
     frames: u32,
     plan: Plan,
@@ -132,9 +183,12 @@ impl Planner {
         Self {
             budget: Budget::default(),
             gauge: None,
-            chooser: Chooser::new(0),
+            estimator: Estimator::new(0),
+            governor: Governor::default(),
             gauging: None,
             planned: None,
+            last: None,
+            choices: [Choice::default(); 8],
             left_out: 0,
             frames: 0,
             plan: Plan::default(),
@@ -143,7 +197,7 @@ impl Planner {
 
     pub fn set_budget(&mut self, device: &Device, budget: Budget) -> Result<()> {
         budget.validate()?;
-        if budget.tolerance.is_some() && self.gauge.is_none() {
+        if budget.plans() && self.gauge.is_none() {
             self.gauge = Some(Gauge::new(device));
         }
         if budget != self.budget {
@@ -157,6 +211,20 @@ impl Planner {
         &self.plan
     }
 
+    /// What the last frame took.
+    pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
+        if !(milliseconds.is_finite() && milliseconds > 0.0 && milliseconds <= 1e5) {
+            return Err(Error::range("milliseconds", "in (0, 1e5] ms", milliseconds));
+        }
+        // A part that fades is paid whole.
+        let fading = |i: &usize| self.plan.parts[*i].share > 0.0 || self.left_out & (1 << i) == 0;
+        let absent = (0..3).filter(|i| !fading(i)).fold(0, |set, i| set | 1 << i);
+        if self.planned.is_some() {
+            self.governor.report(milliseconds, self.choices[absent].work);
+        }
+        Ok(())
+    }
+
     /// Draw everything until the next gauge answers.
     fn forget(&mut self) {
         (self.planned, self.gauging, self.left_out, self.frames) = (None, None, 0, EVERY);
@@ -165,16 +233,18 @@ impl Planner {
     /// Once a frame: takes a gauge's answer, chooses, fades. `pure`: the picture may not depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
         if let Some(pinned) = self.budget.pinned {
+            self.plan = Plan::default();
             for (part, drawn) in self.plan.parts.iter_mut().zip(pinned) {
                 (part.share, part.reason) = (f32::from(u8::from(drawn)), Reason::Pinned);
             }
             return;
         }
-        let Some(tolerance) = self.budget.tolerance else {
+        if !self.budget.plans() {
             self.plan = Plan::default();
             return;
-        };
+        }
         self.frames = self.frames.saturating_add(1);
+        let pure = pure || self.last.replace(*here).is_some_and(|last| last.is_cut(here));
         if pure || self.planned.as_ref().is_some_and(|p| !p.is_near(here)) {
             self.forget();
         }
@@ -184,18 +254,46 @@ impl Planner {
             && !pure
             && there.is_near(here)
         {
-            let chosen = estimate(&mut self.chooser, samples, present, tolerance, self.left_out);
-            (self.left_out, self.plan) = (chosen.0, Plan { parts: shares(&self.plan, chosen.1.parts), ..chosen.1 });
+            let importance = self.budget.importance;
+            weigh(&mut self.estimator, samples, present, importance, (&mut self.choices, &mut self.plan));
             self.planned = Some(there);
         }
-        for (i, part) in self.plan.parts.iter_mut().enumerate() {
-            let left_out = self.left_out & (1 << i) != 0 && present.parts[i];
-            if self.planned.is_none() {
-                part.reason = Reason::NotGauged;
-            }
-            let step = if left_out { -1.0 / FADE_FRAMES } else { 1.0 / FADE_FRAMES };
-            part.share = if pure { 1.0 } else { (part.share + step).clamp(0.0, 1.0) };
+        if self.planned.is_some() {
+            self.choose(present);
+        } else {
+            self.plan.parts.iter_mut().for_each(|p| p.reason = Reason::NotGauged);
         }
+        for (i, part) in self.plan.parts.iter_mut().enumerate() {
+            let p99 = part.worth.worst.min(2.0 * part.worth.p95);
+            // A pixel that loses half of its light sees each step twice as large at the end.
+            let frames = p99 / (FADE_STEP * (1.0 - p99).max(0.2));
+            let step = 1.0 / frames.clamp(FADE_FRAMES.0, FADE_FRAMES.1) as f32;
+            let left_out = self.left_out & (1 << i) != 0 && present.parts[i];
+            part.share = if pure { 1.0 } else { (part.share + if left_out { -step } else { step }).clamp(0.0, 1.0) };
+        }
+    }
+
+    /// Chooses anew among what was gauged last: a reported time may ask for another set in any frame.
+    fn choose(&mut self, present: &Present) {
+        let Budget { tolerance, milliseconds, .. } = self.budget;
+        let (set, gave_way) = self.governor.choose(&self.choices, tolerance, milliseconds, self.left_out);
+        self.left_out = set;
+        let chosen = self.choices[set];
+        let within = tolerance.is_some_and(|t| chosen.error.keeps(t));
+        for (i, part) in self.plan.parts.iter_mut().enumerate() {
+            part.reason = match (present.parts[i], set & (1 << i) != 0) {
+                (false, _) => Reason::Absent,
+                (true, true) if within => Reason::WithinTolerance,
+                (true, true) => Reason::OutOfTime,
+                (true, false) if tolerance.is_none() => Reason::EverythingAsked,
+                (true, false) => Reason::Needed,
+            };
+        }
+        self.plan.error = chosen.error;
+        self.plan.work = chosen.work;
+        self.plan.work_of_everything = self.choices[0].work;
+        self.plan.milliseconds = self.governor.ms_per_work().map(|k| k * chosen.work);
+        self.plan.gave_way = gave_way;
     }
 
     /// How much of each part the frame draws, and how often the gauge composes.
@@ -207,7 +305,7 @@ impl Planner {
     /// The gauge, if this frame should be gauged.
     pub fn due(&mut self, here: &Situation) -> Option<&mut Gauge> {
         let gauge = self.gauge.as_mut()?;
-        if self.budget.pinned.is_some() || self.budget.tolerance.is_none() || self.frames < EVERY || !gauge.is_idle() {
+        if !self.budget.plans() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
         (self.frames, self.gauging) = (0, Some(*here));
@@ -215,45 +313,31 @@ impl Planner {
     }
 }
 
-/// New choices keep the shares that the fade has reached.
-fn shares(old: &Plan, mut new: [PartPlan; 3]) -> [PartPlan; 3] {
-    new.iter_mut().zip(&old.parts).for_each(|(n, o)| n.share = o.share);
-    new
-}
-
-/// Leaving out takes a tenth more certainty than staying out, so that a picture at the border does not flicker.
-const HYSTERESIS: f64 = 0.9;
-
-fn estimate(
-    chooser: &mut Chooser,
+/// Work and error of every set of parts, from a gauge's samples.
+fn weigh(
+    estimator: &mut Estimator,
     samples: &[Sample],
     present: &Present,
-    tolerance: f64,
-    before: usize,
-) -> (usize, Plan) {
+    importance: [f64; 3],
+    (choices, plan): (&mut [Choice; 8], &mut Plan),
+) {
     let share = |kind: f32| samples.iter().filter(|s| s[3] == kind).count() as f64 / samples.len().max(1) as f64;
     let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
     let lamps = f64::from(present.lamps.saturating_sub(1));
     let work =
         [objects * (AIR.0 + AIR.1 * lamps), (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
-    let chosen = chooser.choose(samples, present.parts, work, HYSTERESIS * tolerance);
-    let kept = chooser.choose(samples, present.parts, work, tolerance);
-    let left_out = if kept == before { before } else { chosen };
-    let mut part = |i: usize| PartPlan {
-        part: Part::ALL[i],
-        share: 1.0,
-        reason: match (present.parts[i], left_out & (1 << i) != 0) {
-            (false, _) => Reason::Absent,
-            (true, true) => Reason::WithinTolerance,
-            (true, false) => Reason::Needed,
-        },
-        worth: chooser.estimate(samples, 1 << i),
-        work: work[i],
-    };
-    let parts = [part(0), part(1), part(2)];
-    let there = |i: &usize| present.parts[*i];
-    let all: f64 = pixels + (0..3).filter(there).map(|i| work[i]).sum::<f64>();
-    let saved: f64 = (0..3).filter(|i| left_out & (1 << i) != 0).map(|i| work[i]).sum();
-    let error = chooser.estimate(samples, left_out);
-    (left_out, Plan { parts, error, work: all - saved, work_of_everything: all })
+    for (i, part) in plan.parts.iter_mut().enumerate() {
+        part.worth = estimator.estimate(samples, 1 << i);
+        part.work = work[i];
+    }
+    let all = pixels + (0..3).filter(|i| present.parts[*i]).map(|i| work[i]).sum::<f64>();
+    for (set, choice) in choices.iter_mut().enumerate() {
+        let parts = || (0..3).filter(|i| set & (1 << i) != 0);
+        *choice = Choice {
+            possible: parts().all(|i| present.parts[i]),
+            error: estimator.estimate(samples, set),
+            loss: parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum(),
+            work: all - parts().map(|i| work[i]).sum::<f64>(),
+        };
+    }
 }

@@ -3,7 +3,7 @@
 mod scenes;
 
 use scenes::{Bench, Shot};
-use welkin::plan::{Budget, Reason, difference, parts::WORST};
+use welkin::plan::{Budget, GaveWay, Reason, difference, parts::WORST};
 
 /// Frames until a gauge has answered and what it chose has faded.
 const SETTLED: u64 = 22;
@@ -104,9 +104,57 @@ fn a_budget_out_of_range_is_refused_and_the_last_one_stays() {
     bench.set(&near);
     bench.planned(&near, SETTLED);
     for tolerance in [0.0, -1.0, 1.5, f64::NAN, f64::INFINITY] {
-        let e = bench.view.set_budget(Budget { tolerance: Some(tolerance), pinned: None }).unwrap_err();
+        let e = bench.view.set_budget(Budget { tolerance: Some(tolerance), ..Budget::default() }).unwrap_err();
         assert!(e.message.contains("budget.tolerance") && e.message.contains("(0, 1]"), "{}", e.message);
     }
     let (_, plan) = bench.planned(&near, 1);
     assert!(plan.parts.iter().any(|p| p.reason == Reason::WithinTolerance), "{plan:?}");
+}
+
+#[test]
+fn a_budget_of_time_is_kept_by_leaving_out_and_room_brings_parts_back() {
+    let mut bench = Bench::new();
+    let yard = Shot { weather: "mist", tolerance: 0.05, ..Shot::yard() };
+    bench.set(&yard);
+    // A fake clock: every part's work takes its share of 10 ms, then of 20 ms, then of 10 ms again.
+    let budget = Budget { milliseconds: Some(12.0), ..Budget::default() };
+    bench.view.set_budget(budget).unwrap();
+    let mut shares = Vec::new();
+    let mut last: Option<Vec<f64>> = None;
+    for frame in 0..320 {
+        let (picture, plan) = bench.unplanned(&yard);
+        let load = if (60..150).contains(&frame) { 20.0 } else { 10.0 };
+        let work = plan.work_of_everything - plan.parts.iter().filter(|p| p.share == 0.0).map(|p| p.work).sum::<f64>();
+        if plan.work_of_everything > 0.0 {
+            bench.view.report_time(load * work / plan.work_of_everything).unwrap();
+        }
+        if let Some(last) = &last {
+            let mut steps: Vec<f64> = picture.iter().zip(last).map(|(a, b)| (a - b).abs() / (b + 0.01)).collect();
+            steps.sort_by(f64::total_cmp);
+            let p99 = steps[steps.len() * 99 / 100];
+            assert!(p99 <= 0.01, "frame {frame}: a step of {p99}");
+        }
+        last = Some(picture);
+        shares.push(plan.parts.map(|p| p.share));
+        if frame == 140 {
+            assert!(plan.milliseconds.unwrap() > 12.0 || plan.gave_way != GaveWay::Nothing, "{plan:?}");
+            assert!(plan.parts.iter().any(|p| p.reason == Reason::OutOfTime), "{plan:?}");
+        }
+    }
+    assert_eq!(shares[59], [1.0; 3], "10 ms fit");
+    assert!(shares[149].iter().any(|s| *s < 1.0));
+    assert_eq!(shares[319], [1.0; 3], "there is room again");
+}
+
+#[test]
+fn times_and_importance_out_of_range_are_refused() {
+    let mut bench = Bench::new();
+    for ms in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e6] {
+        assert!(bench.view.report_time(ms).unwrap_err().message.contains("milliseconds"));
+        let budget = Budget { milliseconds: Some(ms), ..Budget::default() };
+        assert!(bench.view.set_budget(budget).unwrap_err().message.contains("budget.milliseconds"));
+    }
+    let budget = Budget { importance: [0.5, 2.0, 0.5], ..Budget::default() };
+    let message = bench.view.set_budget(budget).unwrap_err().message;
+    assert!(message.contains("budget.importance of fog") && message.contains('1'), "{message}");
 }

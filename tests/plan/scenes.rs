@@ -203,7 +203,7 @@ impl Bench {
 
     /// The picture that the planned view draws after so many frames.
     pub fn planned(&mut self, shot: &Shot, frames: u64) -> (Vec<f64>, Plan) {
-        self.view.set_budget(Budget { tolerance: Some(shot.tolerance), pinned: None }).unwrap();
+        self.view.set_budget(Budget { tolerance: Some(shot.tolerance), ..Budget::default() }).unwrap();
         let mut picture = self.draw(shot, true, FrameFlags(0));
         for _ in 1..frames {
             picture = self.draw(shot, true, FrameFlags(0));
@@ -223,7 +223,7 @@ impl Bench {
 
     /// The picture with just these parts.
     pub fn pinned(&mut self, shot: &Shot, parts: [bool; 3]) -> Vec<f64> {
-        self.view.set_budget(Budget { tolerance: None, pinned: Some(parts) }).unwrap();
+        self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() }).unwrap();
         self.draw(shot, true, FrameFlags(0))
     }
 }
