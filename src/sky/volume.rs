@@ -177,11 +177,13 @@ impl SkyVolume {
         let air = tables.air();
         let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
         // Lamps that matter, and the altitude that all their tables were drawn for.
-        let lamps: Vec<&Lamp> = observer.lamps.iter().flatten().filter(|l| l.is_lit()).collect();
-        let kept = lamps.iter().enumerate().all(|(i, lamp)| self.is_current(i, tables, observer, lamp));
+        let mut lit = observer.lamps.iter().flatten().filter(|l| l.is_lit());
+        let lamps: [Option<&Lamp>; LAMPS] = std::array::from_fn(|_| lit.next());
+        let lamps = || lamps.iter().flatten().copied();
+        let kept = lamps().enumerate().all(|(i, lamp)| self.is_current(i, tables, observer, lamp));
         if !kept {
             let edges = EdgesUniform::of(&air, observer.altitude_m);
-            for (i, lamp) in lamps.iter().enumerate() {
+            for (i, lamp) in lamps().enumerate() {
                 let drawn =
                     Drawn { revision: tables.revision(), altitude_m: observer.altitude_m, mu_s: lamp.toward[2] };
                 let altitude = observer.altitude_m.max(0.0) as f32;
@@ -197,12 +199,12 @@ impl SkyVolume {
             dims: DimsUniform::of(&self.kit.settings),
             edges: EdgesUniform::of(&air, altitude_m),
             altitude: altitude_m as f32,
-            lamp_count: lamps.len() as u32,
+            lamp_count: lamps().count() as u32,
             refraction: observer.refraction as f32,
             march_panels: self.kit.settings.march_cells.div_ceil(4),
             lamps: [LampUniform::zeroed(); LAMPS],
         };
-        for (i, lamp) in lamps.iter().enumerate() {
+        for (i, lamp) in lamps().enumerate() {
             view.lamps[i] = lamp.uniform(&planet, LAYERS * i as u32);
         }
         if view != self.written {

@@ -1,9 +1,11 @@
 //! Queries: what they answer agrees with the Rust side, lists are checked before anything is written.
 
+use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, context::*, fog_law::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*,
+    conditions::*, context::*, fog_law::*, frame::*, query::*, status::*, timeline::*, view::*, weather::*,
+    weather_kinds::*,
 };
 
 use super::world::{World, init, message};
@@ -252,5 +254,50 @@ fn fog_laws_of_older_systems_are_checked_and_say_how_far_they_reach() {
         refused(wk_visibility_cull_distance(0.5, &mut distance), "visibility_m must be in [1, 1000000] m");
         refused(wk_visibility_cull_distance(10.0, null_mut()), "out_distance_m must not be NULL");
         refused(wk_fog_law_cull_distance(null(), &mut distance), "fog_law must not be NULL");
+    }
+}
+
+#[test]
+fn costs_are_there_where_they_were_asked_for() {
+    let world = World::new();
+    let zero = wk_effect_cost { effect: 99, reserved0: 9, name: null(), ms: -1.0 };
+    let (mut costs, size, mut count) = ([zero; 16], size_of::<wk_effect_cost>() as u32, 77);
+    let mut report = init::<wk_report>("wk_report");
+    let record = |frame_id, flags| {
+        let target = wk_own_target { color: world.texture, ..init("wk_own_target") };
+        let projection = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.1, 0.0];
+        let flags = flags | WK_FRAME_DEPTH_REVERSED;
+        let frame = wk_frame { frame_id, flags, projection, target: (&raw const target).cast(), ..init("wk_frame") };
+        // SAFETY: live pointers.
+        unsafe { assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL), WK_OK, "{}", message()) };
+    };
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        let view = world.view;
+        record(1, 0);
+        assert_eq!(wk_view_get_report(view, &mut report), WK_OK);
+        assert_eq!((report.has & WK_REPORT_HAS_MS, report.ms), (0, 0.0));
+        assert_eq!(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, &mut count), WK_OK, "{}", message());
+        assert_eq!((count, costs[0].effect), (0, 99));
+        record(2, WK_FRAME_MEASURE);
+        assert_eq!(wk_view_get_report(view, &mut report), WK_OK);
+        assert!(report.has & WK_REPORT_HAS_MS != 0 && report.ms > 0.0);
+        assert_eq!(wk_view_get_costs(view, null_mut(), 0, 0, &mut count), WK_OK, "{}", message());
+        assert_eq!(count, 8);
+        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 7, size, &mut count), "capacity must be at least 8");
+        refused(wk_view_get_costs(view, null_mut(), 8, size, &mut count), "costs must not be NULL");
+        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, 8, &mut count), "cost_size must be at least 24");
+        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, null_mut()), "out_count must not be NULL");
+        assert_eq!(costs[0].effect, 99, "nothing is written");
+        assert_eq!(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, &mut count), WK_OK, "{}", message());
+        for (i, cost) in costs[..8].iter().enumerate() {
+            assert_eq!((cost.effect, cost.reserved0), (i as u32, 0));
+            assert!(!CStr::from_ptr(cost.name).is_empty() && cost.ms >= 0.0);
+        }
+        let (composition, hand_over) = (costs[WK_EFFECT_COMPOSITION as usize], costs[WK_EFFECT_HAND_OVER as usize]);
+        assert_eq!(CStr::from_ptr(hand_over.name), c"hand-over");
+        assert!(composition.ms > 0.0 && hand_over.ms > 0.0 && costs[WK_EFFECT_VEIL as usize].ms == 0.0);
+        let sum = costs[..8].iter().map(|c| c.ms).sum::<f64>();
+        assert!(sum <= 1.001 * report.ms, "{sum} of {}", report.ms);
     }
 }

@@ -2,6 +2,7 @@
 
 mod froxels;
 mod host;
+mod measure;
 mod queries;
 mod spaces;
 mod stability;

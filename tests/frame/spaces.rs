@@ -149,3 +149,135 @@ fn every_sample_of_a_multisampled_host_is_composed_by_its_own_depth() {
     assert!(sky[2] > 500.0, "{sky:?}");
     assert!((wall[2] - 100.0).abs() < 20.0, "a wall 10 m away keeps its colour: {wall:?}");
 }
+
+/// Draws what covers the picture below a slanted line into multisampled colour and depth, as a host would.
+const EDGE: &str = "
+@vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+    let at = array(vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(1.0, 0.37));
+    return vec4(at[i], 0.01, 1.0);
+}
+@fragment fn wall() -> @location(0) vec4<f32> { return vec4(400.0, 400.0, 400.0, 1.0); }
+";
+
+fn draw_edge(host: &Host, samples: u32) {
+    let device = &host.device.device;
+    let source = wgpu::ShaderSource::Wgsl(EDGE.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: wgpu::TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            targets: &[Some(host.color.format().into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let (color, depth) = (host.color.create_view(&Default::default()), host.depth.create_view(&Default::default()));
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: None,
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &color,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    pass.set_pipeline(&pipeline);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    host.device.submit_and_wait(encoder).unwrap();
+}
+
+/// The mean of each pixel's samples.
+fn resolve(host: &Host) -> Vec<[f32; 4]> {
+    let to = texture(&host.device, host.color.format(), 1);
+    let (from, target) = (host.color.create_view(&Default::default()), to.create_view(&Default::default()));
+    let mut encoder = host.device.device.create_command_encoder(&Default::default());
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: None,
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &from,
+            depth_slice: None,
+            resolve_target: Some(&target),
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    host.device.submit_and_wait(encoder).unwrap();
+    welkin::gpu::readback::rgba(&host.device, &to).unwrap()
+}
+
+/// Where a wall's edge crosses a pixel, some of its samples show the wall and some the sky: the pixel is their mean.
+#[test]
+fn a_pixel_at_an_edge_is_the_mean_of_its_samples_composed_one_by_one() {
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+    let host = Host::new(FORMAT);
+    let served = |f: wgpu::TextureFormat| host.device.adapter.get_texture_format_features(f).flags;
+    let (of_color, of_depth) = (served(FORMAT), served(wgpu::TextureFormat::Depth32Float));
+    let mut counts = vec![2, 4, 8];
+    counts.retain(|&n| of_color.sample_count_supported(n) && of_depth.sample_count_supported(n));
+    assert!(counts.contains(&4), "every driver has four samples");
+    let mut host = host;
+    for samples in counts {
+        let color = texture(&host.device, FORMAT, samples);
+        let depth = texture(&host.device, wgpu::TextureFormat::Depth32Float, samples);
+        let mut multi = Host { color, depth, ..host };
+        let mut id = 0;
+        // The host's own picture, and with Welkin's sky and air in it.
+        let mut shoot = |multi: &mut Host, wall: f64, depth: f32, edge: bool| {
+            multi.clear([wall, wall, wall, 1.0], depth);
+            if edge {
+                draw_edge(multi, samples);
+            }
+            let bare = resolve(multi);
+            id += 1;
+            multi.record(id, Stages::BACKGROUND.with(Stages::MEDIUM)).unwrap();
+            (bare, resolve(multi))
+        };
+        let (_, sky) = shoot(&mut multi, 0.0, 0.0, false);
+        let (_, wall) = shoot(&mut multi, 400.0, 0.01, false);
+        let (covered, edge) = shoot(&mut multi, 0.0, 0.0, true);
+        let mut partly = std::collections::BTreeSet::new();
+        for (i, got) in edge.iter().enumerate() {
+            let share = covered[i][0] / 400.0;
+            if share > 0.0 && share < 1.0 {
+                partly.insert((share * samples as f32).round() as u32);
+            }
+            for c in 0..3 {
+                let want = sky[i][c] + share * (wall[i][c] - sky[i][c]);
+                assert!(
+                    (got[c] - want).abs() < 0.01 * want + 1.0,
+                    "{samples} samples, pixel {i}: {got:?}, want {want}"
+                );
+            }
+        }
+        assert!((sky[4000][2] - wall[4000][2]).abs() > 100.0, "sky and wall differ: {:?} {:?}", sky[4000], wall[4000]);
+        assert_eq!(partly.len() as u32, samples - 1, "the edge leaves every number of samples: {partly:?}");
+        host = multi;
+    }
+}

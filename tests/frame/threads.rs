@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use welkin::{
     context::{Context, GivenDirection},
     frame::{Exposure, Frame, Shared, Stages, View},
@@ -61,6 +62,11 @@ fn a_lost_device_answers_so_and_a_new_one_works() {
     device.simulate_loss();
     let frame = Frame::new(1, camera(), &color, None);
     assert_eq!(view.record(&lost, &frame, Stages::ALL).unwrap_err().status, welkin::Status::DeviceLost);
+    for error in [view.frame_textures().err(), View::new(&lost).err(), lost.ambient_at(DVec3::ZERO).err()] {
+        assert_eq!(error.unwrap().status, welkin::Status::DeviceLost);
+    }
+    // What needs no device answers on.
+    assert!(lost.light_at(DVec3::ZERO, 0.0).unwrap().arriving.total_lux > 1e3);
     let fresh = Device::headless(&DeviceOptions::default()).unwrap();
     let shared = Arc::new(Shared::new(&fresh).unwrap());
     assert!(film(&context(&fresh, &shared, 40.0), 0.0)[0][2] > 0.01);
