@@ -35,7 +35,6 @@ fn effects_add_up_to_the_whole_and_what_did_not_run_costs_nothing() {
     let ran = |costs: &Costs| Effect::ALL.into_iter().filter(|e| costs.ms(*e) > 0.0).collect::<Vec<_>>();
     use Effect::{Background, Medium, SkyTables, SkyView, Tone, Veil};
     assert_eq!(ran(&first), [SkyTables, SkyView, Background, Medium, Tone], "{first:?}");
-    assert!(first.ms(SkyTables) > first.ms(Tone), "{first:?}");
     let second = measured(&mut host, 2, Stages::ALL);
     assert_eq!(ran(&second), [Background, Medium, Tone], "tables are kept: {second:?}");
     host.view.frame_textures().unwrap();
