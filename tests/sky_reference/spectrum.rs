@@ -79,8 +79,9 @@ fn three_wavelengths_against_forty() {
             assert!(channel < 0.6 * before);
             before = channel;
         }
-        // Haze follows a power of the wavelength, which sixteen lines sample less well than air alone.
-        assert!(before < 0.015);
+        // Haze follows a power of the wavelength, which sixteen lines sample less well than air alone: 1.5 % in light
+        // scattered once, 1.2 % in all.
+        assert!(before < 0.018);
         let three = |nm: [f64; 3], conversion: &Conversion| -> Vec<[f64; 3]> {
             let dim = Planet { solar_irradiance: [1.0; 3], ..planet.at_wavelengths(nm) };
             transfers(&dim).iter().map(|t| conversion.rec709(t)).collect()
