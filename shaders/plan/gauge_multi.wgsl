@@ -7,13 +7,11 @@
 
 override HAS_DEPTH: bool = true;
 override HAS_MASK: bool = false;
-override GRID_X: f32 = 64.0;
-override GRID_Y: f32 = 36.0;
 
 @fragment
 fn gauge(in: FullscreenVarying) -> @location(0) vec4f {
     let size = vec2f(textureDimensions(host_color));
-    let place = floor(in.position.xy / vec2f(GRID_X, GRID_Y) * size);
+    let place = floor(in.uv * size);
     let pixel = vec2i(place);
     let uv = (place + 0.5) / size;
     let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * frame.y_sign);

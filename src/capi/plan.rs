@@ -206,20 +206,18 @@ impl wk_part_plan {
     };
 
     fn of(part: &PartPlan) -> Self {
-        let (reason, text) = match part.reason {
-            Reason::EverythingAsked => (WK_PLAN_REASON_EVERYTHING_ASKED, c"no tolerance was given"),
-            Reason::NotGauged => (WK_PLAN_REASON_NOT_GAUGED, c"this picture has not been gauged yet"),
-            Reason::Absent => (WK_PLAN_REASON_ABSENT, c"there is none of it"),
-            Reason::Needed => (WK_PLAN_REASON_NEEDED, c"without it the error would be beyond the tolerance"),
-            Reason::WithinTolerance => {
-                (WK_PLAN_REASON_WITHIN_TOLERANCE, c"the error without it is within the tolerance")
-            }
-            Reason::OutOfTime => (WK_PLAN_REASON_OUT_OF_TIME, c"the time allows no more"),
-            Reason::Pinned => (WK_PLAN_REASON_PINNED, c"the host pinned it"),
+        let reason = match part.reason {
+            Reason::EverythingAsked => WK_PLAN_REASON_EVERYTHING_ASKED,
+            Reason::NotGauged => WK_PLAN_REASON_NOT_GAUGED,
+            Reason::Absent => WK_PLAN_REASON_ABSENT,
+            Reason::Needed => WK_PLAN_REASON_NEEDED,
+            Reason::WithinTolerance => WK_PLAN_REASON_WITHIN_TOLERANCE,
+            Reason::OutOfTime => WK_PLAN_REASON_OUT_OF_TIME,
+            Reason::Pinned => WK_PLAN_REASON_PINNED,
         };
         Self {
             reason,
-            reason_text: text.as_ptr(),
+            reason_text: part.reason.text().as_ptr(),
             share: part.share.into(),
             error: part.worth.p95,
             worst: part.worth.worst,

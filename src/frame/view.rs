@@ -344,7 +344,7 @@ impl View {
                     variant.stages.has(Stages::BACKGROUND),
                 ],
                 pixels: u64::from(color.width()) * u64::from(color.height()),
-                lamps: scene.observer(false).lamps.iter().flatten().count() as u32,
+                lamps: 1 + u32::from(scene.moon.matters),
             };
             let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
             self.planner.begin(&self.device, &situation, &present, pure);

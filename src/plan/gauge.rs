@@ -130,6 +130,9 @@ impl Gauge {
                 state.store(if done.is_ok() { READY } else { FAILED }, Ordering::Release);
             });
         }
+        if self.is_idle() {
+            return None;
+        }
         let _ = device.device.poll(wgpu::PollType::Poll);
         match self.state.load(Ordering::Acquire) {
             READY => {}

@@ -54,15 +54,15 @@ pub enum Reason {
 
 impl Reason {
     /// In a few words.
-    pub fn text(self) -> &'static str {
+    pub const fn text(self) -> &'static std::ffi::CStr {
         match self {
-            Self::Pinned => "the host pinned it",
-            Self::EverythingAsked => "no tolerance was given",
-            Self::NotGauged => "this picture has not been gauged yet",
-            Self::Absent => "there is none of it",
-            Self::Needed => "without it the error would be beyond the tolerance",
-            Self::WithinTolerance => "the error without it is within the tolerance",
-            Self::OutOfTime => "the time allows no more",
+            Self::Pinned => c"the host pinned it",
+            Self::EverythingAsked => c"no tolerance was given",
+            Self::NotGauged => c"this picture has not been gauged yet",
+            Self::Absent => c"there is none of it",
+            Self::Needed => c"without it the error would be beyond the tolerance",
+            Self::WithinTolerance => c"the error without it is within the tolerance",
+            Self::OutOfTime => c"the time allows no more",
         }
     }
 }
@@ -100,11 +100,6 @@ pub(super) struct Estimator {
     scratch: Vec<f32>,
 }
 
-/// Bit of a part in a set of parts.
-fn bit(part: usize) -> usize {
-    1 << part
-}
-
 impl Estimator {
     pub fn new(samples: usize) -> Self {
         Self { scratch: Vec::with_capacity(samples) }
@@ -114,7 +109,7 @@ impl Estimator {
     pub fn estimate(&mut self, samples: &[Sample], set: usize) -> Estimate {
         self.scratch.clear();
         for s in samples.iter().filter(|s| s[3] != 0.0) {
-            let change: f32 = (0..3).filter(|i| set & bit(*i) != 0).map(|i| s[i]).sum();
+            let change: f32 = (0..3).filter(|i| set & (1 << i) != 0).map(|i| s[i]).sum();
             self.scratch.push(if change.is_finite() { change.abs() } else { f32::MAX });
         }
         let n = self.scratch.len();

@@ -326,18 +326,17 @@ fn weigh(
     let lamps = f64::from(present.lamps.saturating_sub(1));
     let work =
         [objects * (AIR.0 + AIR.1 * lamps), (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
-    for (i, part) in plan.parts.iter_mut().enumerate() {
-        part.worth = estimator.estimate(samples, 1 << i);
-        part.work = work[i];
-    }
     let all = pixels + (0..3).filter(|i| present.parts[*i]).map(|i| work[i]).sum::<f64>();
     for (set, choice) in choices.iter_mut().enumerate() {
+        choice.error = estimator.estimate(samples, set);
+    }
+    for (i, part) in plan.parts.iter_mut().enumerate() {
+        (part.worth, part.work) = (choices[1 << i].error, work[i]);
+    }
+    for (set, choice) in choices.iter_mut().enumerate() {
         let parts = || (0..3).filter(|i| set & (1 << i) != 0);
-        *choice = Choice {
-            possible: parts().all(|i| present.parts[i]),
-            error: estimator.estimate(samples, set),
-            loss: parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum(),
-            work: all - parts().map(|i| work[i]).sum::<f64>(),
-        };
+        choice.possible = parts().all(|i| present.parts[i]);
+        choice.loss = parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum();
+        choice.work = all - parts().map(|i| work[i]).sum::<f64>();
     }
 }
