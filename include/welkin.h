@@ -2591,13 +2591,16 @@ typedef struct wk_celestial {
     /* direct_share */ 0.0 \
 }
 
-/** Light that arrives at a place, after air and clouds; plain values of a list. */
+/**
+ * Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by fog
+ * counts as the sun's or the moon's.
+ */
 typedef struct wk_ground_light {
     /** Direct sun on a surface facing it, lux a channel. */
     double sun_lux[3];
     /** Direct moon on a surface facing it, lux a channel. */
     double moon_lux[3];
-    /** Sky and clouds on level ground, lux a channel. */
+    /** Sky, clouds and fog on level ground, lux a channel. */
     double sky_lux[3];
     /** Everything on level ground, luminance-weighted, lux. */
     double total_lux;

@@ -3,9 +3,9 @@
 //
 // Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective over its full distance:
 //     let fog = fog_along(u, ray.origin, ray.direction, range, plane);
-//     out = fog_compose(fog, behind, air_radiance, air_transmittance)
-// where the last two are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air before
-// it). So air lies in front of a far fog bank and behind the fog round the camera, without a seam between.
+//     out = air_radiance + air_transmittance * fog.radiance + fog.transmittance * (fog.shade * behind - air_radiance)
+// where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air before it) and
+// `behind` is that of the whole distance. So air lies in front of a far fog bank and behind the fog round the camera, without a seam between.
 //!include "common/depth.wgsl"
 
 // What a pipeline can draw; FogVariant::constants() gives them. Real GPUs step over what the
@@ -83,14 +83,18 @@ struct FogUniform {
     fall: array<vec4f, 2>,
     // Wave vector and phase at the camera.
     patch_waves: array<vec4f, 6>,
+    // Share of the light above the layer that reaches the camera: that of the air inside it.
+    lit: f32,
 }
 
 // colour * transmittance + radiance.
 struct Fog {
     radiance: vec3f,
-    // Mean distance from which the fog's light comes, m.
+    // Distance, m, up to which the air counts as before the fog.
     distance: f32,
     transmittance: vec3f,
+    // Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
+    shade: f32,
 }
 
 struct LayerPath {
@@ -427,7 +431,9 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog 
     let entry_mu = clamp(mu + u.curvature * path.first, -1.0, 1.0);
     fog.radiance = layer_radiance(u, mu, entry_mu, 0.5 * dot(to_sun, to_sun), ends, depth);
     fog.transmittance = fog_exp(-fog_channels(u.ratio) * depth);
-    fog.distance = path.first + (path.last - path.first) * mean_place(depth);
+    fog.distance = path.first + (path.last - path.first) * mean_place(depth) * u.lit;
+    let inside = select((path.last - path.first) / max(range, 1e-3), 0.0, range >= RANGE_SKY);
+    fog.shade = 1.0 - (1.0 - u.lit) * min(inside, 1.0);
     return fog;
 }
 
@@ -446,13 +452,13 @@ fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fo
             v = 0.0;
         }
     }
-    return Fog(u.first * (1.0 - v), 0.0, vec3f(v));
+    return Fog(u.first * (1.0 - v), 0.0, vec3f(v), 1.0);
 }
 
 // What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction` (unit), with an
 // object at `range` metres, `plane` from the camera's plane; RANGE_SKY for sky.
 fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32) -> Fog {
-    var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0));
+    var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0);
     if FOG_KINDS == 2u || FOG_KINDS == 4u {
         fog = fog_layer(u, origin, direction, range);
     } else if (FOG_KINDS & 6u) != 0u && (u.kind == FOG_SLAB || u.kind == FOG_EXPONENTIAL) {
@@ -466,9 +472,4 @@ fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: 
 // `behind` seen through the fog alone.
 fn fog_apply(fog: Fog, behind: vec3f) -> vec3f {
     return behind * fog.transmittance + fog.radiance;
-}
-
-// `behind` holds the air of the whole distance; `air_radiance` and `air_transmittance` are the air's up to fog.distance.
-fn fog_compose(fog: Fog, behind: vec3f, air_radiance: vec3f, air_transmittance: vec3f) -> vec3f {
-    return air_radiance + air_transmittance * fog.radiance + fog.transmittance * (behind - air_radiance);
 }

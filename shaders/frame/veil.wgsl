@@ -33,7 +33,7 @@ fn air_between(d: vec3f, distance: f32) -> Veil {
 }
 
 // `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air
-// before it, the fog round the camera lies before the air: fog_compose, written for a veil.
+// before it, the fog round the camera lies before the air (fog/lookup.wgsl).
 fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
@@ -45,7 +45,8 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if f.distance > 50.0 {
         before = air_between(ray.direction, f.distance);
     }
-    let light = before.light + before.transmittance * f.radiance + f.transmittance * (behind.light - before.light);
+    let beyond = mix(1.0, f.shade, drawn.y) * behind.light - before.light;
+    let light = before.light + before.transmittance * f.radiance + f.transmittance * beyond;
     return Veil(light, behind.transmittance * f.transmittance);
 }
 

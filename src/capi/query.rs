@@ -101,7 +101,8 @@ impl wk_celestial {
     }
 }
 
-/// Light that arrives at a place, after air and clouds; plain values of a list.
+/// Light that arrives at a place, after air, clouds and fog; plain values of a list. Light scattered forward once by fog
+/// counts as the sun's or the moon's.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
@@ -109,7 +110,7 @@ pub struct wk_ground_light {
     pub sun_lux: [f64; 3],
     /// Direct moon on a surface facing it, lux a channel.
     pub moon_lux: [f64; 3],
-    /// Sky and clouds on level ground, lux a channel.
+    /// Sky, clouds and fog on level ground, lux a channel.
     pub sky_lux: [f64; 3],
     /// Everything on level ground, luminance-weighted, lux.
     pub total_lux: f64,

@@ -1,9 +1,10 @@
 //! The fog of a scene: the weather's low layer, or one of the older laws if the host asked for it.
 
-use super::Scene;
+use super::{Light, Scene};
 use crate::{
     error::Result,
     fog::{FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint},
+    scene::Place,
     weather::Conditions,
 };
 
@@ -64,14 +65,48 @@ fn ground_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
     let inside = 1.0 - amount * f.coverage.max(0.01).ln();
     let patches =
         (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m: [0.0; 2] });
+    // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
+    let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
+    let exponent = f.angstrom_exponent - c.aerosol.absorption_angstrom_exponent;
+    let albedo = crate::sky::planet::EARTH_WAVELENGTHS_NM
+        .map(|nm| 1.0 - (absorbed * (nm / crate::sky::planet::EARTH_WAVELENGTHS_NM[1]).powf(exponent)).min(1.0));
     Some(FogLayer {
         extinction_per_m: (f.extinction_per_m / inside).min(crate::fog::MAX_EXTINCTION_PER_M),
         angstrom: f.angstrom_exponent.clamp(-1.0, 4.0),
-        albedo: [f.single_scattering_albedo.clamp(0.0, 1.0); 3],
+        albedo,
         profile,
         phase,
         patches,
     })
+}
+
+fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f64) -> Viewpoint {
+    let ground_m = c.air.station_altitude_m.min(place.altitude_m);
+    Viewpoint { altitude_m: place.altitude_m, map_m, planet_radius_m, ground_m }
+}
+
+/// What the weather's low layer leaves of the light `above` it: sun, moon, and all else on level ground, lux.
+pub(super) fn through_fog(
+    c: &Conditions,
+    place: &Place,
+    [sun, moon]: [&Light; 2],
+    above: ([[f64; 3]; 3], [f64; 3]),
+) -> Result<[[f64; 3]; 3]> {
+    let ([sun_lux, moon_lux, sky_lux], ground_albedo) = above;
+    let Some(layer) = fog_layer(c, 0) else { return Ok(above.0) };
+    let law = Law::Layer(FogLayer { patches: None, ..layer });
+    let view = viewpoint(place, c, [0.0; 2], f64::INFINITY);
+    let under = |light: &Light, lux, sky| -> Result<[[f64; 3]; 2]> {
+        let light = FogLight { to_sun: light.direction, sun_irradiance: lux, sky_irradiance: sky, ground_albedo };
+        let model = FogModel::new(&law, &light, &view)?;
+        Ok(model.light_at(place.altitude_m).unwrap_or([lux, sky]))
+    };
+    let [sun, sky] = under(sun, sun_lux, sky_lux)?;
+    if moon_lux == [0.0; 3] {
+        return Ok([sun, moon_lux, sky]);
+    }
+    let [moon, more] = under(moon, moon_lux, [0.0; 3])?;
+    Ok([sun, moon, [0, 1, 2].map(|i| sky[i] + more[i])])
 }
 
 impl Scene {
@@ -82,19 +117,14 @@ impl Scene {
     pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
         let own = fog_layer(&self.conditions, seed).map_or(Law::Clear, Law::Layer);
         let light = self.brighter();
-        let lux = if light == &self.sun { self.ground.sun_lux } else { self.ground.moon_lux };
+        let lux = if light == &self.sun { self.above_fog.sun_lux } else { self.above_fog.moon_lux };
         let light = FogLight {
             to_sun: light.direction,
             sun_irradiance: lux,
-            sky_irradiance: self.ground.sky_lux,
+            sky_irradiance: self.above_fog.sky_lux,
             ground_albedo: self.planet.ground_albedo,
         };
-        let view = Viewpoint {
-            altitude_m: self.place.altitude_m,
-            map_m: self.map_m,
-            planet_radius_m,
-            ground_m: self.conditions.air.station_altitude_m.min(self.place.altitude_m),
-        };
+        let view = viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m);
         FogModel::new(law.unwrap_or(&own), &light, &view)
     }
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::{Context, GroundLight, Light, fog::fog_layer, lights::color_of};
 use crate::{
     error::{Error, Result},
-    fog::{Viewpoint, koschmieder_visibility_m, transmittance_between},
+    fog::{FogLayer, Viewpoint, koschmieder_visibility_m, transmittance_between},
     sky::{
         LightTable, Sh9,
         reference::{medium::Medium, ray::Ray},
@@ -22,7 +22,7 @@ pub struct LightAt {
     pub sun: Light,
     /// The moon.
     pub moon: Light,
-    /// What arrives, after air and clouds.
+    /// What arrives, after air, clouds and fog.
     pub arriving: GroundLight,
 }
 
@@ -95,8 +95,15 @@ impl Context {
             (sh.map(colored), colored(table.irradiance(scene.place.altitude_m, light.direction.z))[1])
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
-        // Clouds turn the clear sky's pattern into an even one of the light that they let through.
-        let cover = scene.deck_cover as f32;
+        // Clouds and fog turn the clear sky's pattern into an even one of the light that they let through.
+        let through = match fog_layer(&scene.conditions, 0) {
+            Some(layer) if scene.ground != scene.above_fog => {
+                let layer = FogLayer { patches: None, ..layer };
+                transmittance_between(&layer, &Viewpoint::flat(scene.place.altitude_m), DVec3::Z * 1e5)?[1]
+            }
+            _ => 1.0,
+        };
+        let cover = 1.0 - (1.0 - scene.deck_cover as f32) * through as f32;
         let even = scene.ground.sky_lux.map(|e| (e / std::f64::consts::PI) as f32);
         let clear_e = (sun_e + moon_e).max(1e-9);
         let keep = (1.0 - cover) * (scene.ground.sky_lux[1] as f32 / clear_e).min(1.0);

@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 use super::{
     Context, Light,
     air::planet_under,
+    fog::through_fog,
     lights::{UnderClouds, color_of},
 };
 use crate::{
@@ -16,14 +17,15 @@ use crate::{
     weather::{CloudLight, Conditions, slab_reflectance},
 };
 
-/// Light that falls on level ground at a place, lux a channel of linear Rec. 709.
+/// Light that falls on level ground at a place, lux a channel of linear Rec. 709. Under fog the sun's and the moon's
+/// aureoles, light scattered forward once, count as theirs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundLight {
-    /// Direct sun on a surface that faces it, after air and clouds.
+    /// Direct sun on a surface that faces it, after air, clouds and fog.
     pub sun_lux: [f64; 3],
     /// Direct moon on a surface that faces it.
     pub moon_lux: [f64; 3],
-    /// Sky and clouds on level ground.
+    /// Sky, clouds and fog on level ground.
     pub sky_lux: [f64; 3],
     /// Everything on level ground as a luminance-weighted sum, lux.
     pub total_lux: f64,
@@ -52,6 +54,8 @@ pub struct Scene {
     pub color: [[f64; 3]; 3],
     /// Light on the ground.
     pub ground: GroundLight,
+    /// Light on the low layer of fog, rain, snow or dust, if the place lies in one; else the same.
+    pub above_fog: GroundLight,
     /// Airglow and starlight, cd/m^2 a channel.
     pub night_floor_cd_m2: [f64; 3],
     /// Zenith luminance of the cloud deck's underside, cd/m^2 a channel.
@@ -202,8 +206,13 @@ impl Context {
         let station_m = conditions.air.station_altitude_m;
         let lowest = conditions.cloud_slabs().map(|s| s.base_m + station_m).fold(f64::INFINITY, f64::min);
         let below = smooth(0.0, 300.0, lowest + 150.0 - local.place.altitude_m);
-        let ground = self.ground_light(&planet, &local.place, &conditions, &lights, below);
+        let above_fog = self.ground_light(&planet, &local.place, &conditions, &lights, below);
         let [(sun, under_sun), (moon, _)] = lights;
+        let ground = if self.fog_law.is_some() {
+            above_fog
+        } else {
+            above_fog.through_fog(&conditions, &local.place, [&sun, &moon], planet.ground_albedo)?
+        };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;
         Ok(Scene {
@@ -215,10 +224,11 @@ impl Context {
             sun,
             moon,
             night_floor_cd_m2: NIGHT_CD_M2,
-            deck_cd_m2: ground.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
+            deck_cd_m2: above_fog.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
             medium_share: medium_share(&under_sun, below),
             ground,
+            above_fog,
             conditions,
         })
     }
@@ -265,14 +275,24 @@ impl Context {
             )
         };
         let ((sun_lux, sun_sky), (moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
-        let [(sun, _), (moon, _)] = lights;
         let floor = NIGHT_CD_M2.map(|v| v / luminance(&NIGHT_CD_M2) * NIGHT_LUX);
         let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + floor[i]);
+        GroundLight::new([sun_lux, moon_lux, sky_lux], [&lights[0].0, &lights[1].0], place.altitude_m)
+    }
+}
+
+impl GroundLight {
+    fn new([sun_lux, moon_lux, sky_lux]: [[f64; 3]; 3], [sun, moon]: [&Light; 2], altitude_m: f64) -> Self {
         let total_lux = luminance(&sky_lux)
             + luminance(&sun_lux) * sun.direction.z.max(0.0)
             + luminance(&moon_lux) * moon.direction.z.max(0.0);
-        let adaptation_cd_m2 = adaptation(total_lux, luminance(&sky_lux), luminance(&sun_lux), sun, place.altitude_m);
-        GroundLight { sun_lux, moon_lux, sky_lux, total_lux, adaptation_cd_m2 }
+        let adaptation_cd_m2 = adaptation(total_lux, luminance(&sky_lux), luminance(&sun_lux), sun, altitude_m);
+        Self { sun_lux, moon_lux, sky_lux, total_lux, adaptation_cd_m2 }
+    }
+
+    fn through_fog(&self, c: &Conditions, place: &Place, lights: [&Light; 2], ground_albedo: [f64; 3]) -> Result<Self> {
+        let above = ([self.sun_lux, self.moon_lux, self.sky_lux], ground_albedo);
+        Ok(Self::new(through_fog(c, place, lights, above)?, lights, place.altitude_m))
     }
 }
 

@@ -26,6 +26,7 @@
 use glam::DVec3;
 
 use super::laws::DistanceKind;
+use super::light::Solution;
 use super::phase::{PhaseLobes, fog_phase_after};
 use crate::scene::depth::RANGE_SKY_M;
 
@@ -132,6 +133,10 @@ pub struct FogModel {
     pub sky_radiance: DVec3,
     /// Radiance of the ground below it.
     pub ground_radiance: DVec3,
+    /// The layer's light per channel, as it was solved; `None` without a layer.
+    pub solutions: Option<[Solution; 3]>,
+    /// Share of the light above the layer that reaches the camera: that of the air inside it.
+    pub lit: f64,
     /// Patches: share, and waves as (wave vector, phase at the camera).
     pub patch_amount: f64,
     /// See `patch_amount`.
@@ -145,8 +150,11 @@ pub struct FogSample {
     pub radiance: DVec3,
     /// Share of the object's light that is left.
     pub transmittance: DVec3,
-    /// Mean distance from which the fog's light comes, m: where air in front of it begins to count.
+    /// Distance, m, up to which the air counts as before the fog. The mean from which the fog's light comes, less what
+    /// lies inside a layer that keeps the light from the air too.
     pub distance: f64,
+    /// Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
+    pub shade: f64,
 }
 
 /// A ray's way through the layer.
@@ -434,7 +442,7 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
 /// at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
 pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
     match m.kind {
-        FogKind::Clear => FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0 },
+        FogKind::Clear => FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0, shade: 1.0 },
         FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range),
         _ => fog_compatible(m, direction, range, plane),
     }
@@ -464,9 +472,11 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSa
     let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);
     let radiance = layer_radiance(m, mu, entry_mu, versine, ends, depth);
     let transmittance = exp3(-m.ratio * depth);
-    // Mean distance of the scattered light, as in an even medium between entry and exit.
-    let distance = path.first + (path.last - path.first) * mean_place(depth);
-    FogSample { radiance, transmittance, distance }
+    // Mean distance of the scattered light, as in an even medium between entry and exit. The air is drawn as lit from a
+    // free sky: where the layer lets only a share down, only that share of the air inside counts.
+    let distance = path.first + (path.last - path.first) * mean_place(depth) * m.lit;
+    let inside = if range >= RANGE_SKY_M { 0.0 } else { ((path.last - path.first) / range.max(1e-3)).min(1.0) };
+    FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside }
 }
 
 fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> FogSample {
@@ -483,5 +493,5 @@ fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> Fog
             v = 0.0;
         }
     }
-    FogSample { radiance: m.first * (1.0 - v), transmittance: DVec3::splat(v), distance: 0.0 }
+    FogSample { radiance: m.first * (1.0 - v), transmittance: DVec3::splat(v), distance: 0.0, shade: 1.0 }
 }

@@ -86,6 +86,8 @@ impl FogModel {
             first: DVec3::ZERO,
             sky_radiance: DVec3::from(light.sky_irradiance) / std::f64::consts::PI,
             ground_radiance: DVec3::ZERO,
+            solutions: None,
+            lit: 1.0,
             patch_amount: 0.0,
             patch_waves: [(DVec3::ZERO, 0.0); PATCH_WAVES],
         }
@@ -110,7 +112,8 @@ impl FogModel {
         self.depth_total = layer_depth_above(self, view.ground_m);
         self.lobes = PhaseLobes::new(&layer.phase);
         (self.forward, _, self.smooth) = delta_scaling(1.0, self.lobes.moments());
-        for (i, nm) in WAVELENGTHS_NM.iter().enumerate() {
+        let solutions = [0, 1, 2].map(|i| {
+            let nm = WAVELENGTHS_NM[i];
             self.ratio[i] = (nm / WAVELENGTHS_NM[1]).powf(-layer.angstrom);
             let (wf, albedo, asymmetry) = delta_scaling(layer.albedo[i], self.lobes.moments());
             self.scaling[i] = self.ratio[i] * (1.0 - wf);
@@ -123,12 +126,38 @@ impl FogModel {
                 sky: light.sky_irradiance[i],
                 ground: light.ground_albedo[i],
             };
-            self.set_source(i, &slab.solve());
+            let solution = slab.solve();
+            self.set_source(i, &solution);
             self.first[i] = layer.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
-        }
+            solution
+        });
+        self.solutions = Some(solutions);
+        self.lit = self.share_at(view.altitude_m);
         if let Some(patches) = &layer.patches {
             self.set_patches(patches, view);
         }
+    }
+
+    /// Light at an altitude under or in the layer, per channel: the sun's on a surface facing it (its aureole, the forward
+    /// peak of the scattering, included), and what else falls on level ground.
+    pub fn light_at(&self, altitude_m: f64) -> Option<[[f64; 3]; 2]> {
+        let solutions = self.solutions?;
+        let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
+        let one = |i: usize| {
+            let s = &solutions[i];
+            let t = self.scaling[i] * depth;
+            (s.slab.sun * (-t / s.slab.mu0).exp(), s.irradiance_down(t)[1].max(0.0))
+        };
+        let [a, b, c] = [0, 1, 2].map(one);
+        Some([[a.0, b.0, c.0], [a.1, b.1, c.1]])
+    }
+
+    /// Share at 550 nm of the light above the layer that reaches level ground at an altitude.
+    fn share_at(&self, altitude_m: f64) -> f64 {
+        let (Some(all), Some([sun, sky])) = (&self.solutions, self.light_at(altitude_m)) else { return 1.0 };
+        let Slab { mu0, sun: sun_above, sky: sky_above, .. } = all[1].slab;
+        let above = mu0 * sun_above + sky_above;
+        if above > 0.0 { ((mu0 * sun[1] + sky[1]) / above).min(1.0) } else { 1.0 }
     }
 
     /// The source w (I0 + g mu I1) of channel `i`; the first scattering has its own term.
@@ -231,6 +260,8 @@ impl FogModel {
             rise: term(&self.rise),
             fall: term(&self.fall),
             patch_waves: self.patch_waves.map(|(k, p)| [k.x as f32, k.y as f32, k.z as f32, p as f32]),
+            lit: self.lit as f32,
+            pad: [0.0; 3],
         }
     }
 }
@@ -319,4 +350,6 @@ pub struct FogUniform {
     pub rise: [[f32; 4]; 2],
     pub fall: [[f32; 4]; 2],
     pub patch_waves: [[f32; 4]; PATCH_WAVES],
+    pub lit: f32,
+    pub pad: [f32; 3],
 }

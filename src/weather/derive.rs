@@ -84,7 +84,8 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     let left = (super::LN_20 / w.visibility_m - air.rayleigh_extinction_per_m).max(0.0);
     falling.extinction_per_m = o.precipitation_extinction_per_m.unwrap_or(falling.extinction_per_m.min(left));
     let shares = particles::share_extinction(w, &air, falling.extinction_per_m, o);
-    let fog = particles::ground_layer(w, shares.ground_per_m);
+    let aerosol = particles::aerosol_layer(w, shares.aerosol_per_m, o.humidity_growth);
+    let fog = particles::ground_layer(w, shares.ground_per_m, &aerosol);
     let counted = if shares.ground_counts { fog.extinction_per_m } else { 0.0 };
     let wind = surface::wind_profile(w);
     let mut ground = surface::surface_cover(&w.surface, w.temperature_c, w.relative_humidity, &falling);
@@ -92,7 +93,7 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     Ok(Conditions {
         extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m,
         air,
-        aerosol: particles::aerosol_layer(w, shares.aerosol_per_m, o.humidity_growth),
+        aerosol,
         fog,
         precipitation: falling,
         clouds: cloud_light::cloud_slabs(w, o.rain_needs_cloud.unwrap_or(true)),
@@ -153,8 +154,15 @@ mod tests {
             let w = Weather { visibility_m: v, aerosol: Aerosol::of(aerosol), fog: Fog::of(fog), ..Weather::default() };
             derive(&w).unwrap()
         };
-        let haze = with(AerosolKind::Haze, FogKind::None, 1800.0);
+        let haze = with(AerosolKind::Haze, FogKind::None, 4500.0);
         assert_eq!(haze.fog.extinction_per_m, 0.0);
+        let thick = with(AerosolKind::Haze, FogKind::None, 1500.0);
+        let column = (thick.aerosol.extinction_per_m + thick.fog.extinction_per_m) * thick.aerosol.scale_height_m;
+        assert!(thick.aerosol.extinction_per_m * thick.aerosol.scale_height_m <= 1.0 && column > 2.0, "{column}");
+        assert!((thick.visibility_m() / 1500.0 - 1.0).abs() < 1e-9 && thick.fog.top_m == 2400.0);
+        let steps = (200..6000).map(|v| with(AerosolKind::Haze, FogKind::None, f64::from(v)).aerosol.extinction_per_m);
+        let steps: Vec<f64> = steps.collect();
+        assert!(steps.windows(2).all(|s| (s[1] - s[0]).abs() < 5e-6), "a small change of the sight makes no jump");
         let mist = with(AerosolKind::Continental, FogKind::Mist, 1800.0);
         assert!((mist.aerosol.extinction_per_m + mist.air.rayleigh_extinction_per_m - LN_20 / 5000.0).abs() < 1e-12);
         assert!(mist.fog.extinction_per_m > 0.0 && mist.fog.top_m == 300.0);
@@ -241,6 +249,7 @@ mod tests {
         let drifting = lofted(LoftedKind::DriftingSnow, 20_000.0);
         assert!(drifting.fog.top_m < 2.0 && (drifting.visibility_m() - 20_000.0).abs() < 1e-6);
         let dust = lofted(LoftedKind::BlowingDust, 400.0);
-        assert!(dust.fog.extinction_per_m == 0.0 && dust.aerosol.absorption_angstrom_exponent > 2.0);
+        assert!(dust.fog.extinction_per_m > 7e-3 && dust.fog.single_scattering_albedo < 0.9);
+        assert!(dust.fog.top_m == 3000.0 && dust.aerosol.absorption_angstrom_exponent > 2.0);
     }
 }

@@ -78,6 +78,12 @@ fn is_dry_obscuration(kind: AerosolKind) -> bool {
     matches!(kind, A::Haze | A::Dust | A::Sand | A::Smoke | A::VolcanicAsh)
 }
 
+/// Whether dry particles, and no droplets or snow, are what takes the sight.
+fn is_dry(w: &Weather) -> bool {
+    let foggy = !matches!(w.fog.kind, FogKind::None | FogKind::Shallow) || w.lofted.kind == LoftedKind::BlowingSnow;
+    is_dry_obscuration(effective_kind(w)) && !foggy
+}
+
 /// Aerosol of the weather, `extinction_per_m` at station height being known: swelling takes absorption's share down (water
 /// does not absorb), and brings asymmetry and spectrum towards a droplet's, by the volume of water taken up.
 pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option<f64>) -> AerosolLayer {
@@ -127,18 +133,33 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
     beside.then(|| w.fog.visibility_inside_m.unwrap_or(usual))
 }
 
+/// Optical depth straight up of the particles that the sky's tables carry at most. Their orders of scattering are a series,
+/// off by 11 % at p95 here; what is thicker goes to the ground layer, whose two-stream solution holds at any depth.
+const SKY_DEPTH: f64 = 1.0;
+
+/// Depth left to the sky of particles `depth` deep: all up to [`SKY_DEPTH`], then ever less, as 1 / depth. Under so much
+/// dust the air that the sky draws would be lit as if there were none above it.
+fn sky_depth(depth: f64) -> f64 {
+    if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
+}
+
 /// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the ground.
 ///
-/// Haze, dust, sand, smoke and ash take all of it; other air takes no more than leaves [`visibility_above_m`] and the rest is
-/// mist or fog, named or not, since dry background air never gets thicker than that.
+/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] lets them; other air takes no more than leaves
+/// [`visibility_above_m`] and the rest is mist or fog, named or not, since dry background air never gets thicker than
+/// that.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> Shares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
-    let foggy = !matches!(w.fog.kind, FogKind::None | FogKind::Shallow) || w.lofted.kind == LoftedKind::BlowingSnow;
-    let cap = (LN_20 / visibility_above_m(w, o) - rayleigh).max(0.0);
-    let dry = is_dry_obscuration(effective_kind(w)) && !foggy;
     let beside = visibility_inside_m(w);
-    let tall = if dry || beside.is_some() { rest } else { rest.min(cap) };
+    let tall = if beside.is_some() {
+        rest
+    } else if is_dry(w) {
+        let height = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
+        sky_depth(rest * height) / height
+    } else {
+        rest.min((LN_20 / visibility_above_m(w, o) - rayleigh).max(0.0))
+    };
     let aerosol = o.aerosol_extinction_per_m.unwrap_or(tall);
     let ground = match beside {
         Some(inside) => (LN_20 / inside - rayleigh - aerosol - falling_per_m).max(0.0),
@@ -179,10 +200,25 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
 }
 
 /// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al. 1998,
-/// fog); lifted snow has asymmetry 0.89 and dust its own properties.
-pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64) -> FogLayer {
+/// fog); lifted snow has asymmetry 0.89 and dust its own properties. Where dry particles are too thick for the sky, the
+/// layer is what the sky leaves of them: as much as above one another in `aerosol`, thinning out to twice its scale height.
+pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> FogLayer {
     if extinction_per_m <= 0.0 {
         return FogLayer::NONE;
+    }
+    if is_dry(w) && visibility_inside_m(w).is_none() {
+        let top = w.fog.top_m.or(w.lofted.top_m).unwrap_or(2.0 * aerosol.scale_height_m);
+        return FogLayer {
+            extinction_per_m,
+            angstrom_exponent: aerosol.angstrom_exponent,
+            single_scattering_albedo: aerosol.single_scattering_albedo,
+            asymmetry: aerosol.asymmetry,
+            base_m: 0.0,
+            top_m: top,
+            softness_m: top,
+            coverage: 1.0,
+            patch_size_m: 200.0,
+        };
     }
     let top = w.fog.top_m.or(w.lofted.top_m).unwrap_or_else(|| default_top_m(w, extinction_per_m));
     let (albedo, asymmetry, angstrom) = match (w.fog.kind, w.lofted.kind) {

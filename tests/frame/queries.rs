@@ -3,7 +3,7 @@
 use glam::DVec3;
 use welkin::{
     context::{ContextDesc, GivenDirection},
-    weather::{Fog, FogKind, Weather},
+    weather::{Fog, FogKind, Lofted, LoftedKind, Weather},
 };
 
 use crate::host::Host;
@@ -44,6 +44,31 @@ fn ambient_light_agrees_with_the_light_on_level_ground() {
         assert!((level(1.0) / want - 1.0).abs() < 0.25, "{elevation_deg}: {} against {want} lux", level(1.0));
         assert!(sh[3][1] > 0.0, "the sky is brighter towards the sun in the east");
     }
+}
+
+/// Under a layer that lets no beam through a host must not cast shadows, and its ground gets what the layer's own solution
+/// lets down; above the layer nothing is taken.
+#[test]
+fn fog_and_dust_take_the_sun_from_the_ground() {
+    let mut host = host();
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 90.0, elevation_deg: 50.0 })).unwrap();
+    let mut light = |weather: &Weather, up: f64| {
+        host.context.set_weather(weather, 0.0, 0.0).unwrap();
+        host.context.light_at(DVec3::new(0.0, 0.0, up), 0.0).unwrap().arriving
+    };
+    let clear = light(&Weather::default(), 2.0);
+    let deep = Fog { top_m: Some(400.0), ..Fog::of(FogKind::Fog) };
+    let fog = Weather { visibility_m: 150.0, fog: deep, ..Weather::default() };
+    let (under, above) = (light(&fog, 2.0), light(&fog, 900.0));
+    let share = under.total_lux / above.total_lux;
+    // 6 or so optical depths of droplets reflect about a third (truth: the slab table) and take no colour.
+    assert!((0.45..0.75).contains(&share) && under.sun_lux[1] < 0.3 * above.sun_lux[1], "{share} {under:?}");
+    assert!(above.sun_lux[1] > 0.8 * clear.sun_lux[1], "{above:?} {clear:?}");
+    let dust = Weather { visibility_m: 400.0, lofted: Lofted::of(LoftedKind::BlowingDust), ..Weather::default() };
+    let storm = light(&dust, 2.0);
+    let share = storm.total_lux / clear.total_lux;
+    assert!((0.02..0.3).contains(&share) && storm.sun_lux[1] < 0.05 * clear.sun_lux[1], "{share} {storm:?}");
+    assert!(storm.sky_lux[0] > 2.0 * storm.sky_lux[2], "dust lets red through: {storm:?}");
 }
 
 #[test]
