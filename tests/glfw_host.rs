@@ -117,8 +117,8 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
     let host = Host::build("fog");
     run(host.command().args(["--report", "7"]));
     let fog = host.picture("07_noon.png");
-    // The excavator is 45 m away, the reported visibility 150 m.
-    assert!(contrast(&fog, 285) > 40, "the excavator shows: {}", contrast(&fog, 285));
+    // The excavator is 45 m away, the reported visibility 150 m; under fog no sun makes it glare.
+    assert!(contrast(&fog, 285) > 30, "the excavator shows: {}", contrast(&fog, 285));
     // Hills and the posts from 1 km on are gone: what is left is the fog's own slow change.
     let far = mean(&fog, [380, 165, 400, 175]);
     for x in [300, 340, 420, 460] {
