@@ -227,6 +227,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_PLAN 29
 /** wk_part_plan */
 #define WK_STRUCT_TYPE_PART_PLAN 30
+/** wk_rain */
+#define WK_STRUCT_TYPE_RAIN 31
+/** wk_shelter */
+#define WK_STRUCT_TYPE_SHELTER 32
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -2873,6 +2877,10 @@ typedef struct wk_frame {
      * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
      */
     const void *target;
+    /**
+     * Velocity of the camera in the host's world, m/s, at most 2000 in all: streaks of rain lean against it. Default 0, 0, 0.
+     */
+    double velocity_m_s[3];
 } wk_frame;
 
 /** Every field of `wk_frame` at its default. */
@@ -2894,7 +2902,8 @@ typedef struct wk_frame {
     /* exposure_mode */ WK_EXPOSURE_OF_CONTEXT, \
     /* reserved0 */ 0, \
     /* exposure_value */ 0.0, \
-    /* target */ NULL \
+    /* target */ NULL, \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
 }
 
 /** The images of a frame on an own device. */
@@ -3067,6 +3076,8 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_VEIL 6
 /** Taking over the host's context and images, and giving them back. */
 #define WK_EFFECT_HAND_OVER 7
+/** Rain. */
+#define WK_EFFECT_PARTICLES 8
 
 /** What one effect of a frame cost; plain values of a list. */
 typedef struct wk_effect_cost {
@@ -3451,6 +3462,109 @@ WK_API wk_status wk_plan_init(wk_plan *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Rain
+ *
+ * Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, each in
+ * a place that follows from seed and time alone, so that all channels of a simulator draw the same drops and any time can be
+ * shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
+ * picture shows within ten metres.
+ *
+ * What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
+ * crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry.
+ * ====================================================================================================
+ */
+
+/** How a view draws rain; what falls does not depend on it. */
+typedef struct wk_rain {
+    /** sizeof(wk_rain) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_RAIN. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Time for which a picture is exposed, s: it makes streaks of drops. Range [1e-4, 0.1], default 1/60. */
+    double shutter_s;
+    /**
+     * Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
+     * 400 000, and 100 000 on a software driver.
+     */
+    uint32_t most_drops;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_rain;
+
+/** Every field of `wk_rain` at its default. */
+#define WK_RAIN_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_rain), \
+    /* struct_type */ WK_STRUCT_TYPE_RAIN, \
+    /* next */ NULL, \
+    /* shutter_s */ 0.016666666666666666, \
+    /* most_drops */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** A box that rain does not pass, in the host's world. */
+typedef struct wk_shelter {
+    /** sizeof(wk_shelter) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SHELTER. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Its middle, m, within 1e12 m of the origin. Default 0, 0, 0. */
+    double center_m[3];
+    /** Its three axes one after the other: unit vectors at right angles. Default the world's. */
+    double axes[9];
+    /** Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
+    double half_size_m[3];
+    /** Its velocity, m/s, at most 2000 in all. Default 0, 0, 0. */
+    double velocity_m_s[3];
+} wk_shelter;
+
+/** Every field of `wk_shelter` at its default. */
+#define WK_SHELTER_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_shelter), \
+    /* struct_type */ WK_STRUCT_TYPE_SHELTER, \
+    /* next */ NULL, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* axes */ { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }, \
+    /* half_size_m */ { 1.0, 1.0, 1.0 }, \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API wk_status wk_view_set_rain(wk_view *view, const wk_rain *rain);
+
+/**
+ * Sets what keeps rain off, in place of what did before; a moving box is set anew every frame. count 0 removes all. At most
+ * 32. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+ */
+WK_API
+wk_status wk_context_set_shelters(wk_context *context,
+                                  const wk_shelter *shelters,
+                                  uint32_t count,
+                                  uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_RAIN_INIT`. `struct_size` is `sizeof(wk_rain)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_rain_init(wk_rain *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SHELTER_INIT`. `struct_size` is `sizeof(wk_shelter)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_shelter_init(wk_shelter *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

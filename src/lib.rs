@@ -12,6 +12,7 @@ pub mod fog;
 pub mod frame;
 pub mod gpu;
 pub mod plan;
+pub mod rain;
 pub mod scene;
 pub mod sky;
 pub mod weather;

@@ -157,26 +157,27 @@ impl RustHost {
         }
     }
 
-    /// The same wgpu calls without Welkin: uploads, a copy, a pass of one draw.
+    /// The same wgpu calls without Welkin: uploads, a copy, a pass for the drops and one for the picture.
     fn bare(&self) {
         let device = &self.device.device;
-        for _ in 0..3 {
+        for _ in 0..6 {
             self.device.queue.write_buffer(&self.uniform, 0, &[0; 512]);
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
         encoder.copy_texture_to_texture(self.color.as_image_copy(), self.copy.as_image_copy(), self.color.size());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("composite"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_viewport(0.0, 0.0, 64.0, 36.0, 0.0, 1.0);
-        drop(pass);
+        for label in ["drops", "composite"] {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(label),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &self.target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+                })],
+                ..Default::default()
+            });
+            pass.set_viewport(0.0, 0.0, 64.0, 36.0, 0.0, 1.0);
+        }
         self.device.queue.submit([encoder.finish()]);
         self.device.wait().unwrap();
     }

@@ -7,6 +7,7 @@
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 override TONE: bool = true;
+override PARTICLES: bool = false;
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;
 
@@ -49,9 +50,21 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     return veil;
 }
 
+// Drops before everything (rain/drops.wgsl), on which the exposure is already.
+@group(0) @binding(5) var drops: texture_2d<f32>;
+
+fn with_drops(veil: Veil, pixel: vec2u) -> Veil {
+    let layer = textureLoad(drops, vec2i(pixel), 0);
+    let clear = 1.0 - layer.a;
+    return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
+}
+
 fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
     drawn = frame.drawn;
-    let veil = weather_over(view_ray(frame.depth, ndc), range, plane);
+    var veil = weather_over(view_ray(frame.depth, ndc), range, plane);
+    if PARTICLES {
+        veil = with_drops(veil, pixel);
+    }
     return vec4f(mix(written(host.rgb, veil, pixel), host.rgb, mask), host.a);
 }
 

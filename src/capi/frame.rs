@@ -109,6 +109,8 @@ pub struct wk_frame {
     pub exposure_value: f64,
     /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
     pub target: *const c_void,
+    /// Velocity of the camera in the host's world, m/s, at most 2000 in all: streaks of rain lean against it. Default 0, 0, 0.
+    pub velocity_m_s: [f64; 3],
 }
 
 impl wk_frame {
@@ -131,6 +133,7 @@ impl wk_frame {
         reserved0: 0,
         exposure_value: 0.0,
         target: null(),
+        velocity_m_s: [0.0; 3],
     };
 }
 
@@ -216,6 +219,7 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         exposure,
         origin_bottom_left: bottom_left || c.flags & WK_FRAME_FIRST_ROW_AT_MINUS_Y != 0,
         flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE)),
+        camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),
     })
 }
 

@@ -47,6 +47,8 @@ pub mod veil;
 
 pub mod plan;
 
+pub mod rain;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -110,6 +110,10 @@ pub const WK_STRUCT_TYPE_BUDGET: wk_struct_type = 28;
 pub const WK_STRUCT_TYPE_PLAN: wk_struct_type = 29;
 /// wk_part_plan
 pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 30;
+/// wk_rain
+pub const WK_STRUCT_TYPE_RAIN: wk_struct_type = 31;
+/// wk_shelter
+pub const WK_STRUCT_TYPE_SHELTER: wk_struct_type = 32;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

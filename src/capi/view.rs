@@ -151,6 +151,8 @@ pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
 pub const WK_EFFECT_VEIL: wk_effect = 6;
 /// Taking over the host's context and images, and giving them back.
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
+/// Rain.
+pub const WK_EFFECT_PARTICLES: wk_effect = 8;
 
 /// What one effect of a frame cost; plain values of a list.
 #[repr(C)]

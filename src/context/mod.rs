@@ -28,6 +28,7 @@ use crate::{
     fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
+    rain::{MAX_SHELTERS, Shelter},
     scene::WorldFrame,
     sky::{
         Planet, SkySettings,
@@ -111,6 +112,7 @@ pub struct Context {
     given_sun: Option<GivenDirection>,
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
+    shelters: Vec<Shelter>,
     time_s: f64,
     ephemeris: Ephemeris,
 }
@@ -138,6 +140,7 @@ impl Context {
             given_sun: None,
             given_moon: None,
             fog_law: None,
+            shelters: Vec::new(),
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
         })
@@ -213,6 +216,32 @@ impl Context {
         }
         self.fog_law = law;
         Ok(())
+    }
+
+    /// The wind's run from time 0 to `time_s`, m east and north: see [`Timeline::wind_run_m`].
+    pub fn wind_run_m(&self, time_s: f64) -> [f64; 2] {
+        self.timeline.wind_run_m(time_s)
+    }
+
+    /// What keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SHELTERS`], or naming the field; nothing changes then.
+    pub fn set_shelters<'a>(&mut self, shelters: impl IntoIterator<Item = &'a Shelter, IntoIter: Clone>) -> Result<()> {
+        let shelters = shelters.into_iter();
+        let count = shelters.clone().count();
+        if count > MAX_SHELTERS {
+            return Err(Error::range("shelters", &format!("at most {MAX_SHELTERS}"), count));
+        }
+        shelters.clone().try_for_each(Shelter::validate)?;
+        self.shelters.clear();
+        self.shelters.extend(shelters);
+        Ok(())
+    }
+
+    /// What keeps rain off.
+    pub fn shelters(&self) -> &[Shelter] {
+        &self.shelters
     }
 
     /// The fog law that the host asked for.

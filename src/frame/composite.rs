@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use super::{target::Stages, uniform::FrameUniform};
+use super::{Frame, target::Stages, uniform::FrameUniform};
 use crate::{
     error::Result,
     fog::{FogUniform, FogVariant},
@@ -42,13 +42,14 @@ impl Variant {
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 15] {
+    pub fn constants(&self) -> [(&'static str, f64); 16] {
         let yes = |b: bool| f64::from(u8::from(b));
         let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
             ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
             ("MEDIUM", yes(self.stages.has(Stages::MEDIUM))),
             ("TONE", yes(self.stages.has(Stages::TONE))),
+            ("PARTICLES", yes(self.stages.has(Stages::PARTICLES))),
             ("SKY_MARCH", yes(self.march)),
             ("FOG", yes(self.fog.is_some())),
             ("DEPTH_KINDS", f64::from(self.depth_kinds)),
@@ -109,6 +110,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             texture_entry(2, multisampled),
             texture_entry(3, false),
             uniform(4, size_of::<FogUniform>()),
+            texture_entry(5, false),
         ],
     })
 }
@@ -163,23 +165,24 @@ impl Composite {
         [self.layout(multi), &self.layout_sky]
     }
 
-    /// The bind group of one view's uniform and one set of host textures.
+    /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, and the drops before
+    /// them.
     pub fn bind(
         &self,
         device: &Device,
         [frame, fog]: [&wgpu::Buffer; 2],
-        color: &wgpu::Texture,
-        depth: Option<&wgpu::Texture>,
-        mask: Option<&wgpu::Texture>,
+        copy: &wgpu::Texture,
+        host: &Frame<'_>,
+        drops: Option<&wgpu::TextureView>,
     ) -> wgpu::BindGroup {
-        let multi = color.sample_count() > 1;
-        let color_view = color.create_view(&Default::default());
-        let depth_view = depth.map(|t| {
+        let multi = copy.sample_count() > 1;
+        let color_view = copy.create_view(&Default::default());
+        let depth_view = host.depth.map(|t| {
             let aspect =
                 if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
             t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
         });
-        let mask_view = mask.map(|t| t.create_view(&Default::default()));
+        let mask_view = host.mask.map(|t| t.create_view(&Default::default()));
         let no_depth = if multi { self.none_multi.get_or_init(|| none(&device.device, 4)) } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
@@ -192,6 +195,7 @@ impl Composite {
                 entry(1, &color_view),
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
+                entry(5, drops.unwrap_or(&self.none)),
             ],
         })
     }

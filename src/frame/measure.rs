@@ -28,11 +28,13 @@ pub enum Effect {
     Veil = 6,
     /// Taking over the host's context and images, and giving them back.
     HandOver = 7,
+    /// Rain.
+    Particles = 8,
 }
 
 impl Effect {
     /// All of them, in order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::SkyTables,
         Self::SkyView,
         Self::Background,
@@ -41,6 +43,7 @@ impl Effect {
         Self::Composition,
         Self::Veil,
         Self::HandOver,
+        Self::Particles,
     ];
 
     /// Its name, for people.
@@ -54,6 +57,7 @@ impl Effect {
             Self::Composition => c"composition",
             Self::Veil => c"veil",
             Self::HandOver => c"hand-over",
+            Self::Particles => c"particles",
         }
     }
 }

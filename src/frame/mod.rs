@@ -6,6 +6,7 @@
 mod composite;
 mod froxels;
 mod measure;
+mod rain;
 mod shared;
 mod target;
 pub mod tone;
@@ -18,6 +19,8 @@ pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};
 pub use view::{Report, View};
+
+use glam::DVec3;
 
 use crate::{
     error::{Error, Result},
@@ -68,6 +71,8 @@ pub struct Frame<'a> {
     pub origin_bottom_left: bool,
     /// Cut, no history.
     pub flags: FrameFlags,
+    /// Velocity of the camera in the host's axes, m/s: rain streaks lean against it. Default 0.
+    pub camera_velocity_m_s: DVec3,
 }
 
 impl<'a> Frame<'a> {
@@ -85,12 +90,17 @@ impl<'a> Frame<'a> {
             exposure: None,
             origin_bottom_left: false,
             flags: FrameFlags(0),
+            camera_velocity_m_s: DVec3::ZERO,
         }
     }
 
     fn validate(&self) -> Result<()> {
         if !(self.cd_m2_per_unit.is_finite() && self.cd_m2_per_unit > 0.0 && self.cd_m2_per_unit <= 1e9) {
             return Err(Error::range("cd_m2_per_unit", "in (0, 1e9] cd/m^2", self.cd_m2_per_unit));
+        }
+        let speed = self.camera_velocity_m_s.length();
+        if speed.is_nan() || speed > 2000.0 {
+            return Err(Error::range("camera_velocity_m_s", "a vector of at most 2000 m/s", self.camera_velocity_m_s));
         }
         if let Some(exposure) = &self.exposure {
             exposure.validate()?;

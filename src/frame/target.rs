@@ -53,8 +53,8 @@ impl Stages {
     }
 
     /// The stages of this set that draw over the whole picture, one by one in their order; empty ones among them.
-    pub(super) fn each(self) -> [Self; 3] {
-        [Self::BACKGROUND, Self::MEDIUM, Self::TONE].map(|stage| Self(self.0 & stage.0))
+    pub(super) fn each(self) -> [Self; 4] {
+        [Self::BACKGROUND, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }
 
     /// Checks a mask from outside.

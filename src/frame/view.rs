@@ -12,6 +12,7 @@ use super::{
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Costs, Effect, Recording},
+    rain::{self, Rain},
     shared::Shared,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
     uniform::FrameUniform,
@@ -22,6 +23,7 @@ use crate::{
     fog::{FogKind, FogUniform, FogVariant},
     gpu::Device,
     plan::{Budget, Plan, Planner, Present, Situation},
+    rain::RainSettings,
     scene::{Camera, ViewRays},
     sky::SkyVolume,
 };
@@ -39,6 +41,8 @@ pub struct Report {
     pub exposure: f64,
     /// Bytes of GPU memory the view holds for itself.
     pub bytes: u64,
+    /// Drops of rain that were drawn.
+    pub drops: u32,
     /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`]).
     pub costs: Option<Costs>,
 }
@@ -49,6 +53,7 @@ struct Bound {
     color: wgpu::Texture,
     depth: Option<wgpu::Texture>,
     mask: Option<wgpu::Texture>,
+    drops: Option<wgpu::TextureView>,
 }
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -61,6 +66,7 @@ pub struct View {
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     sky: SkyVolume,
     froxels: Option<Froxels>,
+    rain: Rain,
     planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
@@ -89,6 +95,7 @@ impl View {
         let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
         let shared = context.shared().clone();
         let sky = SkyVolume::new(&*context.sky()?)?;
+        let rain = Rain::new(&device, RainSettings::default());
         device.check()?;
         drop(_entered);
         Ok(Self {
@@ -100,6 +107,7 @@ impl View {
             bound: None,
             sky,
             froxels: None,
+            rain,
             planner: Planner::new(),
             planned_for: None,
             light_scale: 0.0,
@@ -124,6 +132,16 @@ impl View {
         let _entered = device.enter()?;
         self.planner.set_budget(&device, budget)?;
         device.check()
+    }
+
+    /// Sets how rain is drawn. Default: [`RainSettings::default`].
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
+        settings.validate()?;
+        self.rain.settings = settings;
+        Ok(())
     }
 
     /// Says what the weather took in the last frame, ms of whatever the host's budget counts (its GPU timer, or the
@@ -220,10 +238,14 @@ impl View {
     ) -> Result<()> {
         Stages::from_bits(stages.0)?;
         self.check_order(frame.frame_id, stages)?;
-        let drawn = stages.has(Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::TONE));
         frame.camera.validate()?;
         let scene = context.scene_at(frame.camera.position, context.time_s())?;
-        let rays = if drawn { Some(self.check_targets(frame, stages, &scene)?) } else { None };
+        // What does not fall is not drawn.
+        let asked = stages;
+        let stages = if rain::falls(&scene) { stages } else { stages.without(Stages::PARTICLES) };
+        let drawing = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES).with(Stages::TONE);
+        let drawn = stages.has(drawing);
+        let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
@@ -233,12 +255,12 @@ impl View {
         }
         if let Some(rays) = rays {
             let apart = to.is_measured() && can_be_apart(frame, stages);
-            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0)] };
+            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0), Stages(0)] };
             for stages in draws.into_iter().filter(|s| s.0 != 0) {
                 self.draw(context, frame, stages, &scene, &rays, to)?;
             }
         }
-        self.recorded = self.recorded.with(stages);
+        self.recorded = self.recorded.with(asked);
         Ok(())
     }
 
@@ -315,7 +337,7 @@ impl View {
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
         let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
         let variant = Variant {
-            stages: Stages(stages.0 & (Stages::BACKGROUND.0 | Stages::MEDIUM.0 | Stages::TONE.0)),
+            stages: Stages(stages.0 & (Stages::BACKGROUND.0 | Stages::MEDIUM.0 | Stages::PARTICLES.0 | Stages::TONE.0)),
             format: color.format(),
             samples: color.sample_count(),
             has_depth: frame.depth.is_some(),
@@ -331,7 +353,8 @@ impl View {
         if variant.stages == Stages(0) {
             return Ok(());
         }
-        self.bind(frame, color)?;
+        let drops = rain::falls(scene).then(|| self.rain.layer(&self.device, color).clone());
+        self.bind(frame, color, drops)?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
         let situation = situation(frame, scene);
@@ -354,6 +377,11 @@ impl View {
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
+        }
+        if variant.stages.has(Stages::PARTICLES) {
+            let at = (context, scene, rays);
+            self.report.drops = self.rain.draw(&self.device, to.encoder, at, frame, color, exposure)?;
+            self.report.passes += 1;
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
@@ -389,9 +417,9 @@ impl View {
     }
 
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
-    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture) -> Result<()> {
+    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, drops: Option<wgpu::TextureView>) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
-            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask
+            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask && b.drops == drops
         });
         if same {
             return Ok(());
@@ -403,13 +431,13 @@ impl View {
             self.copy = Some(color_copy(&self.device.device, color));
             let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
             let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
-            self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes);
+            self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes) + self.rain.bytes();
         }
         let Some(copy) = &self.copy else { return Ok(()) };
         let group =
-            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], copy, frame.depth, frame.mask);
+            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], copy, frame, drops.as_ref());
         let target = color.create_view(&Default::default());
-        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned() };
+        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned(), drops };
         self.bound = Some((bound, group, target));
         Ok(())
     }
@@ -438,6 +466,7 @@ fn effect_of(stages: Stages) -> Effect {
     match stages {
         Stages::BACKGROUND => Effect::Background,
         Stages::MEDIUM => Effect::Medium,
+        Stages::PARTICLES => Effect::Particles,
         Stages::TONE => Effect::Tone,
         _ => Effect::Composition,
     }

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, plan::*, query::*, status::*, surface::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, plan::*, query::*, rain::*, status::*, surface::*,
     texture::*, timeline::*, veil::*, view::*, vulkan::*,
 };
 
@@ -62,6 +62,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_save", "context", false, |h| unsafe { wk_context_save(h.cast(), null_mut(), 0, null_mut()) }),
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
+        case("wk_context_set_shelters", "context", false, |h| unsafe {
+            wk_context_set_shelters(h.cast(), null(), 0, 0)
+        }),
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
         case("wk_context_get_conditions", "context", false, |h| unsafe {
             wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())
@@ -101,6 +104,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_get_costs", "view", false, |h| unsafe {
             wk_view_get_costs(h.cast(), null_mut(), 0, 0, null_mut())
         }),
+        case("wk_view_set_rain", "view", false, |h| unsafe { wk_view_set_rain(h.cast(), null()) }),
         case("wk_view_set_budget", "view", false, |h| unsafe { wk_view_set_budget(h.cast(), null()) }),
         case("wk_view_report_time", "view", false, |h| unsafe { wk_view_report_time(h.cast(), 1.0) }),
         case("wk_view_get_plan", "view", false, |h| unsafe { wk_view_get_plan(h.cast(), null_mut()) }),

@@ -283,9 +283,9 @@ fn costs_are_there_where_they_were_asked_for() {
         assert_eq!(wk_view_get_report(view, &mut report), WK_OK);
         assert!(report.has & WK_REPORT_HAS_MS != 0 && report.ms > 0.0);
         assert_eq!(wk_view_get_costs(view, null_mut(), 0, 0, &mut count), WK_OK, "{}", message());
-        assert_eq!(count, 8);
-        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 7, size, &mut count), "capacity must be at least 8");
-        refused(wk_view_get_costs(view, null_mut(), 8, size, &mut count), "costs must not be NULL");
+        assert_eq!(count, 9);
+        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 7, size, &mut count), "capacity must be at least 9");
+        refused(wk_view_get_costs(view, null_mut(), 9, size, &mut count), "costs must not be NULL");
         refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, 8, &mut count), "cost_size must be at least 24");
         refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, null_mut()), "out_count must not be NULL");
         assert_eq!(costs[0].effect, 99, "nothing is written");

@@ -7,7 +7,7 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, plan::*, query::*, report::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, plan::*, query::*, rain::*, report::*,
     status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
 };
 
@@ -100,6 +100,10 @@ fn cases(world: &World) -> Vec<Case> {
                 )
             }
         }),
+        case("wk_shelter", "shelters[0]", true, move |p| unsafe {
+            wk_context_set_shelters(context, p.cast(), 1, 1 << 24)
+        }),
+        case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {
             let desc = wk_context_desc { next: p, ..init("wk_context_desc") };

@@ -1,0 +1,43 @@
+// Drops before a host's picture with one sample a pixel.
+//!include "rain/splash.wgsl"
+
+@group(0) @binding(1) var host_depth: texture_2d<f32>;
+
+override HAS_DEPTH: bool = true;
+
+fn depth_at(uv: vec2f) -> f32 {
+    let size = vec2f(textureDimensions(host_depth));
+    return textureLoad(host_depth, vec2i(min(uv * size, size - 1.0)), 0).r;
+}
+
+@vertex
+fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
+    var out: RainVarying;
+    out.position = vec4f(2.0, 2.0, 2.0, 1.0);
+    let landing = landing_of(instance);
+    var z = splash.ground;
+    var surface = vec3f(0.0);
+    for (var i = 0u; i < SEARCH; i++) {
+        let seen = seen_at(vec3f(landing.xy, z));
+        if landing.fade <= 0.0 || seen.z == 0.0 {
+            return out;
+        }
+        surface = surface_of(seen.xy, depth_at(uv_of(seen.xy)));
+        z = surface.z;
+    }
+    if !is_found(landing, surface) {
+        return out;
+    }
+    return crown(landing, z, corner);
+}
+
+@fragment
+fn rain_fragment(in: RainVarying) -> @location(0) vec4f {
+    var range = RANGE_SKY;
+    if HAS_DEPTH {
+        let uv = in.position.xy / vec2f(textureDimensions(host_depth));
+        let ndc = vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * rain.y_sign);
+        range = view_range(rain.depth, depth_at(uv), ndc);
+    }
+    return streak(in, range);
+}

@@ -1,0 +1,146 @@
+//! Rain
+//!
+//! Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, each in
+//! a place that follows from seed and time alone, so that all channels of a simulator draw the same drops and any time can be
+//! shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
+//! picture shows within ten metres.
+//!
+//! What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
+//! crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    view::{ViewObject, wk_view},
+};
+use crate::{
+    error::{Error, Status},
+    rain::{MAX_SHELTERS, RainSettings, Shelter},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
+
+/// How a view draws rain; what falls does not depend on it.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_rain {
+    /// sizeof(wk_rain) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_RAIN.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Time for which a picture is exposed, s: it makes streaks of drops. Range [1e-4, 0.1], default 1/60.
+    pub shutter_s: f64,
+    /// Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
+    /// 400 000, and 100 000 on a software driver.
+    pub most_drops: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_rain {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_RAIN,
+        next: null(),
+        shutter_s: 0.016_666_666_666_666_666,
+        most_drops: 0,
+        reserved0: 0,
+    };
+}
+
+/// A box that rain does not pass, in the host's world.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_shelter {
+    /// sizeof(wk_shelter) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_SHELTER.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Its middle, m, within 1e12 m of the origin. Default 0, 0, 0.
+    pub center_m: [f64; 3],
+    /// Its three axes one after the other: unit vectors at right angles. Default the world's.
+    pub axes: [f64; 9],
+    /// Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
+    pub half_size_m: [f64; 3],
+    /// Its velocity, m/s, at most 2000 in all. Default 0, 0, 0.
+    pub velocity_m_s: [f64; 3],
+}
+
+impl wk_shelter {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_SHELTER,
+        next: null(),
+        center_m: [0.0, 0.0, 0.0],
+        axes: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        half_size_m: [1.0, 1.0, 1.0],
+        velocity_m_s: [0.0, 0.0, 0.0],
+    };
+}
+
+/// Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_rain) -> wk_status {
+    guard("wk_view_set_rain", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let mut settings = RainSettings::default();
+        if !rain.is_null() {
+            // SAFETY: the caller's promise about `rain`.
+            let c = unsafe { layout::read(&"rain", rain)? };
+            // SAFETY: as above.
+            unsafe { layout::check_chain(&"rain", c.next, &[])? };
+            settings.shutter_s = c.shutter_s;
+            settings.most_drops = (c.most_drops != 0).then_some(c.most_drops);
+        }
+        object.lock().set_rain(settings)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Sets what keeps rain off, in place of what did before; a moving box is set anew every frame. count 0 removes all. At most
+/// 32. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_shelters(
+    context: *mut wk_context,
+    shelters: *const wk_shelter,
+    count: u32,
+    stride: u32,
+) -> wk_status {
+    guard("wk_context_set_shelters", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let mut list = [None; MAX_SHELTERS];
+        let mut take = |i: usize, c: wk_shelter| {
+            let shelter = Shelter {
+                center_m: DVec3::from_array(c.center_m),
+                axes: DMat3::from_cols_array(&c.axes),
+                half_size_m: DVec3::from_array(c.half_size_m),
+                velocity_m_s: DVec3::from_array(c.velocity_m_s),
+            };
+            let named = |e: Error| Error::new(e.status, e.message.replacen("shelter.", &format!("shelters[{i}]."), 1));
+            shelter.validate().map_err(named)?;
+            list[i] = Some(shelter);
+            Ok(())
+        };
+        // SAFETY: the caller's promise about `shelters`.
+        unsafe {
+            input::each("shelters", shelters, count as usize, stride as usize, MAX_SHELTERS, &mut take)?;
+        }
+        object.write().set_shelters(list.iter().flatten())?;
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,216 @@
+//! Where drops are that have no state: a lattice of cells that the air carries along, each drop in one place of its cell,
+//! falling at its own speed.
+//!
+//! A shell is a cube of side L filled with drops at random places, repeated through all space; what a camera sees of it is
+//! the copy nearest to it. Everything is a fraction of L in 32 bits, and adding wraps as the lattice does, so positions are
+//! exact at any time and place: place = random(seed, shell, class, index) + displacement of the air - speed x fall phase.
+//! Fall speeds are whole multiples of [`SPEED_UNIT`], the phase is the distance that one such unit has fallen.
+//!
+//! The innermost shell holds every drop of its volume, each further one twice as wide holds as many drops, each of which
+//! stands for eight times as many (level of detail by replication would draw them; their mean is what is drawn).
+
+use glam::DVec3;
+
+use super::Classes;
+
+/// Shells of the lattice.
+pub const SHELLS: usize = 4;
+/// Classes of diameter.
+pub const CLASSES: usize = 32;
+/// Side of the innermost shell's cell, m.
+pub const SIDE_M: f64 = 4.0;
+/// What fall speeds are multiples of, m/s.
+pub const SPEED_UNIT: f64 = 1.0 / 64.0;
+/// Distance from the camera beyond which no drop of the lattice is drawn, m.
+pub const REACH_M: f64 = SIDE_M * (1 << (SHELLS - 1)) as f64 * 0.5;
+
+/// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
+pub(super) const FADE: f64 = 0.75;
+/// Drops nearer than this fade away, m: `NEAREST` of `shaders/rain/drops.wgsl`.
+const NEAREST_M: f64 = 0.25;
+
+/// Side of a shell's cell, m.
+pub fn side_m(shell: usize) -> f64 {
+    SIDE_M * f64::from(1u32 << shell)
+}
+
+/// `x` metres as a fraction of `side`, in 2^-32 of it; wraps.
+pub fn fraction(x: f64, side: f64) -> u32 {
+    let cells = x / side;
+    // 2^32 itself would saturate.
+    ((cells - cells.floor()) * 4_294_967_296.0) as u64 as u32
+}
+
+/// pcg3d (Jarzynski and Olano 2020), as `shaders/rain/hash.wgsl` has it.
+pub fn random3(key: [u32; 3]) -> [u32; 3] {
+    let [mut x, mut y, mut z] = key.map(|k| k.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    [x, y, z] = [x, y, z].map(|v| v ^ (v >> 16));
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    [x, y, z]
+}
+
+/// How far the lattice of one shell has come at a moment, in 2^-32 of its side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Moment {
+    /// Displacement of the air (east, north, up).
+    pub air: [u32; 3],
+    /// What a drop of one speed unit has fallen.
+    pub fall: u32,
+}
+
+impl Moment {
+    /// Of `shell`, after the air has moved by `displacement_m` and drops have fallen for `time_s`.
+    pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
+        let side = side_m(shell);
+        Self {
+            air: displacement_m.to_array().map(|d| fraction(d, side)),
+            fall: fraction((time_s * SPEED_UNIT) % side, side),
+        }
+    }
+
+    /// Place of a drop in its cell.
+    pub fn place(&self, seed: u32, shell: usize, class: usize, index: u32, speed_units: u32) -> [u32; 3] {
+        let start = random3([seed, (shell as u32) << 8 | class as u32, index]);
+        let mut place = [0, 1, 2].map(|i| start[i].wrapping_add(self.air[i]));
+        place[2] = place[2].wrapping_sub(speed_units.wrapping_mul(self.fall));
+        place
+    }
+
+    /// Where a camera at `position_m` (east, north, up of a point fixed to the world) stands in the cell of the moving air:
+    /// a drop's start less this is what lies between them.
+    pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
+        let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
+        [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
+    }
+}
+
+/// From `camera` to the copy of `place` nearest to it, m.
+pub fn nearest(place: [u32; 3], camera: [u32; 3], side: f64) -> DVec3 {
+    DVec3::from([0, 1, 2].map(|i| f64::from(place[i].wrapping_sub(camera[i]) as i32) / 4_294_967_296.0 * side))
+}
+
+/// One drop of the lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drop {
+    /// Its shell, class and number: what it is known by.
+    pub id: (u32, u32, u32),
+    /// Its place in the cell, as [`Moment::place`] says.
+    pub place: [u32; 3],
+    /// From the camera to its nearest copy, m.
+    pub position_m: DVec3,
+    /// Diameter, m.
+    pub diameter_m: f64,
+    /// Share of it that its shell shows at this distance, 0 to 1.
+    pub share: f64,
+}
+
+fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
+    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Share of its drops that `shell` shows at `distance_m`: it takes over from the smaller shell and hands on to the larger.
+pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
+    let reach = 0.5 * side_m(shell);
+    let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);
+    let inner = if shell == 0 {
+        smoothstep(0.5 * NEAREST_M, NEAREST_M, distance_m)
+    } else {
+        smoothstep(0.5 * FADE * reach, 0.5 * reach, distance_m)
+    };
+    inner * outer
+}
+
+/// All drops of `classes` as a camera at `position_m` (east, north, up of a point fixed to the world) sees them, after the
+/// air has moved by `displacement_m` in `time_s`. Equal ids of two cameras are the same drop.
+pub fn drops(
+    classes: &Classes,
+    seed: u64,
+    position_m: DVec3,
+    displacement_m: DVec3,
+    time_s: f64,
+) -> impl Iterator<Item = Drop> {
+    let seed = short_seed(seed);
+    (0..SHELLS).flat_map(move |shell| {
+        let side = side_m(shell);
+        let moment = Moment::new(shell, displacement_m, time_s);
+        let eye = position_m.to_array().map(|x| fraction(x, side));
+        (0..CLASSES).flat_map(move |class| {
+            let row = classes.table[class];
+            let before = if class > 0 { classes.table[class - 1][2] as u32 } else { 0 };
+            (0..row[2] as u32 - before).map(move |index| {
+                let place = moment.place(seed, shell, class, index, row[1] as u32);
+                let position_m = nearest(place, eye, side);
+                let share = shell_share(shell, position_m.length());
+                let id = (shell as u32, class as u32, index);
+                Drop { id, place, position_m, diameter_m: f64::from(row[0]), share }
+            })
+        })
+    })
+}
+
+/// The seed's 32 bits that drops are made of.
+pub(super) fn short_seed(seed: u64) -> u32 {
+    (seed ^ (seed >> 32)) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drop_falls_at_its_speed_at_any_time_and_neither_a_gust_nor_a_jump_throws_it() {
+        let units = 256;
+        for shell in 0..SHELLS {
+            let side = side_m(shell);
+            for t in [0.0, 17.3, 86_400.0, 1e6, 1e9] {
+                for dt in [0.0, 1.0 / 60.0, 0.25] {
+                    let wind = DVec3::new(12.0, -5.0, 0.0);
+                    let far = wind * t;
+                    let at = |t: f64, d: DVec3| Moment::new(shell, d, t).place(7, shell, 3, 11, units);
+                    let (a, b) = (at(t, far), at(t + dt, far + wind * dt));
+                    let moved = nearest(b, a, side);
+                    let want = wind * dt - DVec3::Z * (f64::from(units) * SPEED_UNIT * dt);
+                    let error = want - moved;
+                    let cells = error / side;
+                    let wrapped = (cells - cells.round()) * side;
+                    assert!(wrapped.length() < 1e-4 * (1.0 + t * 1e-8), "shell {shell} t {t} dt {dt}: {wrapped}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn time_backwards_is_time_forwards_and_places_fill_the_cell_evenly() {
+        let at = |t: f64| Moment::new(1, DVec3::new(3.0, 4.0, 0.0), t);
+        assert_eq!(at(123.456), at(123.456));
+        let n = 8000;
+        let mut octants = [0u32; 8];
+        for i in 0..n {
+            let p = at(50.0).place(1, 1, 5, i, 300);
+            octants[p.iter().fold(0, |o, v| o * 2 + (v >> 31) as usize)] += 1;
+        }
+        // Poisson: 1000 +- 32 each.
+        assert!(octants.iter().all(|o| o.abs_diff(1000) < 150), "{octants:?}");
+    }
+
+    #[test]
+    fn every_camera_sees_the_same_drop_where_their_reach_overlaps() {
+        let m = Moment::new(2, DVec3::new(100.3, -70.0, 0.0), 9e5);
+        let side = side_m(2);
+        let place = m.place(9, 2, 1, 77, 400);
+        for (eye, other) in
+            [(DVec3::new(5.0, 3.0, 2.0), DVec3::new(7.5, 1.0, 2.5)), (DVec3::splat(1e6), DVec3::splat(1e6 + 3.0))]
+        {
+            let see = |eye: DVec3| eye + nearest(place, eye.to_array().map(|x| fraction(x, side)), side);
+            let (a, b) = (see(eye), see(other));
+            let apart = (a - b) / side;
+            assert!((apart - apart.round()).length() < 1e-6, "{a} {b}");
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! The layer of drops before a picture: its texture, its pipelines, and the draw.
+
+use std::sync::Arc;
+
+use super::{lattice::SHELLS, shelter::MAX_SHELTERS, splash::SplashUniform, uniforms::RainUniform};
+use crate::{error::Result, gpu::Device};
+
+/// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// Drops as one more veil before the picture: premultiplied, one sample a pixel.
+pub(crate) struct RainLayer {
+    uniform: wgpu::Buffer,
+    shelters: wgpu::Buffer,
+    splash: wgpu::Buffer,
+    /// Layout of group 0 for depth with one and with several samples.
+    layouts: [wgpu::BindGroupLayout; 2],
+    /// Of drops and of splashes, for each kind of depth.
+    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 4],
+    none: Option<wgpu::TextureView>,
+    texture: Option<(wgpu::Texture, wgpu::TextureView)>,
+    bound: Option<(Option<wgpu::Texture>, bool, wgpu::BindGroup)>,
+}
+
+/// What one frame draws.
+pub(crate) struct Drawn<'a> {
+    pub rain: &'a RainUniform,
+    /// Rows and velocities of the boxes that keep rain off ([`super::Shelter`]).
+    pub shelters: &'a [[[f32; 4]; 4]],
+    /// Splashes, and how many slots of them there are.
+    pub splash: &'a SplashUniform,
+    pub splashes: u32,
+}
+
+fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: both,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("rain"),
+        entries: &[
+            uniform(0, size_of::<RainUniform>()),
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: both,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled,
+                },
+                count: None,
+            },
+            uniform(2, SHELTER_BYTES),
+            uniform(3, size_of::<SplashUniform>()),
+        ],
+    })
+}
+
+/// A count, and the boxes after it.
+const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
+
+impl RainLayer {
+    pub fn new(device: &Device) -> Self {
+        let buffer = |label, size: usize| {
+            device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            uniform: buffer("rain", size_of::<RainUniform>()),
+            shelters: buffer("shelters", SHELTER_BYTES),
+            splash: buffer("splashes", size_of::<SplashUniform>()),
+            layouts: [layout(&device.device, false), layout(&device.device, true)],
+            pipelines: [const { [None, None] }; 4],
+            none: None,
+            texture: None,
+            bound: None,
+        }
+    }
+
+    /// Bytes of GPU memory that the layer holds.
+    pub fn bytes(&self) -> u64 {
+        self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()))
+    }
+
+    /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
+    pub fn view(&mut self, device: &Device, size: wgpu::Extent3d) -> &wgpu::TextureView {
+        let fits = |(t, _): &(wgpu::Texture, wgpu::TextureView)| (t.width(), t.height()) == (size.width, size.height);
+        if !self.texture.as_ref().is_some_and(fits) {
+            self.texture = None;
+        }
+        &self
+            .texture
+            .get_or_insert_with(|| {
+                let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some("drops"),
+                    size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: FORMAT,
+                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                    view_formats: &[],
+                });
+                let view = texture.create_view(&Default::default());
+                (texture, view)
+            })
+            .1
+    }
+
+    /// Draws the drops for a picture like `color` with the host's `depth`, and where there is depth their splashes.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        drawn: &Drawn<'_>,
+        color: &wgpu::Texture,
+        depth: Option<&wgpu::Texture>,
+    ) -> Result<()> {
+        self.write(device, drawn);
+        let multi = depth.is_some_and(|d| d.sample_count() > 1);
+        self.bind(device, depth, multi);
+        self.view(device, color.size());
+        let key = usize::from(multi) * 2 + usize::from(depth.is_some());
+        let layout = &self.layouts[usize::from(multi)];
+        for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
+            if slot.is_none() {
+                *slot = Some(pipeline(device, layout, vertex, multi, depth.is_some())?);
+            }
+        }
+        let [Some(falling), Some(splashing)] = &self.pipelines[key] else { return Ok(()) };
+        let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return Ok(()) };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("drops"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_bind_group(0, group, &[]);
+        pass.set_pipeline(falling);
+        pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+        if depth.is_some() && drawn.splashes > 0 {
+            pass.set_pipeline(splashing);
+            pass.draw(0..4, 0..drawn.splashes);
+        }
+        Ok(())
+    }
+
+    fn write(&self, device: &Device, drawn: &Drawn<'_>) {
+        let queue = &device.queue;
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(drawn.rain));
+        queue.write_buffer(&self.splash, 0, bytemuck::bytes_of(drawn.splash));
+        let boxes = &drawn.shelters[..drawn.shelters.len().min(MAX_SHELTERS)];
+        queue.write_buffer(&self.shelters, 0, bytemuck::bytes_of(&[boxes.len() as u32, 0, 0, 0]));
+        if !boxes.is_empty() {
+            queue.write_buffer(&self.shelters, 16, bytemuck::cast_slice(boxes));
+        }
+    }
+
+    fn bind(&mut self, device: &Device, depth: Option<&wgpu::Texture>, multi: bool) {
+        if self.bound.as_ref().is_some_and(|(d, m, _)| d.as_ref() == depth && *m == multi) {
+            return;
+        }
+        let view = depth.map(|t| {
+            let aspect =
+                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
+            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
+        });
+        let none = self.none.get_or_insert_with(|| nothing(&device.device));
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain"),
+            layout: &self.layouts[usize::from(multi)],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(none)),
+                },
+                wgpu::BindGroupEntry { binding: 2, resource: self.shelters.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 3, resource: self.splash.as_entire_binding() },
+            ],
+        });
+        self.bound = Some((depth.cloned(), multi, group));
+    }
+}
+
+/// A texture that stands for a depth the host does not give.
+fn nothing(device: &wgpu::Device) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("no depth"),
+        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
+}
+
+fn pipeline(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    vertex: &str,
+    multi: bool,
+    has_depth: bool,
+) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("drops"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("drops"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("rain_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(wgpu::ColorTargetState {
+                format: FORMAT,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}

@@ -1,0 +1,30 @@
+//! What a host may ask of the rain's picture.
+
+use crate::error::{Result, check_range};
+
+/// How a view draws rain. What falls, and where each drop is, does not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainSettings {
+    /// Time for which a picture is exposed, s, [1e-4, 0.1]: it makes streaks of drops. Default 1/60.
+    pub shutter_s: f64,
+    /// Most drops that are drawn, [1000, 8 000 000]; further ones are stood for by those that are. `None`, the default:
+    /// 400 000, or 100 000 on a software driver.
+    pub most_drops: Option<u32>,
+}
+
+impl Default for RainSettings {
+    fn default() -> Self {
+        Self { shutter_s: 1.0 / 60.0, most_drops: None }
+    }
+}
+
+impl RainSettings {
+    /// Refuses what is outside of its range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("rain.shutter_s", self.shutter_s, 1e-4, 0.1, "s")?;
+        self.most_drops.map_or(Ok(()), |n| check_range("rain.most_drops", f64::from(n), 1e3, 8e6, ""))
+    }
+}

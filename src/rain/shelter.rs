@@ -1,0 +1,141 @@
+//! What keeps rain off: boxes of the host (roofs, bridges, cabs, trucks), standing or moving.
+//!
+//! A drop is gone where its own slanted path back through the box's air meets the box: whatever the wind, it is dry behind a
+//! box and wet before it, and inside of one it is dry. Tested per drop and box, exactly.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result, check_range};
+
+/// Most boxes at a time.
+pub const MAX_SHELTERS: usize = 32;
+
+/// A box that rain does not pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shelter {
+    /// Its middle in the host's world, m.
+    pub center_m: DVec3,
+    /// Its axes in the host's world as columns: a rotation.
+    pub axes: DMat3,
+    /// Half its size along each axis, m, \[1e-3, 1e5\].
+    pub half_size_m: DVec3,
+    /// Its velocity in the host's world, m/s, at most 2000 in all.
+    pub velocity_m_s: DVec3,
+}
+
+impl Shelter {
+    /// Refuses what is no box, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.center_m.is_finite() && self.center_m.length() <= 1e12) {
+            return Err(Error::range("shelter.center_m", "finite and within 1e12 m", self.center_m));
+        }
+        let turned = self.axes.transpose() * self.axes;
+        let off = (turned - DMat3::IDENTITY)
+            .to_cols_array()
+            .iter()
+            .map(|v| v.abs())
+            .fold(0.0, |a, v| if v > a || v.is_nan() { v } else { a });
+        if off.is_nan() || off > 1e-3 {
+            return Err(Error::range("shelter.axes", "three unit vectors at right angles", self.axes));
+        }
+        for v in self.half_size_m.to_array() {
+            check_range("shelter.half_size_m", v, 1e-3, 1e5, "m")?;
+        }
+        let speed = self.velocity_m_s.length();
+        if speed.is_nan() || speed > 2000.0 {
+            return Err(Error::range("shelter.velocity_m_s", "a vector of at most 2000 m/s", self.velocity_m_s));
+        }
+        Ok(())
+    }
+
+    /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east, north,
+    /// up into the box's own space, where it reaches from -1 to 1, and its velocity.
+    pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
+        let axes = to_enu * self.axes;
+        let center = to_enu * (self.center_m - eye);
+        let row = |i: usize| {
+            let n = axes.col(i) / self.half_size_m[i];
+            [n.x as f32, n.y as f32, n.z as f32, -n.dot(center) as f32]
+        };
+        let v = to_enu * self.velocity_m_s;
+        [row(0), row(1), row(2), [v.x as f32, v.y as f32, v.z as f32, 0.0]]
+    }
+}
+
+/// Whether what came to `p` with `velocity` (the host's world) met the box.
+pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
+    let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;
+    let (o, d) = (own(p - shelter.center_m), own(shelter.velocity_m_s - velocity));
+    let (mut near, mut far) = (0.0f64, f64::INFINITY);
+    for i in 0..3 {
+        let inverse = 1.0 / if d[i].abs() < 1e-9 { 1e-9 } else { d[i] };
+        let (a, b) = ((-1.0 - o[i]) * inverse, (1.0 - o[i]) * inverse);
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
+    }
+    far >= near
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn roof() -> Shelter {
+        Shelter {
+            center_m: DVec3::new(0.0, 0.0, 5.0),
+            axes: DMat3::IDENTITY,
+            half_size_m: DVec3::new(10.0, 3.0, 0.2),
+            velocity_m_s: DVec3::ZERO,
+        }
+    }
+
+    #[test]
+    fn a_roof_is_dry_below_and_its_windward_wedge_is_wet() {
+        let roof = roof();
+        for (wind, fall) in [(0.0, 6.0), (8.0, 6.0), (25.0, 2.0)] {
+            let velocity = DVec3::new(0.0, wind, -fall);
+            // On the ground, the shadow is the roof moved downwind by height x wind / fall.
+            for (z, edge) in [(0.0, 5.0), (4.0, 1.0)] {
+                let shift = edge * wind / fall;
+                for y in [-6.0, -2.9, 0.0, 2.9, 6.0] {
+                    let p = DVec3::new(1.0, y + shift, z);
+                    assert_eq!(sheltered(&roof, p, velocity), y.abs() < 3.0, "wind {wind} z {z} y {y}");
+                }
+            }
+            assert!(!sheltered(&roof, DVec3::new(0.0, 0.0, 5.3), velocity), "it rains on the roof");
+            assert!(sheltered(&roof, DVec3::new(0.0, 0.0, 5.1), velocity), "inside it does not");
+        }
+    }
+
+    #[test]
+    fn a_driving_truck_keeps_the_rain_it_drives_into_off_its_rear() {
+        let truck = Shelter {
+            center_m: DVec3::new(0.0, 0.0, 2.0),
+            half_size_m: DVec3::new(1.2, 4.0, 2.0),
+            velocity_m_s: DVec3::Y * 20.0,
+            ..roof()
+        };
+        let rain = DVec3::new(0.0, 0.0, -6.0);
+        assert!(sheltered(&truck, DVec3::new(0.0, -5.0, 1.0), rain), "behind it");
+        assert!(!sheltered(&truck, DVec3::new(0.0, 5.0, 1.0), rain), "before it");
+        assert!(sheltered(&truck, DVec3::new(0.5, 1.0, 1.0), rain), "in it");
+    }
+
+    #[test]
+    fn what_is_no_box_is_refused_by_name() {
+        let nan = f64::NAN;
+        for (bad, name) in [
+            (Shelter { center_m: DVec3::new(nan, 0.0, 0.0), ..roof() }, "shelter.center_m"),
+            (Shelter { axes: DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)), ..roof() }, "shelter.axes"),
+            (Shelter { half_size_m: DVec3::new(1.0, 0.0, 1.0), ..roof() }, "shelter.half_size_m"),
+            (Shelter { velocity_m_s: DVec3::splat(5000.0), ..roof() }, "shelter.velocity_m_s"),
+        ] {
+            let e = bad.validate().unwrap_err();
+            assert!(e.message.contains(name), "{}", e.message);
+        }
+        roof().validate().unwrap();
+    }
+}

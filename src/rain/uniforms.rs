@@ -1,0 +1,214 @@
+//! From the weather and a camera to what the drops' shader reads.
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    drops,
+    lattice::{CLASSES, FADE, Moment, SHELLS, SIDE_M, SPEED_UNIT, short_seed, side_m},
+};
+use crate::{
+    scene::{DepthUniform, ViewRays},
+    weather::Falling,
+};
+
+/// Diameters that are drawn as drops, mm: what is smaller shows as a veil only.
+const DRAWN_MM: (f64, f64) = (0.5, 6.0);
+
+/// [`RainUniform::shell`] and the rest as `RainUniform` of `shaders/rain/drops.wgsl` has them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct RainUniform {
+    pub depth: DepthUniform,
+    pub clip: [[f32; 4]; 4],
+    pub wind: [f32; 3],
+    pub exposure: f32,
+    pub above: [f32; 3],
+    pub per_shell: u32,
+    pub below: [f32; 3],
+    pub seed: u32,
+    pub sun: [f32; 3],
+    pub pixel_angle: f32,
+    pub to_sun: [f32; 3],
+    pub extinction: f32,
+    pub weight: f32,
+    pub y_sign: f32,
+    pub pad: [f32; 2],
+    pub camera: [f32; 3],
+    pub pad2: f32,
+    pub cell: [[u32; 4]; SHELLS],
+    pub shell: [[f32; 4]; SHELLS],
+    pub classes: [[f32; 4]; CLASSES],
+}
+
+/// How many drops of each class one shell holds, as the shader wants them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Classes {
+    /// Diameter (m), speed units, drops of the classes up to and with this one.
+    pub table: [[f32; 4]; CLASSES],
+    /// Drops of a shell.
+    pub per_shell: u32,
+    /// Drops that each of them stands for.
+    pub weight: f64,
+    /// Extinction of the drops that they stand for, 1/m.
+    pub extinction_per_m: f64,
+    /// Diameter (mm), fall speed (m/s) and flux on level ground (1/(m^2 s)) of each class.
+    pub flux: [(f64, f64, f64); CLASSES],
+}
+
+impl Classes {
+    /// Of what falls at an altitude that makes drops faster by `density_factor` ([`drops::altitude_factor`]), at most `most`
+    /// drops in all shells together.
+    pub fn new(falling: &Falling, density_factor: f64, most: u32) -> Self {
+        let (low, high) = DRAWN_MM;
+        let step = (high / low).powf(1.0 / CLASSES as f64);
+        let edges = |k: usize| low * step.powi(k as i32);
+        let volume = SIDE_M.powi(3);
+        let spectra = drops::spectra(falling);
+        let between = |a: f64, b: f64| spectra.iter().flatten().map(|s| s.number_between(a, b)).sum::<f64>();
+        let number: [f64; CLASSES] = std::array::from_fn(|k| volume / density_factor * between(edges(k), edges(k + 1)));
+        let all: f64 = number.iter().sum();
+        let share = (f64::from(most) / SHELLS as f64 / all.max(1.0)).min(1.0);
+        let mut upto = 0.0f64;
+        let mut extinction = 0.0;
+        let mut flux = [(0.0, 0.0, 0.0); CLASSES];
+        let table: [[f32; 4]; CLASSES] = std::array::from_fn(|k| {
+            upto += number[k] * share;
+            let d = (edges(k) * edges(k + 1)).sqrt();
+            let speed = drops::terminal_speed_m_s(d) * density_factor;
+            flux[k] = (d, speed, number[k] / volume * speed);
+            extinction += number[k] / volume * std::f64::consts::FRAC_PI_2 * d * d * 1e-6;
+            [(d * 1e-3) as f32, (speed / SPEED_UNIT).round() as f32, upto.floor() as f32, 0.0]
+        });
+        Self { table, per_shell: upto as u32, weight: 1.0 / share, extinction_per_m: extinction, flux }
+    }
+}
+
+/// What lights the drops, in the units of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DropLight {
+    /// Mean radiance of the sky and of the ground.
+    pub above: DVec3,
+    /// See `above`.
+    pub below: DVec3,
+    /// Irradiance of the sun or moon, and where it stands.
+    pub sun: DVec3,
+    /// See `sun`.
+    pub to_sun: DVec3,
+}
+
+/// A camera among drops.
+pub(crate) struct Shot<'a> {
+    /// From camera-relative east-north-up to clip space.
+    pub clip: DMat4,
+    pub rays: &'a ViewRays,
+    pub height: u32,
+    pub y_sign: f32,
+    /// East, north, up of a point fixed to the world.
+    pub position_m: DVec3,
+    /// Of the camera.
+    pub velocity_m_s: DVec3,
+    pub exposure_s: f64,
+}
+
+/// The air that the drops fall in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Air {
+    pub displacement_m: DVec3,
+    pub velocity_m_s: DVec3,
+    pub time_s: f64,
+    /// Extinction beside the rain's, 1/m.
+    pub extinction_per_m: f64,
+}
+
+impl RainUniform {
+    pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &Shot<'_>, air: &Air) -> Self {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let moment = |s: usize| Moment::new(s, air.displacement_m, air.time_s);
+        Self {
+            depth: shot.rays.uniform(),
+            clip: shot.clip.as_mat4().to_cols_array_2d(),
+            wind: v(air.velocity_m_s),
+            exposure: shot.exposure_s as f32,
+            above: v(light.above),
+            per_shell: classes.per_shell,
+            below: v(light.below),
+            seed: short_seed(seed),
+            sun: v(light.sun),
+            pixel_angle: shot.rays.pixel_angle(shot.height) as f32,
+            to_sun: v(light.to_sun),
+            extinction: air.extinction_per_m as f32,
+            weight: classes.weight as f32,
+            y_sign: shot.y_sign,
+            pad: [0.0; 2],
+            camera: v(shot.velocity_m_s),
+            pad2: 0.0,
+            cell: std::array::from_fn(|s| {
+                let m = moment(s);
+                let [x, y, z] = m.camera(s, shot.position_m);
+                [x, y, z, m.fall]
+            }),
+            shell: std::array::from_fn(|s| {
+                let side = side_m(s);
+                [side, 0.25 * side * FADE, 0.5 * side * FADE, 0.0].map(|x| x as f32)
+            }),
+            classes: classes.table,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::{
+        gpu::shader,
+        weather::{Precipitation, PrecipitationKind, Weather, derive},
+    };
+
+    #[test]
+    fn offsets_are_those_of_the_shader() {
+        let text = shader::assemble("rain/drops_single.wgsl").unwrap();
+        let (size, members) = shader::struct_layout(&text, "RainUniform").unwrap();
+        assert_eq!(size as usize, size_of::<RainUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(
+                    members.contains(&(stringify!($field).into(), offset_of!(RainUniform, $field) as u32)),
+                    "{}: {members:?}", stringify!($field)
+                );)*
+            };
+        }
+        same!(depth, clip, wind, exposure, above, per_shell, below, seed, sun, pixel_angle, to_sun, extinction, weight);
+        same!(y_sign, camera, cell, shell, classes);
+    }
+
+    #[test]
+    fn classes_hold_the_water_that_falls_and_thinning_keeps_what_they_cover() {
+        let weather = Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, 20.0), ..Weather::default() };
+        let falling = derive(&weather).unwrap().precipitation;
+        let (all, few) = (Classes::new(&falling, 1.0, u32::MAX), Classes::new(&falling, 1.0, 20_000));
+        assert!(few.per_shell <= 5000 && all.per_shell > 20_000);
+        let cover = |c: &Classes| {
+            let mut before = 0.0;
+            c.table.iter().fold(0.0, |sum, row| {
+                let n = f64::from(row[2]) - before;
+                before = f64::from(row[2]);
+                sum + n * f64::from(row[0]).powi(2)
+            }) * c.weight
+        };
+        assert!((cover(&few) / cover(&all) - 1.0).abs() < 0.02, "{} {}", cover(&few), cover(&all));
+        let falls: f64 = {
+            let mut before = 0.0;
+            all.table.iter().fold(0.0, |sum, row| {
+                let n = f64::from(row[2]) - before;
+                before = f64::from(row[2]);
+                let d = f64::from(row[0]);
+                sum + n * d * d * d * std::f64::consts::PI / 6.0 * f64::from(row[1]) * SPEED_UNIT
+            }) / SIDE_M.powi(3)
+                * 3.6e6
+        };
+        // Drops below half a millimetre carry the rest.
+        assert!((18.0..20.2).contains(&falls), "{falls} mm/h");
+    }
+}

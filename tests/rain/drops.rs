@@ -1,0 +1,170 @@
+//! Drops against their reference: where they are, what they cover, where it is dry.
+
+use glam::{DMat4, DVec2, DVec3};
+use welkin::{
+    context::GivenDirection,
+    frame::Stages,
+    rain::{
+        Classes,
+        lattice::{self, SHELLS},
+    },
+    weather::{Weather, derive},
+};
+
+use crate::scene::{Host, rain, upright};
+
+/// Radiance of the host's picture: far above what drops send at night, within half floats.
+const WHITE: f64 = 3e4;
+
+/// A host at night before a white wall at the horizon, so that each pixel says what the drops let through.
+fn white(size: (u32, u32)) -> Host {
+    let mut host = Host::new(size);
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+    host.boxes = vec![upright([0.0, 400.0, 0.0], [2000.0, 1.0, 2000.0])];
+    host.look(DVec3::new(0.0, 0.0, 300.0), DVec3::Y);
+    host
+}
+
+fn through(host: &mut Host) -> Vec<f64> {
+    host.draw(|_, _| [WHITE; 3]);
+    host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
+    host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
+}
+
+fn mean(v: &[f64]) -> f64 {
+    v.iter().sum::<f64>() / v.len() as f64
+}
+
+fn classes(weather: &Weather, most: u32) -> Classes {
+    Classes::new(&derive(weather).unwrap().precipitation, 1.0, most)
+}
+
+/// What the discs of the drawn drops hide up to `range_m`, as an optical depth: half of their extinction, the other half
+/// being diffraction.
+fn depth_to(classes: &Classes, range_m: f64) -> f64 {
+    let n = 4000;
+    let h = range_m / f64::from(n);
+    let share: f64 =
+        (0..n).map(|i| (0..SHELLS).map(|s| lattice::shell_share(s, (f64::from(i) + 0.5) * h)).sum::<f64>() * h).sum();
+    0.5 * classes.extinction_per_m * share
+}
+
+#[test]
+fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
+    let mut host = white((320, 180));
+    for (i, (rate, wind)) in [(2.0, 0.0), (20.0, 4.0), (100.0, 15.0)].into_iter().enumerate() {
+        let (t, weather) = (10.0 + 5.0 * i as f64, rain(rate, wind));
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        let classes = classes(&weather, 100_000);
+        let mut seen = Vec::new();
+        for k in 0..4 {
+            host.context.update(t + f64::from(k)).unwrap();
+            seen.push(mean(&through(&mut host)));
+        }
+        let (got, want) = (-mean(&seen).ln(), depth_to(&classes, 400.0));
+        assert!((got / want - 1.0).abs() < 0.12, "{rate} mm/h: {got} against {want}");
+        // A wall at 3 m hides what falls behind it.
+        host.boxes[0] = upright([0.0, 3.0, 300.0], [2000.0, 1e-3, 2000.0]);
+        let near = -mean(&through(&mut host)).ln();
+        assert!(near < 0.6 * got && near > 0.02 * got, "{near} of {got}");
+        host.boxes[0] = upright([0.0, 400.0, 0.0], [2000.0, 1.0, 2000.0]);
+    }
+}
+
+#[test]
+fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
+    let mut host = white((480, 270));
+    let weather = rain(10.0, 0.0);
+    host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+    host.view.set_rain(welkin::rain::RainSettings { shutter_s: 1e-3, most_drops: Some(1000) }).unwrap();
+    let classes = classes(&weather, 1000);
+    for (t, eye) in [(3.0, DVec3::new(0.0, 0.0, 300.0)), (123_456.7, DVec3::new(1.3, 0.4, 301.0))] {
+        host.context.update(t).unwrap();
+        host.look(eye, DVec3::Y);
+        let pixels = through(&mut host);
+        let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
+        let (w, h) = (f64::from(host.size.0), f64::from(host.size.1));
+        let mut near = vec![false; pixels.len()];
+        let mut found = 0;
+        for drop in lattice::drops(&classes, 11, eye, DVec3::ZERO, t) {
+            let p = clip * drop.position_m.extend(1.0);
+            let ndc = DVec2::new(p.x, p.y) / p.w;
+            if drop.share <= 0.0 || p.w < 0.05 || ndc.abs().max_element() > 1.2 {
+                continue;
+            }
+            let at = ((ndc.x * 0.5 + 0.5) * w, (0.5 - ndc.y * 0.5) * h);
+            let checked = drop.share > 0.3 && p.w > 0.5 && ndc.abs().max_element() < 0.98;
+            found += u32::from(checked);
+            let dark = (-2..=2).flat_map(|y| (-2..=2).map(move |x| (at.0 as i32 + x, at.1 as i32 + y)));
+            let mut least = 1.0f64;
+            for (x, y) in dark.filter(|p| p.0 >= 0 && p.1 >= 0 && p.0 < w as i32 && p.1 < h as i32) {
+                least = least.min(pixels[(y as u32 * host.size.0 + x as u32) as usize]);
+            }
+            assert!(!checked || least < 1.0 - 1e-4, "t {t}: drop {:?} at {at:?}, {} m off, is not drawn", drop.id, p.w);
+            let reach = (w / p.w * 0.02).ceil().min(w) as i32 + 4;
+            for y in -reach..=reach {
+                for x in -reach..=reach {
+                    let (x, y) = (at.0 as i32 + x, at.1 as i32 + y);
+                    if x >= 0 && y >= 0 && x < w as i32 && y < h as i32 {
+                        near[(y as u32 * host.size.0 + x as u32) as usize] = true;
+                    }
+                }
+            }
+        }
+        let beside = pixels.iter().zip(&near).filter(|(p, n)| **p < 0.97 && !**n).count();
+        assert!(found > 30 && beside == 0, "{found} drops, {beside} dark pixels beside them");
+    }
+}
+
+#[test]
+fn without_rain_nothing_is_drawn_and_nothing_changes() {
+    let mut host = white((160, 90));
+    host.draw(|p, _| [p.x.abs() + 0.123; 3]);
+    let before = host.pixels();
+    host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
+    assert_eq!(before, host.pixels());
+    assert_eq!((host.view.report().passes, host.view.report().drops), (0, 0));
+}
+
+#[test]
+fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
+    let mut host = white((240, 135));
+    for (i, wind) in [0.0, 10.0, 25.0].into_iter().enumerate() {
+        let t = 10.0 * (i + 1) as f64;
+        host.context.set_weather(&rain(30.0, wind), t, 0.0).unwrap();
+        host.context.update(t).unwrap();
+        // Inside a cab whose walls are the picture: not one drop.
+        let eye = DVec3::new(0.0, 0.0, 300.0);
+        host.look(eye, DVec3::new(0.3, 1.0, 0.1));
+        host.boxes = vec![upright([0.0, 2.0, 300.0], [50.0, 1e-3, 50.0])];
+        let cab = upright([0.0, 0.0, 300.0], [4.0, 4.0, 4.0]);
+        host.context.set_shelters(&[]).unwrap();
+        assert!(through(&mut host).iter().any(|v| *v < 0.99), "it rains");
+        host.context.set_shelters(&[cab]).unwrap();
+        let inside = through(&mut host);
+        assert!(inside.iter().all(|v| *v == 1.0), "wind {wind}: {:?}", inside.iter().copied().fold(1.0, f64::min));
+        // On the ground under a deck that reaches far enough upwind, looking at the ground: no drop and no splash.
+        host.boxes = Vec::new();
+        host.look(DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, 1.0, -0.9));
+        host.context.set_shelters(&[]).unwrap();
+        assert!(through(&mut host).iter().any(|v| *v < 0.99), "it rains");
+        host.context.set_shelters(&[upright([0.0, 0.0, 3.0], [400.0, 400.0, 0.1])]).unwrap();
+        assert!(through(&mut host).iter().all(|v| *v == 1.0), "wind {wind}");
+    }
+}
+
+#[test]
+fn storms_far_places_and_fast_cameras_stay_finite() {
+    let mut host = Host::new((160, 90));
+    for (i, (rate, wind, at)) in
+        [(500.0, 80.0, 0.0), (0.01, 0.0, 1e7), (200.0, 40.0, 1e7), (500.0, 80.0, -1e7)].into_iter().enumerate()
+    {
+        let t = 1e6 * i as f64;
+        host.context.set_weather(&rain(rate, wind), t, 0.0).unwrap();
+        host.context.update(t + 0.5).unwrap();
+        host.look(DVec3::new(at, at, 2.0), DVec3::new(0.2, 1.0, -0.1));
+        host.draw(|_, _| [10.0; 3]);
+        host.record(Stages::ALL).unwrap();
+        assert!(host.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{rate} {wind} {at}");
+    }
+}

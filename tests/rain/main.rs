@@ -1,0 +1,5 @@
+//! Rain as a host sees it: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
+
+mod drops;
+mod pictures;
+mod scene;

@@ -1,0 +1,64 @@
+//! Pictures to look at (in cargo's directory for test files), and what must show in them.
+
+use glam::DVec3;
+use welkin::frame::Stages;
+
+use crate::scene::{Host, rain, upright};
+
+/// The host's own drawing: a road in a meadow and concrete, lit by what Welkin answers.
+fn paint(host: &Host) {
+    let light = host.context.light_at(host.camera.position, host.context.time_s()).unwrap();
+    let (sun, lux) = (light.sun.direction, light.arriving);
+    host.draw(|p, n| {
+        let world = p + host.camera.position;
+        let grain = ((world.x * 3.1).sin() * (world.y * 2.7).sin() * 0.5 + 1.0) * 0.9;
+        let albedo = if n.z < 0.9 || world.z > 0.1 {
+            [0.32, 0.31, 0.29]
+        } else if world.x.abs() < 3.0 {
+            [0.09, 0.09, 0.095]
+        } else {
+            [0.10, 0.13, 0.05]
+        };
+        let cosine = n.dot(sun).max(0.0);
+        [0, 1, 2].map(|i| {
+            let e = lux.sun_lux[i] * cosine + lux.sky_lux[i] * (0.5 + 0.5 * n.z);
+            albedo[i] * grain * e / std::f64::consts::PI
+        })
+    });
+}
+
+pub fn save(host: &Host, name: &str) -> Vec<[f32; 4]> {
+    let pixels = host.pixels();
+    let encode = |v: f32| {
+        let v = v.clamp(0.0, 1.0);
+        let s = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+        (s * 255.0 + 0.5) as u8
+    };
+    let bytes = pixels.iter().flat_map(|p| [encode(p[0]), encode(p[1]), encode(p[2])]).collect();
+    let picture = image::RgbImage::from_raw(host.size.0, host.size.1, bytes).unwrap();
+    picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
+    pixels
+}
+
+#[test]
+fn steady_rain_cloudburst_and_a_dry_place_under_a_bridge() {
+    let mut host = Host::new((480, 270));
+    host.boxes = vec![
+        upright([0.0, 9.0, 5.0], [12.0, 3.0, 0.4]),
+        upright([-5.0, 9.0, 2.5], [0.5, 3.0, 2.5]),
+        upright([5.0, 9.0, 2.5], [0.5, 3.0, 2.5]),
+    ];
+    host.look(DVec3::new(0.5, 0.0, 1.7), DVec3::new(0.1, 1.0, -0.05));
+    for (i, (rate, wind, name)) in
+        [(0.5, 1.0, "drizzle"), (6.0, 3.0, "steady"), (60.0, 12.0, "cloudburst")].into_iter().enumerate()
+    {
+        let t = 100.0 * (i + 1) as f64;
+        host.context.set_weather(&rain(rate, wind), t, 0.0).unwrap();
+        host.context.update(t + 1.0).unwrap();
+        host.context.set_shelters(&host.boxes).unwrap();
+        paint(&host);
+        host.record(Stages::ALL).unwrap();
+        save(&host, &format!("rain_{name}.png"));
+        println!("{name}: {} drops", host.view.report().drops);
+    }
+}
