@@ -231,6 +231,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_RAIN 31
 /** wk_shelter */
 #define WK_STRUCT_TYPE_SHELTER 32
+/** wk_light */
+#define WK_STRUCT_TYPE_LIGHT 36
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3565,6 +3567,68 @@ WK_API wk_status wk_rain_init(wk_rain *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_shelter_init(wk_shelter *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Lamps
+ *
+ * Head lights, work lights, search lights: what the host tells of its lamps lights what Welkin draws in their beams, today
+ * drops and splashes of rain. The host goes on lighting its own world itself.
+ * ====================================================================================================
+ */
+
+/** A lamp of the host. */
+typedef struct wk_light {
+    /** sizeof(wk_light) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_LIGHT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Where it is in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0. */
+    double position_m[3];
+    /** Where it shines to in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
+    double direction[3];
+    /**
+     * Luminous intensity in its middle, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000 each. A low beam has
+     * some 10 000, a work light 2000 to 5000.
+     */
+    double intensity_cd[3];
+    /** Angle from the middle up to which the beam is full, degrees. Range [0, 180], default 10. */
+    double inner_deg;
+    /** Angle from the middle at which it has ended, degrees. Range [inner_deg, 180], default 30; 180: no end. */
+    double outer_deg;
+} wk_light;
+
+/** Every field of `wk_light` at its default. */
+#define WK_LIGHT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_light), \
+    /* struct_type */ WK_STRUCT_TYPE_LIGHT, \
+    /* next */ NULL, \
+    /* position_m */ { 0.0, 0.0, 0.0 }, \
+    /* direction */ { 0.0, 1.0, 0.0 }, \
+    /* intensity_cd */ { 1000.0, 1000.0, 1000.0 }, \
+    /* inner_deg */ 10.0, \
+    /* outer_deg */ 30.0 \
+}
+
+/**
+ * Sets the host's lamps, in place of those before; a moving one is set anew every frame. count 0 removes all. At most 64.
+ * Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+ */
+WK_API
+wk_status wk_context_set_lights(wk_context *context,
+                                const wk_light *lights,
+                                uint32_t count,
+                                uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_LIGHT_INIT`. `struct_size` is `sizeof(wk_light)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -1,6 +1,7 @@
 // Drops without a state: where each is follows from (seed, id, time) alone, and one quad draws its streak.
 // The f64 twin and the derivation are in src/rain/lattice.rs and src/rain/reference.rs.
 //!include "common/depth.wgsl"
+//!include "common/light.wgsl"
 //!include "rain/hash.wgsl"
 //!include "rain/shelter.wgsl"
 
@@ -54,7 +55,13 @@ const LEAST_PIXELS: f32 = 1.2;
 // Drops nearer than this fade away: they would be blobs that no eye could focus on.
 const NEAREST: f32 = 0.25;
 
+struct Lights {
+    count: u32,
+    lamps: array<HostLight, MAX_LIGHTS>,
+}
+
 @group(0) @binding(0) var<uniform> rain: RainUniform;
+@group(0) @binding(4) var<uniform> lights: Lights;
 
 struct Drop {
     // Camera-relative, m.
@@ -105,10 +112,17 @@ fn drop_phase(c: f32) -> f32 {
     return 0.93 * henyey(0.9, c) + 0.07 * henyey(-0.35, c);
 }
 
-// Radiance of a drop seen along `d`: it shows, small and upside down, most of the half space behind it.
-fn drop_light(d: vec3f) -> vec3f {
+// Radiance of a drop at `p` seen along `d`: it shows, small and upside down, most of the half space behind it, and what
+// sun and lamps send through it.
+fn drop_light(p: vec3f, d: vec3f) -> vec3f {
     let around = mix(rain.below, rain.above, 0.5 + 0.5 * d.z);
-    return around + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
+    var beams = rain.sun * drop_phase(dot(d, rain.to_sun));
+    for (var i = 0u; i < lights.count; i++) {
+        let to = p - lights.lamps[i].position;
+        let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
+        beams += light_at(lights.lamps[i], to) * drop_phase(-dot(d, from_lamp));
+    }
+    return around + beams * 0.07957747;
 }
 
 struct RainVarying {
@@ -154,7 +168,7 @@ fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     let disc = 0.78539816 * drop.diameter * drop.diameter * drop.weight;
     let cover = min(1.5 * disc / (2.0 * reach * width), 1.0) * drop.share;
     let clear = exp(-rain.extinction * d);
-    out.light = vec4f(drop_light(toward) * (cover * clear), cover * clear);
+    out.light = vec4f(drop_light(drop.position, toward) * (cover * clear), cover * clear);
     return out;
 }
 

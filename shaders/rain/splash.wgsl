@@ -103,6 +103,6 @@ fn crown(landing: Landing, z: f32, corner: u32) -> RainVarying {
     out.across = side;
     // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
     let cover = 0.35 * landing.fade * (1.0 - age * age) * (full.x * full.y) / (size.x * size.y) * exp(-rain.extinction * d);
-    out.light = vec4f(drop_light(toward) * cover, cover);
+    out.light = vec4f(drop_light(at, toward) * cover, cover);
     return out;
 }

@@ -49,6 +49,8 @@ pub mod plan;
 
 pub mod rain;
 
+pub mod light;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -114,6 +114,8 @@ pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 30;
 pub const WK_STRUCT_TYPE_RAIN: wk_struct_type = 31;
 /// wk_shelter
 pub const WK_STRUCT_TYPE_SHELTER: wk_struct_type = 32;
+/// wk_light
+pub const WK_STRUCT_TYPE_LIGHT: wk_struct_type = 36;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

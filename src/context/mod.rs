@@ -29,7 +29,7 @@ use crate::{
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
     rain::{MAX_SHELTERS, Shelter},
-    scene::WorldFrame,
+    scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
         Planet, SkySettings,
         ephemeris::Ephemeris,
@@ -113,6 +113,7 @@ pub struct Context {
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
     shelters: Vec<Shelter>,
+    lights: Vec<HostLight>,
     time_s: f64,
     ephemeris: Ephemeris,
 }
@@ -141,6 +142,7 @@ impl Context {
             given_moon: None,
             fog_law: None,
             shelters: Vec::new(),
+            lights: Vec::new(),
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
         })
@@ -237,6 +239,28 @@ impl Context {
         self.shelters.clear();
         self.shelters.extend(shelters);
         Ok(())
+    }
+
+    /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving lamp is
+    /// set anew every frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_LIGHTS`], or naming the field; nothing changes then.
+    pub fn set_lights<'a>(&mut self, lights: impl IntoIterator<Item = &'a HostLight, IntoIter: Clone>) -> Result<()> {
+        let lights = lights.into_iter();
+        let count = lights.clone().count();
+        if count > MAX_LIGHTS {
+            return Err(Error::range("lights", &format!("at most {MAX_LIGHTS}"), count));
+        }
+        lights.clone().try_for_each(HostLight::validate)?;
+        self.lights.clear();
+        self.lights.extend(lights);
+        Ok(())
+    }
+
+    /// The host's lamps.
+    pub fn lights(&self) -> &[HostLight] {
+        &self.lights
     }
 
     /// What keeps rain off.

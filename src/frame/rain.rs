@@ -12,7 +12,7 @@ use crate::{
     rain::{
         Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shot, Splashes, drops, lattice::SHELLS,
     },
-    scene::ViewRays,
+    scene::{LightUniform, ViewRays},
     weather::Falling,
 };
 
@@ -23,6 +23,7 @@ pub(super) struct Rain {
     /// Drops a class, and what they were counted for.
     counted: Option<(Falling, f64, u32, Classes)>,
     boxes: Vec<[[f32; 4]; 4]>,
+    lights: Vec<LightUniform>,
 }
 
 /// Whether anything falls that is drawn as drops.
@@ -33,7 +34,7 @@ pub(super) fn falls(scene: &Scene) -> bool {
 
 impl Rain {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
-        Self { layer: RainLayer::new(device), settings, counted: None, boxes: Vec::new() }
+        Self { layer: RainLayer::new(device), settings, counted: None, boxes: Vec::new(), lights: Vec::new() }
     }
 
     /// Bytes of GPU memory held.
@@ -95,9 +96,12 @@ impl Rain {
         let eye = frame.camera.position;
         self.boxes.clear();
         self.boxes.extend(context.shelters().iter().map(|s| s.rows(eye, scene.world_to_enu)));
+        self.lights.clear();
+        self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
         let drawn = Drawn {
             rain: &block,
             shelters: &self.boxes,
+            lights: &self.lights,
             splash: &splashes.uniform(shot.position_m, height_m, air.time_s),
             splashes: splashes.instances(),
         };

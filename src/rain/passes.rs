@@ -3,7 +3,11 @@
 use std::sync::Arc;
 
 use super::{lattice::SHELLS, shelter::MAX_SHELTERS, splash::SplashUniform, uniforms::RainUniform};
-use crate::{error::Result, gpu::Device};
+use crate::{
+    error::Result,
+    gpu::Device,
+    scene::{LightUniform, MAX_LIGHTS},
+};
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -13,6 +17,7 @@ pub(crate) struct RainLayer {
     uniform: wgpu::Buffer,
     shelters: wgpu::Buffer,
     splash: wgpu::Buffer,
+    lights: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     /// Of drops and of splashes, for each kind of depth.
@@ -27,6 +32,8 @@ pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
     /// Rows and velocities of the boxes that keep rain off ([`super::Shelter`]).
     pub shelters: &'a [[[f32; 4]; 4]],
+    /// The host's lamps.
+    pub lights: &'a [LightUniform],
     /// Splashes, and how many slots of them there are.
     pub splash: &'a SplashUniform,
     pub splashes: u32,
@@ -60,12 +67,15 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             },
             uniform(2, SHELTER_BYTES),
             uniform(3, size_of::<SplashUniform>()),
+            uniform(4, LIGHT_BYTES),
         ],
     })
 }
 
 /// A count, and the boxes after it.
 const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
+/// Likewise.
+const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
 
 impl RainLayer {
     pub fn new(device: &Device) -> Self {
@@ -81,6 +91,7 @@ impl RainLayer {
             uniform: buffer("rain", size_of::<RainUniform>()),
             shelters: buffer("shelters", SHELTER_BYTES),
             splash: buffer("splashes", size_of::<SplashUniform>()),
+            lights: buffer("lights", LIGHT_BYTES),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             pipelines: [const { [None, None] }; 4],
             none: None,
@@ -171,11 +182,16 @@ impl RainLayer {
         let queue = &device.queue;
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(drawn.rain));
         queue.write_buffer(&self.splash, 0, bytemuck::bytes_of(drawn.splash));
+        let list = |buffer, count: usize, bytes: &[u8]| {
+            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&[count as u32, 0, 0, 0]));
+            if count > 0 {
+                queue.write_buffer(buffer, 16, bytes);
+            }
+        };
         let boxes = &drawn.shelters[..drawn.shelters.len().min(MAX_SHELTERS)];
-        queue.write_buffer(&self.shelters, 0, bytemuck::bytes_of(&[boxes.len() as u32, 0, 0, 0]));
-        if !boxes.is_empty() {
-            queue.write_buffer(&self.shelters, 16, bytemuck::cast_slice(boxes));
-        }
+        list(&self.shelters, boxes.len(), bytemuck::cast_slice(boxes));
+        let lights = &drawn.lights[..drawn.lights.len().min(MAX_LIGHTS)];
+        list(&self.lights, lights.len(), bytemuck::cast_slice(lights));
     }
 
     fn bind(&mut self, device: &Device, depth: Option<&wgpu::Texture>, multi: bool) {
@@ -199,6 +215,7 @@ impl RainLayer {
                 },
                 wgpu::BindGroupEntry { binding: 2, resource: self.shelters.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 3, resource: self.splash.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 4, resource: self.lights.as_entire_binding() },
             ],
         });
         self.bound = Some((depth.cloned(), multi, group));

@@ -5,8 +5,11 @@
 
 mod camera;
 pub mod depth;
+mod light;
 mod world;
 
 pub use camera::Camera;
 pub use depth::{ClipSpace, DepthKind, DepthMapping, DepthUniform, ViewRays};
+pub(crate) use light::LightUniform;
+pub use light::{HostLight, MAX_LIGHTS};
 pub use world::{Axes, LocalFrame, Place, WorldFrame, WorldKind};

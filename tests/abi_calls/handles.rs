@@ -5,8 +5,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, plan::*, query::*, rain::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, plan::*, query::*, rain::*, status::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -62,6 +62,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_save", "context", false, |h| unsafe { wk_context_save(h.cast(), null_mut(), 0, null_mut()) }),
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
+        case("wk_context_set_lights", "context", false, |h| unsafe { wk_context_set_lights(h.cast(), null(), 0, 0) }),
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),

@@ -7,8 +7,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, opengl::*, plan::*, query::*, rain::*, report::*,
-    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, opengl::*, plan::*, query::*, rain::*,
+    report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -103,6 +103,7 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_shelter", "shelters[0]", true, move |p| unsafe {
             wk_context_set_shelters(context, p.cast(), 1, 1 << 24)
         }),
+        case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {

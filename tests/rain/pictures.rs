@@ -1,7 +1,11 @@
 //! Pictures to look at (in cargo's directory for test files), and what must show in them.
 
 use glam::DVec3;
-use welkin::frame::Stages;
+use welkin::{
+    context::GivenDirection,
+    frame::{Exposure, Stages},
+    scene::HostLight,
+};
 
 use crate::scene::{Host, rain, upright};
 
@@ -21,7 +25,13 @@ fn paint(host: &Host) {
         };
         let cosine = n.dot(sun).max(0.0);
         [0, 1, 2].map(|i| {
-            let e = lux.sun_lux[i] * cosine + lux.sky_lux[i] * (0.5 + 0.5 * n.z);
+            let lamps: f64 = host
+                .context
+                .lights()
+                .iter()
+                .map(|l| l.illuminance_lux(world)[i] * n.dot((l.position_m - world).normalize()).max(0.0))
+                .sum();
+            let e = lux.sun_lux[i] * cosine + lux.sky_lux[i] * (0.5 + 0.5 * n.z) + lamps;
             albedo[i] * grain * e / std::f64::consts::PI
         })
     });
@@ -61,4 +71,37 @@ fn steady_rain_cloudburst_and_a_dry_place_under_a_bridge() {
         save(&host, &format!("rain_{name}.png"));
         println!("{name}: {} drops", host.view.report().drops);
     }
+}
+
+#[test]
+fn work_lights_show_the_rain_in_their_beams_at_night() {
+    let mut host = Host::new((480, 270));
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+    host.context.set_exposure(Exposure::Ev100(4.0)).unwrap();
+    host.context.set_weather(&rain(8.0, 3.0), 10.0, 0.0).unwrap();
+    host.context.update(11.0).unwrap();
+    host.look(DVec3::new(0.0, 0.0, 2.2), DVec3::new(0.0, 1.0, -0.05));
+    let draw = |host: &mut Host, name: &str| {
+        paint(host);
+        host.record(Stages::ALL).unwrap();
+        save(host, name)
+    };
+    let dark = draw(&mut host, "rain_dark.png");
+    let beam = |x: f64, to: [f64; 3]| HostLight {
+        position_m: DVec3::new(x, 1.0, 4.0),
+        direction: DVec3::from(to),
+        intensity_cd: [30_000.0, 28_000.0, 23_000.0],
+        inner_deg: 8.0,
+        outer_deg: 22.0,
+    };
+    let lights = [beam(-1.2, [-0.35, 1.0, -0.2]), beam(1.2, [0.25, 1.0, -0.25])];
+    host.context.set_lights(&lights).unwrap();
+    let lit = draw(&mut host, "rain_night.png");
+    // Above the horizon nothing but drops can shine.
+    let sky = 0..(480 * 100);
+    let sum = |p: &[[f32; 4]]| p[sky.clone()].iter().map(|v| f64::from(v[1])).sum::<f64>();
+    assert!(sum(&lit) > 5.0 * sum(&dark), "{} {}", sum(&lit), sum(&dark));
+    host.context.set_lights(&[]).unwrap();
+    let again = draw(&mut host, "rain_dark.png");
+    assert!(sum(&again) < 1.01 * sum(&dark), "the lamps are off");
 }

@@ -1,0 +1,94 @@
+//! Lamps
+//!
+//! Head lights, work lights, search lights: what the host tells of its lamps lights what Welkin draws in their beams, today
+//! drops and splashes of rain. The host goes on lighting its own world itself.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input,
+    layout::{init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Status},
+    scene::{HostLight, MAX_LIGHTS},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_light.rs"));
+
+/// A lamp of the host.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_light {
+    /// sizeof(wk_light) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_LIGHT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Where it is in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
+    pub position_m: [f64; 3],
+    /// Where it shines to in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
+    pub direction: [f64; 3],
+    /// Luminous intensity in its middle, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000 each. A low beam has
+    /// some 10 000, a work light 2000 to 5000.
+    pub intensity_cd: [f64; 3],
+    /// Angle from the middle up to which the beam is full, degrees. Range [0, 180], default 10.
+    pub inner_deg: f64,
+    /// Angle from the middle at which it has ended, degrees. Range [inner_deg, 180], default 30; 180: no end.
+    pub outer_deg: f64,
+}
+
+impl wk_light {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_LIGHT,
+        next: null(),
+        position_m: [0.0, 0.0, 0.0],
+        direction: [0.0, 1.0, 0.0],
+        intensity_cd: [1000.0, 1000.0, 1000.0],
+        inner_deg: 10.0,
+        outer_deg: 30.0,
+    };
+}
+
+/// Sets the host's lamps, in place of those before; a moving one is set anew every frame. count 0 removes all. At most 64.
+/// Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_lights(
+    context: *mut wk_context,
+    lights: *const wk_light,
+    count: u32,
+    stride: u32,
+) -> wk_status {
+    guard("wk_context_set_lights", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let mut list = [None; MAX_LIGHTS];
+        let mut take = |i: usize, c: wk_light| {
+            let light = HostLight {
+                position_m: DVec3::from_array(c.position_m),
+                direction: DVec3::from_array(c.direction),
+                intensity_cd: c.intensity_cd,
+                inner_deg: c.inner_deg,
+                outer_deg: c.outer_deg,
+            };
+            let named = |e: Error| Error::new(e.status, e.message.replacen("light.", &format!("lights[{i}]."), 1));
+            light.validate().map_err(named)?;
+            list[i] = Some(light);
+            Ok(())
+        };
+        // SAFETY: the caller's promise about `lights`.
+        unsafe {
+            input::each("lights", lights, count as usize, stride as usize, MAX_LIGHTS, &mut take)?;
+        }
+        object.write().set_lights(list.iter().flatten())?;
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,122 @@
+//! The host's own lamps: head lights, work lights, search lights. They light what Welkin draws in their beams.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result, check_range};
+
+/// Most lamps at a time.
+pub const MAX_LIGHTS: usize = 64;
+
+/// A lamp of the host.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostLight {
+    /// Where it is in the host's world, m.
+    pub position_m: DVec3,
+    /// Where it shines to, in the host's world; any length but 0.
+    pub direction: DVec3,
+    /// Luminous intensity in its middle, cd a channel of linear Rec. 709, \[0, 1e9\].
+    pub intensity_cd: [f64; 3],
+    /// Angle from the middle up to which the beam is full, degrees, \[0, 180\].
+    pub inner_deg: f64,
+    /// Angle from the middle at which the beam has ended, degrees, from `inner_deg` to 180. Both 180: a bulb.
+    pub outer_deg: f64,
+}
+
+/// As shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct LightUniform {
+    /// Camera-relative, east-north-up, m.
+    pub position: [f32; 3],
+    /// Cosine of the beam's end.
+    pub end: f32,
+    pub direction: [f32; 3],
+    /// 1/(cosine of where the beam is full - that of its end).
+    pub steepness: f32,
+    pub intensity: [f32; 3],
+    pub pad: f32,
+}
+
+impl HostLight {
+    /// Refuses what is no lamp, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.position_m.is_finite() && self.position_m.length() <= 1e12) {
+            return Err(Error::range("light.position_m", "finite and within 1e12 m", self.position_m));
+        }
+        if !(self.direction.is_finite() && (1e-6..=1e6).contains(&self.direction.length())) {
+            return Err(Error::range("light.direction", "finite with a length in [1e-6, 1e6]", self.direction));
+        }
+        for v in self.intensity_cd {
+            check_range("light.intensity_cd", v, 0.0, 1e9, "cd")?;
+        }
+        check_range("light.inner_deg", self.inner_deg, 0.0, 180.0, "degrees")?;
+        check_range("light.outer_deg", self.outer_deg, self.inner_deg, 180.0, "degrees")
+    }
+
+    /// For a camera at `eye` whose axes `to_enu` turns, with the picture's `exposure` on it.
+    pub(crate) fn uniform(&self, eye: DVec3, to_enu: DMat3, exposure: f64) -> LightUniform {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
+        LightUniform {
+            position: v(to_enu * (self.position_m - eye)),
+            // A bulb's beam has no end.
+            end: if self.outer_deg >= 180.0 { -2.0 } else { outer as f32 },
+            direction: v((to_enu * self.direction).normalize()),
+            steepness: (1.0 / (inner - if self.outer_deg >= 180.0 { -2.0 } else { outer }).max(1e-4)) as f32,
+            intensity: self.intensity_cd.map(|c| (c * exposure) as f32),
+            pad: 0.0,
+        }
+    }
+
+    /// Illuminance on a surface at `p` that faces the lamp, lux a channel.
+    pub fn illuminance_lux(&self, p: DVec3) -> [f64; 3] {
+        let to = p - self.position_m;
+        let d2 = to.length_squared().max(0.01);
+        let c = to.normalize_or_zero().dot(self.direction.normalize());
+        let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
+        let x = if self.outer_deg >= 180.0 { 1.0 } else { ((c - outer) / (inner - outer).max(1e-4)).clamp(0.0, 1.0) };
+        self.intensity_cd.map(|i| i * x * x * (3.0 - 2.0 * x) / d2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lamp() -> HostLight {
+        HostLight {
+            position_m: DVec3::new(0.0, 0.0, 3.0),
+            direction: DVec3::Y,
+            intensity_cd: [10_000.0; 3],
+            inner_deg: 10.0,
+            outer_deg: 20.0,
+        }
+    }
+
+    #[test]
+    fn light_falls_with_the_square_and_ends_with_the_beam() {
+        let at = |x: f64, y: f64| lamp().illuminance_lux(DVec3::new(x, y, 3.0))[1];
+        assert!((at(0.0, 10.0) - 100.0).abs() < 1e-9 && (at(0.0, 20.0) - 25.0).abs() < 1e-9);
+        assert!(at(0.5, 10.0) > 0.99 * 100.0 / 1.0025 && at(4.0, 10.0) == 0.0 && at(0.0, -10.0) == 0.0);
+        let bulb = HostLight { inner_deg: 180.0, outer_deg: 180.0, ..lamp() };
+        assert!(bulb.illuminance_lux(DVec3::new(0.0, -10.0, 3.0))[1] > 99.0);
+    }
+
+    #[test]
+    fn what_is_no_lamp_is_refused_by_name() {
+        for (bad, name) in [
+            (HostLight { position_m: DVec3::splat(f64::NAN), ..lamp() }, "light.position_m"),
+            (HostLight { direction: DVec3::ZERO, ..lamp() }, "light.direction"),
+            (HostLight { intensity_cd: [1.0, -1.0, 1.0], ..lamp() }, "light.intensity_cd"),
+            (HostLight { inner_deg: -1.0, ..lamp() }, "light.inner_deg"),
+            (HostLight { outer_deg: 5.0, ..lamp() }, "light.outer_deg"),
+        ] {
+            let e = bad.validate().unwrap_err();
+            assert!(e.message.contains(name), "{}", e.message);
+        }
+        lamp().validate().unwrap();
+    }
+}
