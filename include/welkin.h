@@ -72,7 +72,7 @@
  * rectangle, holes and soil materials, is a new child of the context with its own functions; material ids, normals, base
  * colour and motion are images appended to the target structs; weather regions and bodies of water are new functions of
  * the context; allocator and file callbacks and the star sky's matrix come as extensions of wk_device_desc and
- * wk_context_desc through `next`; the stages SURFACE, PARTICLES and LENS are recorded today and draw when there is
+ * wk_context_desc through `next`; the stages PARTICLES and LENS are recorded today and draw when there is
  * something to draw.
  */
 #ifndef WELKIN_H
@@ -2958,7 +2958,7 @@ WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
  *
  *   PREPARE     tables and simulation textures; needs no target
  *   BACKGROUND  the sky behind everything; before or after the opaque things
- *   SURFACE     what weather does to surfaces; after the opaque things
+ *   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
  *   MEDIUM      fog and aerial perspective on all that was drawn so far
  *   PARTICLES   what falls and flies
  *   LENS        water on the windscreen
@@ -3059,7 +3059,7 @@ typedef struct wk_report {
     /* ms */ 0.0 \
 }
 
-/** What a frame spends time on, in the order in which it happens. */
+/** What a frame spends time on. */
 typedef uint32_t wk_effect;
 
 /** Tables over the planet: built when the air changes. */
@@ -3080,6 +3080,8 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_HAND_OVER 7
 /** Rain. */
 #define WK_EFFECT_PARTICLES 8
+/** Water on surfaces. */
+#define WK_EFFECT_SURFACE 9
 
 /** What one effect of a frame cost; plain values of a list. */
 typedef struct wk_effect_cost {

@@ -11,6 +11,7 @@ pub mod error;
 pub mod fog;
 pub mod frame;
 pub mod gpu;
+pub mod ground;
 pub mod plan;
 pub mod rain;
 pub mod scene;

@@ -2,7 +2,10 @@
 
 use welkin::{
     context::{Context, GivenDirection},
-    weather::{Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
+    weather::{
+        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
+        SurfaceState, Weather,
+    },
 };
 
 pub struct Shot {
@@ -77,6 +80,63 @@ pub fn shots() -> Vec<Shot> {
                 };
                 c.set_weather(&weather, 0.0, 0.0)
             },
+            ..GROUND
+        },
+        Shot {
+            name: "wet_road",
+            caption: "Wet road after a shower, low sun",
+            weather: |c, ground| {
+                sun(c, 20.0, 12.0)?;
+                let weather = Weather {
+                    station_altitude_m: ground,
+                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "wet_noon",
+            caption: "Wet road, noon",
+            weather: |c, ground| {
+                sun(c, 160.0, 55.0)?;
+                let weather = Weather {
+                    station_altitude_m: ground,
+                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            elevation_deg: -12.0,
+            ..GROUND
+        },
+        Shot {
+            name: "wet_rain",
+            caption: "Wet road, rain",
+            weather: |c, ground| {
+                sun(c, 160.0, 55.0)?;
+                let mut weather = Weather::preset("rain")?;
+                weather.station_altitude_m = ground;
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            elevation_deg: -12.0,
+            ..GROUND
+        },
+        Shot {
+            name: "wet_night",
+            caption: "Wet road by moonlight",
+            weather: |c, ground| {
+                sun(c, 300.0, -35.0)?;
+                c.set_moon(Some(GivenDirection { azimuth_deg: 12.0, elevation_deg: 18.0 }))?;
+                let weather = Weather {
+                    station_altitude_m: ground,
+                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            elevation_deg: 0.0,
             ..GROUND
         },
         Shot {

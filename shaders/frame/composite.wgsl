@@ -1,15 +1,15 @@
-// One pixel of the frame: sky behind, air and fog between, tone on top. Host colour x T + L throughout.
+// One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L throughout.
 //!include "common/fullscreen.wgsl"
 //!include "frame/tone.wgsl"
 //!include "frame/veil.wgsl"
 //!include "sky/disc.wgsl"
+//!include "ground/surface.wgsl"
 
 override BACKGROUND: bool = true;
+override SURFACE: bool = true;
 override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
-// Whether the clear sky above the horizon is drawn at all.
-override CLEAR_SKY: bool = true;
 
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
@@ -59,9 +59,23 @@ fn with_drops(veil: Veil, pixel: vec2u) -> Veil {
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 
-fn compose(host: vec4f, range: f32, plane: f32, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
+// The host's colour as luminance, or linear in the display's space.
+fn linear_host(host: vec3f) -> vec3f {
+    if frame.color_space == SCENE_LINEAR {
+        return host * frame.cd_m2_per_unit;
+    }
+    return select(host, srgb_decode(host), frame.color_space == DISPLAY_SRGB);
+}
+
+fn compose(host: vec4f, range: f32, plane: f32, facing: Facing, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
     drawn = frame.drawn;
-    var veil = weather_over(view_ray(frame.depth, ndc), range, plane);
+    let ray = view_ray(frame.depth, ndc);
+    var veil = weather_over(ray, range, plane);
+    if SURFACE && range < RANGE_SKY {
+        let wet = wet_surface(linear_host(host.rgb), frame.color_space != SCENE_LINEAR, ray, range, facing);
+        veil.light += veil.transmittance * wet.light;
+        veil.transmittance *= wet.transmittance;
+    }
     if PARTICLES {
         veil = with_drops(veil, pixel);
     }

@@ -73,5 +73,5 @@
 //! rectangle, holes and soil materials, is a new child of the context with its own functions; material ids, normals, base
 //! colour and motion are images appended to the target structs; weather regions and bodies of water are new functions of
 //! the context; allocator and file callbacks and the star sky's matrix come as extensions of wk_device_desc and
-//! wk_context_desc through `next`; the stages SURFACE, PARTICLES and LENS are recorded today and draw when there is
+//! wk_context_desc through `next`; the stages PARTICLES and LENS are recorded today and draw when there is
 //! something to draw.

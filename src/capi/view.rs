@@ -5,7 +5,7 @@
 //!
 //!   PREPARE     tables and simulation textures; needs no target
 //!   BACKGROUND  the sky behind everything; before or after the opaque things
-//!   SURFACE     what weather does to surfaces; after the opaque things
+//!   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
 //!   MEDIUM      fog and aerial perspective on all that was drawn so far
 //!   PARTICLES   what falls and flies
 //!   LENS        water on the windscreen
@@ -133,7 +133,7 @@ impl wk_report {
     };
 }
 
-/// What a frame spends time on, in the order in which it happens.
+/// What a frame spends time on.
 pub type wk_effect = u32;
 /// Tables over the planet: built when the air changes.
 pub const WK_EFFECT_SKY_TABLES: wk_effect = 0;
@@ -153,6 +153,8 @@ pub const WK_EFFECT_VEIL: wk_effect = 6;
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
 /// Rain.
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
+/// Water on surfaces.
+pub const WK_EFFECT_SURFACE: wk_effect = 9;
 
 /// What one effect of a frame cost; plain values of a list.
 #[repr(C)]

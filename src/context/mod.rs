@@ -28,6 +28,7 @@ use crate::{
     fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
+    ground::Hollows,
     rain::{MAX_SHELTERS, Shelter},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
@@ -116,6 +117,7 @@ pub struct Context {
     lights: Vec<HostLight>,
     time_s: f64,
     ephemeris: Ephemeris,
+    hollows: Hollows,
 }
 
 impl Context {
@@ -131,6 +133,7 @@ impl Context {
         let timeline = Timeline::new(derive(&Weather::default())?);
         let sky = Mutex::new(FollowedSky::new(&device, &shared.sky, &desc.sky, desc.cache_dir.clone())?);
         let color = lights::color_columns(&desc.planet);
+        let hollows = Hollows::new(desc.seed);
         Ok(Self {
             device,
             shared,
@@ -145,6 +148,7 @@ impl Context {
             lights: Vec::new(),
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
+            hollows,
         })
     }
 
@@ -276,6 +280,11 @@ impl Context {
     /// Seed of everything that chance decides.
     pub fn seed(&self) -> u64 {
         self.desc.seed
+    }
+
+    /// Hollows of the ground, in which water stands.
+    pub fn hollows(&self) -> &Hollows {
+        &self.hollows
     }
 
     /// Radius of the planet's ground, m.

@@ -13,6 +13,7 @@ use crate::{
         Device,
         pass::{self, FullscreenDesc},
     },
+    ground::GroundUniform,
     sky::SkyVolume,
 };
 
@@ -42,11 +43,12 @@ impl Variant {
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 16] {
+    pub fn constants(&self) -> [(&'static str, f64); 17] {
         let yes = |b: bool| f64::from(u8::from(b));
         let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
             ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
+            ("SURFACE", yes(self.stages.has(Stages::SURFACE))),
             ("MEDIUM", yes(self.stages.has(Stages::MEDIUM))),
             ("TONE", yes(self.stages.has(Stages::TONE))),
             ("PARTICLES", yes(self.stages.has(Stages::PARTICLES))),
@@ -111,6 +113,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             texture_entry(3, false),
             uniform(4, size_of::<FogUniform>()),
             texture_entry(5, false),
+            uniform(6, size_of::<GroundUniform>()),
         ],
     })
 }
@@ -170,7 +173,7 @@ impl Composite {
     pub fn bind(
         &self,
         device: &Device,
-        [frame, fog]: [&wgpu::Buffer; 2],
+        [frame, fog, ground]: [&wgpu::Buffer; 3],
         copy: &wgpu::Texture,
         host: &Frame<'_>,
         drops: Option<&wgpu::TextureView>,
@@ -192,6 +195,7 @@ impl Composite {
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 6, resource: ground.as_entire_binding() },
                 entry(1, &color_view),
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::{error::Result, gpu::Device};
 
-/// What a frame spends time on, in the order in which it happens.
+/// What a frame spends time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Effect {
@@ -30,11 +30,13 @@ pub enum Effect {
     HandOver = 7,
     /// Rain.
     Particles = 8,
+    /// Water on surfaces.
+    Surface = 9,
 }
 
 impl Effect {
     /// All of them, in order.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::SkyTables,
         Self::SkyView,
         Self::Background,
@@ -44,6 +46,7 @@ impl Effect {
         Self::Veil,
         Self::HandOver,
         Self::Particles,
+        Self::Surface,
     ];
 
     /// Its name, for people.
@@ -58,6 +61,7 @@ impl Effect {
             Self::Veil => c"veil",
             Self::HandOver => c"hand-over",
             Self::Particles => c"particles",
+            Self::Surface => c"surfaces",
         }
     }
 }

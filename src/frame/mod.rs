@@ -8,6 +8,7 @@ mod froxels;
 mod measure;
 mod rain;
 mod shared;
+mod surface;
 mod target;
 pub mod tone;
 mod uniform;

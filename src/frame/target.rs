@@ -24,7 +24,7 @@ impl Stages {
     pub const PREPARE: Self = Self(1);
     /// Sky behind everything: fills pixels at the far depth, or all pixels where there is no depth.
     pub const BACKGROUND: Self = Self(2);
-    /// Wet and white surfaces, later sea and terrain; after the host's opaque objects.
+    /// Wet surfaces, later white ones, sea and terrain; after the host's opaque objects.
     pub const SURFACE: Self = Self(4);
     /// Fog and aerial perspective on all that the host drew.
     pub const MEDIUM: Self = Self(8);
@@ -53,8 +53,8 @@ impl Stages {
     }
 
     /// The stages of this set that draw over the whole picture, one by one in their order; empty ones among them.
-    pub(super) fn each(self) -> [Self; 4] {
-        [Self::BACKGROUND, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
+    pub(super) fn each(self) -> [Self; 5] {
+        [Self::BACKGROUND, Self::SURFACE, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }
 
     /// Checks a mask from outside.

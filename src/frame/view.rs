@@ -14,6 +14,7 @@ use super::{
     measure::{Costs, Effect, Recording},
     rain::{self, Rain},
     shared::Shared,
+    surface,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
     uniform::FrameUniform,
 };
@@ -22,6 +23,7 @@ use crate::{
     error::{Error, Result, Status},
     fog::{FogKind, FogUniform, FogVariant},
     gpu::Device,
+    ground::GroundUniform,
     plan::{Budget, Plan, Planner, Present, Situation},
     rain::RainSettings,
     scene::{Camera, ViewRays},
@@ -62,6 +64,7 @@ pub struct View {
     shared: Arc<Shared>,
     uniform: wgpu::Buffer,
     fog: wgpu::Buffer,
+    ground: wgpu::Buffer,
     copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     sky: SkyVolume,
@@ -93,6 +96,7 @@ impl View {
             })
         };
         let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
+        let ground = buffer("ground", size_of::<GroundUniform>());
         let shared = context.shared().clone();
         let sky = SkyVolume::new(&*context.sky()?)?;
         let rain = Rain::new(&device, RainSettings::default());
@@ -103,6 +107,7 @@ impl View {
             shared,
             uniform,
             fog,
+            ground,
             copy: None,
             bound: None,
             sky,
@@ -240,11 +245,11 @@ impl View {
         self.check_order(frame.frame_id, stages)?;
         frame.camera.validate()?;
         let scene = context.scene_at(frame.camera.position, context.time_s())?;
-        // What does not fall is not drawn.
+        // What does not fall is not drawn, nor what is dry.
         let asked = stages;
         let stages = if rain::falls(&scene) { stages } else { stages.without(Stages::PARTICLES) };
-        let drawing = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES).with(Stages::TONE);
-        let drawn = stages.has(drawing);
+        let stages = if surface::is_wet(frame, &scene) { stages } else { stages.without(Stages::SURFACE) };
+        let drawn = stages.without(Stages::PREPARE.with(Stages::LENS)) != Stages(0);
         let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
@@ -255,7 +260,7 @@ impl View {
         }
         if let Some(rays) = rays {
             let apart = to.is_measured() && can_be_apart(frame, stages);
-            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0), Stages(0)] };
+            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0), Stages(0), Stages(0)] };
             for stages in draws.into_iter().filter(|s| s.0 != 0) {
                 self.draw(context, frame, stages, &scene, &rays, to)?;
             }
@@ -337,7 +342,7 @@ impl View {
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
         let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
         let variant = Variant {
-            stages: Stages(stages.0 & (Stages::BACKGROUND.0 | Stages::MEDIUM.0 | Stages::PARTICLES.0 | Stages::TONE.0)),
+            stages: stages.without(Stages::PREPARE.with(Stages::LENS)),
             format: color.format(),
             samples: color.sample_count(),
             has_depth: frame.depth.is_some(),
@@ -382,6 +387,10 @@ impl View {
             let at = (context, scene, rays);
             self.report.drops = self.rain.draw(&self.device, to.encoder, at, frame, color, exposure)?;
             self.report.passes += 1;
+        }
+        if variant.stages.has(Stages::SURFACE) {
+            let block = surface::uniform(frame, color, context, scene, &fog);
+            self.device.queue.write_buffer(&self.ground, 0, bytemuck::bytes_of(&block));
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
@@ -434,8 +443,8 @@ impl View {
             self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes) + self.rain.bytes();
         }
         let Some(copy) = &self.copy else { return Ok(()) };
-        let group =
-            self.shared.composite()?.bind(&self.device, [&self.uniform, &self.fog], copy, frame, drops.as_ref());
+        let blocks = [&self.uniform, &self.fog, &self.ground];
+        let group = self.shared.composite()?.bind(&self.device, blocks, copy, frame, drops.as_ref());
         let target = color.create_view(&Default::default());
         let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned(), drops };
         self.bound = Some((bound, group, target));
@@ -464,6 +473,7 @@ fn is_float(format: wgpu::TextureFormat) -> bool {
 /// Whose a draw of these stages is.
 fn effect_of(stages: Stages) -> Effect {
     match stages {
+        Stages::SURFACE => Effect::Surface,
         Stages::BACKGROUND => Effect::Background,
         Stages::MEDIUM => Effect::Medium,
         Stages::PARTICLES => Effect::Particles,

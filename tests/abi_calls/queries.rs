@@ -283,21 +283,25 @@ fn costs_are_there_where_they_were_asked_for() {
         assert_eq!(wk_view_get_report(view, &mut report), WK_OK);
         assert!(report.has & WK_REPORT_HAS_MS != 0 && report.ms > 0.0);
         assert_eq!(wk_view_get_costs(view, null_mut(), 0, 0, &mut count), WK_OK, "{}", message());
-        assert_eq!(count, 9);
-        refused(wk_view_get_costs(view, costs.as_mut_ptr(), 7, size, &mut count), "capacity must be at least 9");
-        refused(wk_view_get_costs(view, null_mut(), 9, size, &mut count), "costs must not be NULL");
+        let all = welkin::frame::Effect::ALL.len() as u32;
+        assert_eq!(count, all);
+        refused(
+            wk_view_get_costs(view, costs.as_mut_ptr(), all - 1, size, &mut count),
+            &format!("capacity must be at least {all}"),
+        );
+        refused(wk_view_get_costs(view, null_mut(), all, size, &mut count), "costs must not be NULL");
         refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, 8, &mut count), "cost_size must be at least 24");
         refused(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, null_mut()), "out_count must not be NULL");
         assert_eq!(costs[0].effect, 99, "nothing is written");
         assert_eq!(wk_view_get_costs(view, costs.as_mut_ptr(), 16, size, &mut count), WK_OK, "{}", message());
-        for (i, cost) in costs[..8].iter().enumerate() {
+        for (i, cost) in costs[..all as usize].iter().enumerate() {
             assert_eq!((cost.effect, cost.reserved0), (i as u32, 0));
             assert!(!CStr::from_ptr(cost.name).is_empty() && cost.ms >= 0.0);
         }
         let (composition, hand_over) = (costs[WK_EFFECT_COMPOSITION as usize], costs[WK_EFFECT_HAND_OVER as usize]);
         assert_eq!(CStr::from_ptr(hand_over.name), c"hand-over");
         assert!(composition.ms > 0.0 && hand_over.ms > 0.0 && costs[WK_EFFECT_VEIL as usize].ms == 0.0);
-        let sum = costs[..8].iter().map(|c| c.ms).sum::<f64>();
+        let sum = costs[..all as usize].iter().map(|c| c.ms).sum::<f64>();
         assert!(sum <= 1.001 * report.ms, "{sum} of {}", report.ms);
     }
 }

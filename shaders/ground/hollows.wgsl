@@ -1,0 +1,95 @@
+// Hollows of a ground of which no heights are known, and rings of drops on the water in them. Both are functions of the
+// place in the host's world, which repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
+//!include "ground/uniform.wgsl"
+
+// Side of a cell of the rings' grid, m, cells to a period, seconds of a slot.
+const RING_CELL: f32 = 0.2;
+const RING_CELLS: u32 = 50000u;
+const RING_SLOT: f32 = 0.6;
+const RING_LAYERS: u32 = 4u;
+// Share of a slot that a ring lives, its speed, its wavelength (m), its greatest slope.
+const RING_LIFE: f32 = 0.6;
+const RING_SPEED: f32 = 0.22;
+const RING_WAVE: f32 = 0.02;
+const RING_SLOPE: f32 = 0.35;
+
+// Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too small for the
+// pixel, whose sides on the ground are `across` and `along`.
+fn hollow_depth(u: GroundUniform, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
+    var depth = 0.0;
+    var kept = 0.0;
+    for (var i = 0u; i < HOLLOW_WAVES; i++) {
+        let wave = u.waves[i];
+        let x = vec2f(dot(wave.xy, across), dot(wave.xy, along));
+        // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
+        let q = dot(x, x) * 1.6449341;
+        let keep = wave.w / (1.0 + q * (1.0 + 0.5 * q));
+        let turns = wave.z + dot(wave.xy, at);
+        depth += keep * sin((turns - floor(turns)) * 6.28318531);
+        kept += 0.5 * keep * keep;
+    }
+    return vec2f(depth, max(1.0 - kept, 0.0));
+}
+
+// Normal distribution function within 3e-4 (Page 1977).
+fn normal_share(x: f32) -> f32 {
+    let y = clamp(x, -6.0, 6.0);
+    return 1.0 / (1.0 + exp(-1.5957691 * y * (1.0 + 0.044715 * y * y)));
+}
+
+// Width of the edge of a puddle and of a film, in units of the hollows' depth.
+const PUDDLE_EDGE: f32 = 0.06;
+const FILM_EDGE: f32 = 0.5;
+
+// Share of a pixel under water that fills the hollows from `level` down. `hollow` is what `hollow_depth` gives.
+fn covered_share(hollow: vec2f, level: f32, edge: f32) -> f32 {
+    return normal_share((hollow.x - level) * inverseSqrt(edge * edge + hollow.y));
+}
+
+// Three uniform numbers of four integers (PCG, Jarzynski & Olano 2020).
+fn ring_chances(cell: vec2u, slot: u32) -> vec3f {
+    var v = vec3u(cell, slot) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v = v ^ (v >> vec3u(16u));
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return vec3f(v >> vec3u(8u)) / 16777216.0;
+}
+
+// Slope of the water by the ring of one layer: each cell may have one drop in a slot of time.
+fn ring_slope(u: GroundUniform, at: vec2f, layer: u32) -> vec2f {
+    let t = u.slot_share + f32(layer) / f32(RING_LAYERS);
+    let slot = (u.slot + u32(t)) * RING_LAYERS + layer;
+    // The grid lies elsewhere in each slot, so that drops fall everywhere.
+    let shift = ring_chances(vec2u(0x9e37u, 0x79b9u), slot).xy;
+    let place = (at + vec2f(u.place_u, u.place_v)) / RING_CELL + shift;
+    let low = floor(place);
+    let cell = (u.cell + vec2u(vec2i(low) + i32(RING_CELLS))) % RING_CELLS;
+    let chance = ring_chances(cell, slot);
+    let other = ring_chances(cell.yx, slot + 0x85ebu);
+    let life = RING_LIFE * RING_SLOT;
+    let age = (fract(t) - (1.0 - RING_LIFE) * other.y) * RING_SLOT;
+    if other.x >= u.ring_chance || age <= 0.0 || age >= life {
+        return vec2f(0.0);
+    }
+    // No ring leaves its cell.
+    let room = 0.5 * RING_CELL - RING_SPEED * life;
+    let from_middle = (place - low - 0.5) * RING_CELL - (chance.xy * 2.0 - 1.0) * room;
+    let r = length(from_middle);
+    let x = (r - RING_SPEED * age) / RING_WAVE;
+    let fade = 1.0 - age / life;
+    let height = (0.4 + 0.6 * chance.z) * RING_SLOPE * fade * fade * exp(-x * x) * min(r / (0.5 * RING_WAVE), 1.0);
+    return from_middle / max(r, 1e-4) * (height * sin(x * 6.28318531));
+}
+
+// Slope of standing water by the rings of drops.
+fn ring_slopes(u: GroundUniform, at: vec2f) -> vec2f {
+    var slope = vec2f(0.0);
+    for (var layer = 0u; layer < RING_LAYERS; layer++) {
+        slope += ring_slope(u, at, layer);
+    }
+    return slope;
+}

@@ -1,0 +1,121 @@
+// A wet surface seen by the camera: the host's colour x through + light, before air and fog.
+//!include "frame/veil.wgsl"
+//!include "frame/ground_binding.wgsl"
+//!include "ground/optics.wgsl"
+//!include "ground/hollows.wgsl"
+//!include "ground/normal.wgsl"
+
+// Whether the clear sky above the horizon is drawn at all.
+override CLEAR_SKY: bool = true;
+
+// The sky without its lamps, as it stands behind what lies on the ground.
+fn sky_without_lamps(d: vec3f) -> vec3f {
+    var clear = frame.night_floor;
+    if CLEAR_SKY && drawn.z > 0.0 && frame.deck_cover < 1.0 {
+        clear += color_of(sky_radiance(d)) * drawn.z;
+    }
+    return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
+}
+
+// What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if it
+// faces down.
+fn mirrored_light(d: vec3f) -> vec3f {
+    let up = normalize(vec3f(d.xy, max(d.z, 1e-3)));
+    let through = exp(-ground.fog_depth / max(up.z, 0.02));
+    let sky = sky_without_lamps(up) * through + ground.fog_light * (1.0 - through);
+    return mix(ground.ground_light, sky, smoothstep(-0.1, 0.02, d.z));
+}
+
+// Share of the rain's water that a surface keeps: level ground all, walls less, undersides none.
+fn caught(up_cosine: f32) -> f32 {
+    return clamp(up_cosine + 0.3, 0.0, 1.0);
+}
+
+// The ground's own colour, from its luminance and the light that falls on it.
+fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f) -> vec3f {
+    let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
+    let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up));
+    return clamp(luminance * SKY_PI / max(light, vec3f(1e-9)), vec3f(0.0), vec3f(0.9));
+}
+
+// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which is 0
+// for grey and below 0 for soil. Leaves shed water: they neither shine as a film nor show the puddles below them.
+fn plants(albedo: vec3f) -> f32 {
+    let excess = (2.0 * albedo.g - albedo.r - albedo.b) / max(albedo.r + albedo.g + albedo.b, 1e-6);
+    return smoothstep(0.08, 0.3, excess);
+}
+
+// One kind of water on a surface: how it is turned, how rough it is, how much of it there is.
+struct Film {
+    normal: vec3f,
+    slope: f32,
+}
+
+struct Mirror {
+    share: f32,
+    direction: vec3f,
+    lamp: vec3f,
+}
+
+fn mirror(film: Film, to_eye: vec3f) -> Mirror {
+    let cosine = clamp(dot(film.normal, to_eye), 1e-3, 1.0);
+    let sine = sqrt(1.0 - cosine * cosine);
+    let level = (to_eye - film.normal * cosine) / max(sine, 1e-4);
+    let facet = normalize(film.normal + level * seen_slope(film.slope, sine / cosine));
+    let share = fresnel_water(dot(facet, to_eye));
+    let middle = normalize(to_eye + ground.to_lamp);
+    let pixel = 0.25 * frame.pixel_angle;
+    let lamp = glitter(film.slope, ground.disc2 + pixel * pixel, film.normal, middle, to_eye, ground.to_lamp) * fresnel_water(dot(middle, to_eye));
+    return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
+}
+
+// `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that is
+// known of the albedo.
+fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing: Facing) -> Veil {
+    let at = ray.origin + ray.direction * range;
+    let up = normalize(vec3f(at.xy * ground.curvature, 1.0));
+    let level = dot(facing.normal, up);
+    let kept = caught(level);
+    let to_eye = -ray.direction;
+    var albedo = clamp(host, vec3f(0.0), vec3f(0.9));
+    if !albedo_known {
+        albedo = dry_albedo(host, facing.normal, up);
+    }
+    let below = wet_share(albedo, ground.entering);
+
+    // The pixel's sides on the ground.
+    let side = range * frame.pixel_angle;
+    let cosine = max(dot(facing.normal, to_eye), 0.02);
+    let view = vec2f(dot(ground.axis_u, ray.direction), dot(ground.axis_v, ray.direction));
+    let along = view * inverseSqrt(max(dot(view, view), 1e-8));
+    let across = vec2f(-along.y, along.x) * side;
+    let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
+
+    let bare = facing.sure * (1.0 - plants(albedo));
+    let hollow = hollow_depth(ground, place, across, along * (side / cosine));
+    let pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * bare;
+    var slopes = vec2f(0.0);
+    // A pixel too long to see rings sees a rougher surface.
+    let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
+    if pool > 0.0 && ground.ring_chance > 0.0 && seen > 0.0 {
+        slopes = ring_slopes(ground, place) * seen;
+    }
+    let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
+    let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
+    // In the hollows the film is deeper and smoother.
+    let film = Film(facing.normal, ground.film_slope * (1.2 - 0.4 * normal_share(hollow.x)));
+
+    // Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
+    let soaked = ground.soaked * kept * (0.5 + 0.5 * bare);
+    let wet = mix(vec3f(1.0), below, soaked);
+    let cover = covered_share(hollow, ground.film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare;
+    let thin = mirror(film, to_eye);
+    let deep = mirror(water, to_eye);
+    let thin_share = thin.share * cover * (1.0 - pool);
+    let deep_share = deep.share * pool;
+    let both = max(thin_share + deep_share, 1e-6);
+    let sky = mirrored_light(normalize(thin.direction * (thin_share / both) + deep.direction * (deep_share / both)));
+    let lamps = thin.lamp * (cover * (1.0 - pool)) + deep.lamp * pool;
+    let through = mix(wet, below * ((1.0 - deep.share) / (1.0 - WATER_OUTSIDE)), pool);
+    return Veil(min(sky * (thin_share + deep_share) + lamps, vec3f(ground.most)), through);
+}

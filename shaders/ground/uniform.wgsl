@@ -1,0 +1,55 @@
+// What water on the ground needs to know of the frame.
+
+const HOLLOW_WAVES: u32 = 16u;
+
+struct GroundUniform {
+    // Unit, towards the lamp that lights the ground, as it appears.
+    to_lamp: vec3f,
+    // Share of the ground's pores that hold water.
+    soaked: f32,
+    // Its illuminance on a surface that faces it, lux a channel.
+    lamp_lux: vec3f,
+    // Level of standing water in the hollows, in units of their root mean square depth.
+    level: f32,
+    // Sky, clouds and fog on level ground, lux a channel.
+    sky_lux: vec3f,
+    // Share of that light that enters water.
+    entering: f32,
+    // Luminance of the fog overhead and its optical depth straight up.
+    fog_light: vec3f,
+    fog_depth: f32,
+    // Luminance of the lit ground round about, cd/m^2 a channel: what mirrors that face down see.
+    ground_light: vec3f,
+    // The same of a film: above it the ground is bare.
+    film_level: f32,
+    // Axes of the pattern of hollows, and where the camera stands in a cell of the rings' grid, m.
+    axis_u: vec3f,
+    place_u: f32,
+    axis_v: vec3f,
+    place_v: f32,
+    // That cell; the rings' slot of time, the share of it that has passed.
+    cell: vec2u,
+    slot: u32,
+    slot_share: f32,
+    // Of the film's and the standing water's slopes, root mean square along one axis.
+    film_slope: f32,
+    water_slope: f32,
+    // Chance that a drop falls into a cell of the rings' grid in a slot of time.
+    ring_chance: f32,
+    // Most light that is added, cd/m^2: what a half float holds.
+    most: f32,
+    // Steps of ndc to the next pixel to the right and below.
+    pixel: vec2f,
+    // Rounding of the host's depth: absolute, and over its value.
+    depth_step: f32,
+    depth_ulp: f32,
+    // 1/(planet radius + altitude), 1/m; 0 for a flat world.
+    curvature: f32,
+    // Mean square slope of the rings where they are too small to be seen.
+    ring_slope2: f32,
+    // (Radius of the lamp's disc / 4)^2, rad^2.
+    disc2: f32,
+    pad: f32,
+    // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.
+    waves: array<vec4f, HOLLOW_WAVES>,
+}

@@ -1,0 +1,61 @@
+//! What a frame draws of weather on surfaces: nothing while it is dry.
+
+use super::Frame;
+use crate::{
+    context::{Context, Scene},
+    fog::{FogKind, FogModel, reference::layer_depth_above},
+    ground::{GroundUniform, Seen},
+    scene::WorldKind,
+};
+
+/// Largest number of a half float, with room for what follows.
+const MOST_UNITS: f64 = 6e4;
+
+/// Whether there is any water to draw on surfaces.
+pub(super) fn is_wet(frame: &Frame<'_>, scene: &Scene) -> bool {
+    let cover = &scene.conditions.surface;
+    frame.depth.is_some() && (cover.wetness > 0.0 || cover.puddles > 0.0)
+}
+
+/// Rounding of a depth format: absolute, and over the value. The rasteriser's own counts as two steps of a float.
+fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
+    use wgpu::TextureFormat as F;
+    let float = 2f64.powi(-22);
+    match depth.format() {
+        F::Depth16Unorm => [1.0 / 65_535.0, float],
+        F::Depth24Plus | F::Depth24PlusStencil8 => [1.0 / 16_777_215.0, float],
+        _ => [0.0, float],
+    }
+}
+
+/// The block of `shaders/ground/uniform.wgsl`.
+pub(super) fn uniform(
+    frame: &Frame<'_>,
+    color: &wgpu::Texture,
+    context: &Context,
+    scene: &Scene,
+    fog: &FogModel,
+) -> GroundUniform {
+    let (width, height) = (f64::from(color.width()), f64::from(color.height()));
+    let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
+    let seen = Seen {
+        scene,
+        cover: &scene.conditions.surface,
+        hollows: context.hollows(),
+        position: frame.camera.position,
+        time_s: context.time_s(),
+        curvature: match context.world().kind {
+            WorldKind::Flat => 0.0,
+            WorldKind::Tangent | WorldKind::Ecef => 1.0 / (context.planet_radius_m() + scene.place.altitude_m),
+        },
+        // The older laws have no height: what they say of the light above the ground is nothing.
+        fog_depth: match fog.kind {
+            FogKind::Slab | FogKind::Exponential => layer_depth_above(fog, scene.place.altitude_m),
+            _ => 0.0,
+        },
+        pixel: [2.0 / width, down / height],
+        depth_rounding: frame.depth.map_or([0.0; 2], rounding),
+        most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,
+    };
+    seen.uniform()
+}

@@ -1,0 +1,202 @@
+//! Light at water, in f64: the twin of `shaders/ground/optics.wgsl`, same names and order of parameters.
+
+use std::f64::consts::PI;
+
+/// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
+pub const WATER_INDEX: f64 = 1.333;
+/// Share of diffuse light that a level surface of water sends back up, from above: Fresnel's law integrated over the half
+/// space.
+pub const WATER_OUTSIDE: f64 = 0.0664;
+/// Share of diffuse light that it sends back down, from below.
+pub const WATER_INSIDE: f64 = 0.4746;
+
+/// Share of unpolarised light that water mirrors at an angle of incidence of this cosine, \[0, 1\] (Fresnel 1823).
+pub fn fresnel_water(cosine: f64) -> f64 {
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt() / WATER_INDEX;
+    let inside = (1.0 - sine * sine).sqrt();
+    let across = (cosine - WATER_INDEX * inside) / (cosine + WATER_INDEX * inside);
+    let along = (WATER_INDEX * cosine - inside) / (WATER_INDEX * cosine + inside);
+    0.5 * (across * across + along * along)
+}
+
+/// What a film leaves of the light that a rough ground of this albedo (\[0, 1\]) sends up, the share `entering` of the
+/// light from above getting into the water: e (1 - p) / (1 - p a), p = [`WATER_INSIDE`] (Angstrom 1925; Lekner & Dorf 1988,
+/// eq. 1 to 3).
+pub fn wet_share(albedo: f64, entering: f64) -> f64 {
+    entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * albedo)
+}
+
+/// Albedo of a wet ground under light at normal incidence, what its surface mirrors included.
+pub fn wet_albedo(albedo: f64) -> f64 {
+    let mirrored = fresnel_water(1.0);
+    mirrored + albedo * wet_share(albedo, 1.0 - mirrored)
+}
+
+/// Mean slope towards the eye of the facets that it sees on a surface whose slopes are spread normally by `slope` (root
+/// mean square along one axis), at the tangent of its zenith angle: slope^2 tan for steep looks, sqrt(pi / 2) slope, the
+/// mean of the facets weighted by their own slope, for grazing ones.
+pub fn seen_slope(slope: f64, tangent: f64) -> f64 {
+    let t = slope * tangent * (2.0 / PI).sqrt();
+    slope * slope * tangent / (1.0 + t * t).sqrt()
+}
+
+/// Share of a unit of a rough surface that a direction of this zenith cosine sees of it.
+pub fn seen_area(slope: f64, cosine: f64) -> f64 {
+    let c = cosine.max(0.0);
+    (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()
+}
+
+/// Drops larger than [`RING_DIAMETER_MM`] that fall on a square metre in a second.
+///
+/// Marshall & Palmer's (1948) sizes, exp(-4.1 R^-0.21 D) per mm, with Atlas, Srivastava & Sekhon's (1973) speeds, 9.65 - 10.3
+/// exp(-0.6 D) m/s, their number such that they make the rate.
+pub fn ring_drops_per_m2_s(rain_mm_h: f64) -> f64 {
+    if rain_mm_h <= 0.0 {
+        return 0.0;
+    }
+    let slope = 4.1 * libm::pow(rain_mm_h, -0.21);
+    // Integral of exp(-slope D) v(D) over D > d, and of its product with D^3 over all D.
+    let beyond = |s: f64, d: f64| libm::exp(-s * d) / s;
+    let flux = 9.65 * beyond(slope, RING_DIAMETER_MM) - 10.3 * beyond(slope + 0.6, RING_DIAMETER_MM);
+    let cubes = 9.65 * 6.0 / libm::pow(slope, 4.0) - 10.3 * 6.0 / libm::pow(slope + 0.6, 4.0);
+    // A drop has pi/6 D^3; 1 mm/h is 1e6 mm^3 in 3600 s on a square metre.
+    let number = rain_mm_h / 3.6e-3 / (PI / 6.0 * cubes);
+    number * flux
+}
+
+/// Drops above this diameter make a ring that is drawn, mm.
+pub const RING_DIAMETER_MM: f64 = 1.8;
+
+/// Quantile of the normal distribution for a probability in (0, 1) (Acklam 2003, relative error below 1.2e-9).
+pub fn normal_quantile(p: f64) -> f64 {
+    const A: [f64; 6] = [
+        -3.969_683_028_665_376e1,
+        2.209_460_984_245_205e2,
+        -2.759_285_104_469_687e2,
+        1.383_577_518_672_69e2,
+        -3.066_479_806_614_716e1,
+        2.506_628_277_459_239,
+    ];
+    const B: [f64; 5] = [
+        -5.447_609_879_822_406e1,
+        1.615_858_368_580_409e2,
+        -1.556_989_798_598_866e2,
+        6.680_131_188_771_972e1,
+        -1.328_068_155_288_572e1,
+    ];
+    const C: [f64; 6] = [
+        -7.784_894_002_430_293e-3,
+        -3.223_964_580_411_365e-1,
+        -2.400_758_277_161_838,
+        -2.549_732_539_343_734,
+        4.374_664_141_464_968,
+        2.938_163_982_698_783,
+    ];
+    const D: [f64; 4] =
+        [7.784_695_709_041_462e-3, 3.224_671_290_700_398e-1, 2.445_134_137_142_996, 3.754_408_661_907_416];
+    let poly = |c: &[f64], x: f64| c.iter().fold(0.0, |sum, k| sum * x + k);
+    let p = p.clamp(1e-12, 1.0 - 1e-12);
+    let tail = |q: f64| {
+        let x = (-2.0 * libm::log(q)).sqrt();
+        poly(&C, x) / (poly(&D, x) * x + 1.0)
+    };
+    if p < 0.02425 {
+        tail(p)
+    } else if p > 1.0 - 0.02425 {
+        -tail(1.0 - p)
+    } else {
+        let q = p - 0.5;
+        let r = q * q;
+        poly(&A, r) * q / (poly(&B, r) * r + 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn water_mirrors_as_fresnel_says() {
+        // n = 1.333, unpolarised: degrees, share.
+        let table = [
+            (0.0, 0.02037),
+            (45.0, 0.02790),
+            (60.0, 0.05969),
+            (70.0, 0.13348),
+            (80.0, 0.34792),
+            (85.0, 0.58352),
+            (89.0, 0.89628),
+        ];
+        for (deg, want) in table {
+            let got = fresnel_water(f64::to_radians(deg).cos());
+            assert!((got - want).abs() < 1e-5, "{deg}: {got}, want {want}");
+        }
+    }
+
+    #[test]
+    fn diffuse_shares_are_fresnel_over_the_half_space() {
+        // 2 int F(mu) mu dmu; from below, 1 - (1 - outside) / n^2 by reciprocity.
+        let n = 20_000;
+        let mean: f64 = (0..n)
+            .map(|i| (f64::from(i) + 0.5) / f64::from(n))
+            .map(|mu| 2.0 * mu * fresnel_water(mu) / f64::from(n))
+            .sum();
+        assert!((mean - WATER_OUTSIDE).abs() < 5e-4, "{mean}");
+        let inside = 1.0 - (1.0 - WATER_OUTSIDE) / (WATER_INDEX * WATER_INDEX);
+        assert!((inside - WATER_INSIDE).abs() < 5e-4, "{inside}");
+    }
+
+    #[test]
+    fn wet_ground_darkens_as_angstrom_says() {
+        for (dry, wet) in [(0.1, 0.074), (0.2, 0.134), (0.3, 0.200), (0.5, 0.358), (0.8, 0.684)] {
+            let got = wet_albedo(dry);
+            assert!((got - wet).abs() < 1e-3, "{dry}: {got}, want {wet}");
+        }
+    }
+
+    #[test]
+    fn facets_seen_are_the_mean_over_the_slopes() {
+        // Mean of z max(0, 1 + z tan) over that of max(0, 1 + z tan), z normal with the slope.
+        for slope in [0.02, 0.1, 0.3] {
+            for tangent in [0.1, 1.0, 5.0, 50.0] {
+                let (mut sum, mut weight, mut n) = (0.0, 0.0, 0.0);
+                for i in -4000..=4000 {
+                    let z = f64::from(i) * 2e-3;
+                    let p = (-0.5 * z * z).exp();
+                    let w = p * (1.0 + z * slope * tangent).max(0.0);
+                    (sum, weight, n) = (sum + w * z * slope, weight + w, n + p);
+                }
+                let got = seen_slope(slope, tangent);
+                assert!((got / (sum / weight) - 1.0).abs() < 0.16, "{slope} {tangent}: {got} {}", sum / weight);
+                let cosine = 1.0 / f64::hypot(1.0, tangent);
+                let area = cosine * weight / n;
+                let got = seen_area(slope, cosine);
+                assert!((got / area - 1.0).abs() < 0.16, "{slope} {tangent}: {got} {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn more_rain_makes_more_rings() {
+        let rates = [0.1, 0.5, 1.0, 5.0, 10.0, 50.0, 100.0].map(ring_drops_per_m2_s);
+        assert!(rates.windows(2).all(|r| r[1] > 1.5 * r[0]), "{rates:?}");
+        // Numerically, with the drops of 0.1 to 12 mm.
+        let (mut number, mut water) = (0.0, 0.0);
+        for i in 10..1200 {
+            let d = f64::from(i) * 0.01;
+            let flux = (-4.1 * 5f64.powf(-0.21) * d).exp() * (9.65 - 10.3 * (-0.6 * d).exp()) * 0.01;
+            number += if d > RING_DIAMETER_MM { flux } else { 0.0 };
+            water += flux * PI / 6.0 * d.powi(3);
+        }
+        let want = 5.0 / 3.6e-3 * number / water;
+        assert!((rates[3] / want - 1.0).abs() < 0.02, "{} {want}", rates[3]);
+        assert_eq!(ring_drops_per_m2_s(0.0), 0.0);
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (p, z) in [(0.5, 0.0), (0.975, 1.959_964), (0.01, -2.326_348), (0.3, -0.524_401)] {
+            assert!((normal_quantile(p) - z).abs() < 1e-6, "{p}: {}", normal_quantile(p));
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! What the shaders of wet ground need of a frame: `GroundUniform` of `shaders/ground/uniform.wgsl`.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Hollows,
+    hollows::{PERIOD_M, WAVES, pattern_axes},
+    reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
+};
+use crate::{context::Scene, weather::SurfaceCover};
+
+/// Twins of the constants of `shaders/ground/hollows.wgsl`.
+const RING_CELL_M: f64 = 0.2;
+const RING_SLOT_S: f64 = 0.6;
+const RING_LAYERS: f64 = 4.0;
+
+/// Root mean square slopes, along one axis, of a film: thin, on the grains of asphalt that it hardly fills; and closed.
+const THIN_FILM_SLOPE: f64 = 0.3;
+const CLOSED_FILM_SLOPE: f64 = 0.15;
+/// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles have:
+/// they are a few metres long.
+const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
+/// Mean square slope of puddles by the rings of drops, per mm/h.
+const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct GroundUniform {
+    pub to_lamp: [f32; 3],
+    pub soaked: f32,
+    pub lamp_lux: [f32; 3],
+    pub level: f32,
+    pub sky_lux: [f32; 3],
+    pub entering: f32,
+    pub fog_light: [f32; 3],
+    pub fog_depth: f32,
+    pub ground_light: [f32; 3],
+    pub film_level: f32,
+    pub axis_u: [f32; 3],
+    pub place_u: f32,
+    pub axis_v: [f32; 3],
+    pub place_v: f32,
+    pub cell: [u32; 2],
+    pub slot: u32,
+    pub slot_share: f32,
+    pub film_slope: f32,
+    pub water_slope: f32,
+    pub ring_chance: f32,
+    pub most: f32,
+    pub pixel: [f32; 2],
+    pub depth_step: f32,
+    pub depth_ulp: f32,
+    pub curvature: f32,
+    pub ring_slope2: f32,
+    pub disc2: f32,
+    pub pad: f32,
+    pub waves: [[f32; 4]; WAVES],
+}
+
+/// How wet surfaces are seen in a frame.
+pub(crate) struct Seen<'a> {
+    pub scene: &'a Scene,
+    pub cover: &'a SurfaceCover,
+    pub hollows: &'a Hollows,
+    /// Of the camera in the host's world, m.
+    pub position: DVec3,
+    pub time_s: f64,
+    /// 1/m; 0 for a flat world.
+    pub curvature: f64,
+    /// Optical depth of the fog straight up.
+    pub fog_depth: f64,
+    /// Steps of ndc to the next pixel to the right and below.
+    pub pixel: [f64; 2],
+    /// Rounding of the host's depth: absolute, and over its value.
+    pub depth_rounding: [f64; 2],
+    /// Most light that a pixel holds, cd/m^2.
+    pub most_cd_m2: f64,
+}
+
+fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
+    let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Depth of the hollows, in units of their root mean square, above which the share `covered` of the ground lies.
+fn level_of(covered: f64) -> f32 {
+    // Where there is no water no hollow holds any, however rare.
+    if covered <= 0.0 { 1e3 } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
+}
+
+impl Seen<'_> {
+    pub fn uniform(&self) -> GroundUniform {
+        let (scene, cover) = (self.scene, self.cover);
+        let rain = scene.conditions.precipitation.rain_mm_h;
+        let lamp = scene.brighter();
+        let lamp_lux = if std::ptr::eq(lamp, &scene.sun) { scene.ground.sun_lux } else { scene.ground.moon_lux };
+        let film = smooth(0.3, 1.0, cover.wetness);
+        let wind2 = 0.5 * 0.00512 * PUDDLE_SHARE_OF_SEA * scene.conditions.wind.speed_m_s();
+        let axes = pattern_axes(&scene.world_to_enu);
+        let at = DVec2::from(axes.map(|a| a.dot(self.position)));
+        let near = at.rem_euclid(DVec2::splat(PERIOD_M));
+        let cell = (near / RING_CELL_M).floor();
+        let slots = self.time_s / RING_SLOT_S;
+        let drops = ring_drops_per_m2_s(rain);
+        let [u, v] = axes.map(|a| (scene.world_to_enu * a).as_vec3().to_array());
+        let f = |c: [f64; 3]| c.map(|v| v as f32);
+        GroundUniform {
+            to_lamp: lamp.apparent.as_vec3().to_array(),
+            soaked: smooth(0.0, 0.6, cover.wetness) as f32,
+            lamp_lux: f(lamp_lux),
+            level: level_of(cover.puddles),
+            sky_lux: f(scene.ground.sky_lux),
+            entering: self.entering(lamp.apparent.z, lamp_lux[1]) as f32,
+            fog_light: f(scene.ground.sky_lux.map(|e| e / PI)),
+            fog_depth: self.fog_depth as f32,
+            ground_light: f([0, 1, 2].map(|i| {
+                let light = lamp_lux[i] * lamp.apparent.z.max(0.0) + scene.ground.sky_lux[i];
+                0.5 * scene.planet.ground_albedo[i] * light / PI
+            })),
+            film_level: level_of(film),
+            axis_u: u,
+            place_u: (near.x - cell.x * RING_CELL_M) as f32,
+            axis_v: v,
+            place_v: (near.y - cell.y * RING_CELL_M) as f32,
+            cell: [cell.x as u32, cell.y as u32],
+            slot: slots.floor().rem_euclid(f64::from(1u32 << 28)) as u32,
+            slot_share: (slots - slots.floor()) as f32,
+            film_slope: (THIN_FILM_SLOPE + (CLOSED_FILM_SLOPE - THIN_FILM_SLOPE) * film) as f32,
+            water_slope: wind2.sqrt() as f32,
+            ring_chance: (drops * RING_CELL_M * RING_CELL_M * RING_SLOT_S / RING_LAYERS).min(1.0) as f32,
+            pixel: self.pixel.map(|v| v as f32),
+            depth_step: self.depth_rounding[0] as f32,
+            depth_ulp: self.depth_rounding[1] as f32,
+            most: self.most_cd_m2 as f32,
+            curvature: self.curvature as f32,
+            ring_slope2: (RING_SLOPE2_PER_MM_H * rain.min(50.0)) as f32,
+            disc2: (lamp.angular_radius / 4.0).powi(2) as f32,
+            pad: 0.0,
+            waves: self.hollows.seen_from(at),
+        }
+    }
+
+    /// Share of the light on level ground that enters a surface of water.
+    fn entering(&self, lamp_z: f64, lamp_lux: f64) -> f64 {
+        let (lamp, sky) = (lamp_lux * lamp_z.max(0.0), self.scene.ground.sky_lux[1].max(1e-9));
+        let kept = lamp * fresnel_water(lamp_z.clamp(0.0, 1.0)) + sky * WATER_OUTSIDE;
+        1.0 - kept / (lamp + sky)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_agree_with_the_shader() {
+        let text = shader::assemble("ground/uniform.wgsl").unwrap();
+        let (size, members) = shader::struct_layout(&text, "GroundUniform").unwrap();
+        assert_eq!(size as usize, size_of::<GroundUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(
+                    members.contains(&(stringify!($field).into(), offset_of!(GroundUniform, $field) as u32)),
+                    "{}: {members:?}", stringify!($field)
+                );)*
+            };
+        }
+        same!(
+            to_lamp,
+            soaked,
+            lamp_lux,
+            level,
+            sky_lux,
+            entering,
+            fog_light,
+            fog_depth,
+            ground_light,
+            film_level,
+            axis_u
+        );
+        same!(place_u, axis_v, place_v, cell, slot, slot_share, film_slope, water_slope, ring_chance, most, pixel);
+        same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, waves);
+    }
+
+    #[test]
+    fn constants_agree_with_the_shader() {
+        let text = shader::assemble("ground/hollows.wgsl").unwrap();
+        let cells = (PERIOD_M / RING_CELL_M) as u32;
+        for line in [
+            format!("const HOLLOW_WAVES: u32 = {WAVES}u;"),
+            format!("const RING_CELL: f32 = {RING_CELL_M};"),
+            format!("const RING_CELLS: u32 = {cells}u;"),
+            format!("const RING_SLOT: f32 = {RING_SLOT_S};"),
+            format!("const RING_LAYERS: u32 = {RING_LAYERS}u;"),
+        ] {
+            assert!(text.contains(&line), "{line}");
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! A host that draws its pictures on the CPU: what each pixel's ray meets, exactly.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use welkin::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions, readback},
+    scene::{Camera, DepthMapping, ViewRays},
+    sky::SkySettings,
+    weather::{Surface, SurfaceState, Weather, Wind},
+};
+
+pub const SIZE: (u32, u32) = (160, 90);
+
+/// What a ray meets: metres along it, luminance.
+pub type Hit = Option<(f64, [f64; 3])>;
+
+pub struct Host {
+    pub device: Arc<Device>,
+    pub context: Context,
+    pub view: View,
+    pub color: wgpu::Texture,
+    pub depth: wgpu::Texture,
+    frame_id: u64,
+}
+
+fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+pub fn look(position: DVec3, azimuth_deg: f64, elevation_deg: f64, fov: f64) -> Camera {
+    let forward = welkin::sky::sun::direction(azimuth_deg, elevation_deg);
+    let up = if elevation_deg < -80.0 { DVec3::Y } else { DVec3::Z };
+    Camera::look_to(position, forward, up, fov, f64::from(SIZE.0) / f64::from(SIZE.1), 0.1)
+}
+
+/// The direction through pixel (x, y).
+pub fn ray(camera: &Camera, x: u32, y: u32) -> DVec3 {
+    rays(camera).view_ray(ndc(x, y)).direction
+}
+
+fn rays(camera: &Camera) -> ViewRays {
+    ViewRays::new(camera, &DepthMapping { reversed: true, ..Default::default() }).unwrap()
+}
+
+fn ndc(x: u32, y: u32) -> DVec2 {
+    let uv = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / DVec2::new(f64::from(SIZE.0), f64::from(SIZE.1));
+    DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)
+}
+
+/// Level ground at altitude 0 under `position`.
+pub fn ground(position: DVec3, direction: DVec3, luminance: [f64; 3]) -> Hit {
+    (direction.z < -1e-6).then(|| (-position.z / direction.z, luminance))
+}
+
+impl Host {
+    pub fn new() -> Self {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let shared = Arc::new(Shared::new(&device).unwrap());
+        // A coarse sky, built in an instant.
+        let sky = SkySettings {
+            orders: 4,
+            suns: 32,
+            altitudes: 14,
+            zeniths: 11,
+            azimuths: 7,
+            rule_zeniths: 6,
+            rule_azimuths: 8,
+            build_panels: 2,
+            ..SkySettings::default()
+        };
+        let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).unwrap();
+        context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
+        let view = View::new(&context).unwrap();
+        let color = texture(&device, wgpu::TextureFormat::Rgba32Float);
+        let depth = texture(&device, wgpu::TextureFormat::R32Float);
+        Self { device, context, view, color, depth, frame_id: 0 }
+    }
+
+    /// Calm weather over ground in this state.
+    pub fn ground_is(&mut self, state: SurfaceState) {
+        let surface = Surface { state: Some(state), ..Surface::default() };
+        let weather = Weather { surface, wind: Wind::of(0.0, 0.0), ..Weather::default() };
+        self.context.set_weather(&weather, self.context.time_s(), 0.0).unwrap();
+    }
+
+    /// The host's picture, before any weather.
+    pub fn paint(&self, camera: &Camera, meet: impl Fn(DVec3) -> Hit) {
+        let rays = rays(camera);
+        let (mut colors, mut depths) = (Vec::new(), Vec::new());
+        for y in 0..SIZE.1 {
+            for x in 0..SIZE.0 {
+                let hit = meet(rays.view_ray(ndc(x, y)).direction);
+                let c = hit.map_or([0.0; 3], |h| h.1);
+                colors.push([c[0] as f32, c[1] as f32, c[2] as f32, 1.0]);
+                depths.push(hit.map_or(0.0, |h| rays.depth_at(h.0, ndc(x, y)) as f32));
+            }
+        }
+        let layout = |bytes| wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(SIZE.0 * bytes),
+            rows_per_image: None,
+        };
+        let queue = &self.device.queue;
+        if self.color.format() == wgpu::TextureFormat::Rgba16Float {
+            let halves: Vec<[u16; 4]> = colors.iter().map(|c| c.map(|v| half::f16::from_f32(v).to_bits())).collect();
+            let bytes: &[u8] = bytemuck::cast_slice(&halves);
+            queue.write_texture(self.color.as_image_copy(), bytes, layout(8), self.color.size());
+        } else {
+            queue.write_texture(
+                self.color.as_image_copy(),
+                bytemuck::cast_slice(&colors),
+                layout(16),
+                self.color.size(),
+            );
+        }
+        queue.write_texture(self.depth.as_image_copy(), bytemuck::cast_slice(&depths), layout(4), self.depth.size());
+    }
+
+    pub fn use_half_floats(&mut self) {
+        self.color = texture(&self.device, wgpu::TextureFormat::Rgba16Float);
+    }
+
+    /// The picture with these stages drawn over it.
+    pub fn shoot(&mut self, camera: Camera, stages: Stages, meet: impl Fn(DVec3) -> Hit) -> Vec<[f32; 4]> {
+        self.paint(&camera, meet);
+        self.frame_id += 1;
+        self.record(camera, stages);
+        self.pixels()
+    }
+
+    pub fn record(&mut self, camera: Camera, stages: Stages) {
+        let frame = Frame::new(self.frame_id, camera, &self.color, Some(&self.depth));
+        self.view.record(&self.context, &frame, stages).unwrap();
+    }
+
+    pub fn next_frame(&mut self) -> u64 {
+        self.frame_id += 1;
+        self.frame_id
+    }
+
+    pub fn pixels(&self) -> Vec<[f32; 4]> {
+        readback::rgba(&self.device, &self.color).unwrap()
+    }
+}

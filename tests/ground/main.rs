@@ -1,0 +1,5 @@
+//! Water on the ground: as it is drawn onto a host's picture. One binary, so that it links once.
+
+mod drawn;
+mod host;
+mod mirrors;

@@ -1,0 +1,134 @@
+//! What water mirrors: the sky by Fresnel's law, lamps without end.
+
+use glam::{DVec2, DVec3};
+use welkin::{
+    context::GivenDirection,
+    frame::Stages,
+    ground::reference::{fresnel_water, normal_quantile},
+    weather::{CloudKind, CloudLayer, Surface, SurfaceState, Weather, Wind},
+};
+
+use crate::host::{Host, SIZE, ground, look, ray};
+
+/// A place in the middle of a puddle, deep enough that all round it is under water.
+fn puddle(host: &Host) -> DVec2 {
+    let level = normal_quantile(1.0 - 0.3);
+    let deep = |at: DVec2| host.context.hollows().depth(at) - level;
+    (0..10_000)
+        .map(|i| DVec2::new(f64::from(i % 100), f64::from(i / 100)) * 0.5)
+        .max_by(|a, b| deep(*a).total_cmp(&deep(*b)))
+        .unwrap()
+}
+
+#[test]
+fn a_puddle_mirrors_the_sky_by_fresnels_law() {
+    let mut host = Host::new();
+    host.ground_is(SurfaceState::StandingWater);
+    let at = puddle(&host);
+    for (azimuth, elevation) in [(320.0, 75.0), (320.0, 45.0), (30.0, 30.0), (250.0, 20.0), (0.0, 10.0), (90.0, 5.0)] {
+        let (sin, cos) = f64::to_radians(elevation).sin_cos();
+        // A metre from the water's middle, looking down at it.
+        let back = -welkin::sky::sun::direction(azimuth, 0.0) * cos + DVec3::Z * sin;
+        let eye = at.extend(0.0) + back;
+        let down = look(eye, azimuth, -elevation, 0.02);
+        let mirrored = host.shoot(down, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]));
+        let up = look(eye, azimuth, elevation, 0.02);
+        let sky = host.shoot(up, Stages::BACKGROUND, |_| None);
+        let middle = (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
+        let d = ray(&down, SIZE.0 / 2, SIZE.1 / 2);
+        for c in 0..3 {
+            let (got, want) = (mirrored[middle][c], fresnel_water(-d.z) as f32 * sky[middle][c]);
+            assert!((got / want - 1.0).abs() < 0.03, "{elevation} deg, channel {c}: {got}, want {want}");
+        }
+    }
+}
+
+#[test]
+fn an_overcast_sky_is_mirrored_as_the_deck() {
+    let mut host = Host::new();
+    let surface = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
+    let clouds = vec![CloudLayer::of(CloudKind::Stratus, 1.0, 600.0)];
+    let weather = Weather { surface, clouds, wind: Wind::of(0.0, 0.0), ..Weather::default() };
+    host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+    let at = puddle(&host);
+    let eye = at.extend(0.0) + DVec3::new(0.0, -0.8, 0.6);
+    let elevation = 0.6f64.asin().to_degrees();
+    let mirrored = host.shoot(look(eye, 0.0, -elevation, 0.02), Stages::SURFACE, |d| ground(eye, d, [0.0; 3]));
+    let sky = host.shoot(look(eye, 0.0, elevation, 0.02), Stages::BACKGROUND, |_| None);
+    let middle = (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
+    let (got, want) = (mirrored[middle][1], fresnel_water(0.6) as f32 * sky[middle][1]);
+    assert!((got / want - 1.0).abs() < 0.03, "{got}, want {want}");
+}
+
+#[test]
+fn the_sun_in_a_puddle_is_bright_and_finite() {
+    let mut host = Host::new();
+    host.use_half_floats();
+    host.ground_is(SurfaceState::StandingWater);
+    let at = puddle(&host);
+    for elevation in [1.0, 10.0, 40.0, 80.0] {
+        host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: elevation })).unwrap();
+        let (sin, cos) = f64::to_radians(elevation).sin_cos();
+        let eye = at.extend(0.0) + DVec3::new(0.0, -cos, sin);
+        let pixels = host.shoot(look(eye, 0.0, -elevation, 0.2), Stages::SURFACE, |d| ground(eye, d, [100.0; 3]));
+        let brightest = pixels.iter().fold(0f32, |m, p| m.max(p[1]));
+        assert!(pixels.iter().all(|p| p.iter().all(|v| v.is_finite() && *v >= 0.0)), "{elevation}");
+        assert!(brightest > 2e4, "the sun shines in the water at {elevation}: {brightest}");
+    }
+}
+
+#[test]
+fn a_rough_film_spreads_the_suns_light_and_keeps_its_sum() {
+    // The mirrored lamp's light over all directions is what the film mirrors of its illuminance: here from straight above,
+    // sum of L cos over a wide look down = F(0) E.
+    let mut host = Host::new();
+    host.ground_is(SurfaceState::Wet);
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 90.0 })).unwrap();
+    let eye = DVec3::new(0.0, 0.0, 2.0);
+    let camera = look(eye, 0.0, -90.0, 2.2);
+    let with_sun = host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]));
+    let lux = host.context.scene_at(eye, 0.0).unwrap().ground.sun_lux[1];
+    let (mut sum, mut solid) = (0.0, 0.0);
+    let scale = 2.0 * (1.1f64).tan() / f64::from(SIZE.1);
+    for y in 0..SIZE.1 {
+        for x in 0..SIZE.0 {
+            let d = ray(&camera, x, y);
+            // A pixel's solid angle is its area times cos^3.
+            let angle = scale * scale * (-d.z).powi(3);
+            sum += f64::from(with_sun[(y * SIZE.0 + x) as usize][1]) * -d.z * angle;
+            solid += -d.z * angle;
+        }
+    }
+    let want = fresnel_water(1.0) * lux;
+    // The sky's own share, about 0.03 of a mean luminance of some thousand cd/m^2, is in the sum.
+    let sky = 0.03 * host.context.scene_at(eye, 0.0).unwrap().ground.sky_lux[1] * solid / std::f64::consts::PI;
+    assert!(((sum - sky) / want - 1.0).abs() < 0.15, "{} want {want}", sum - sky);
+}
+
+#[test]
+fn rings_follow_time_and_rate() {
+    let mut host = Host::new();
+    let mut roughness = Vec::new();
+    for (i, rate) in [0.0, 1.0, 5.0].into_iter().enumerate() {
+        let mut weather = Weather::preset("rain").unwrap();
+        weather.precipitation.rate_mm_h = rate;
+        weather.wind = Wind::of(0.0, 0.0);
+        weather.surface.state = Some(SurfaceState::StandingWater);
+        host.context.set_weather(&weather, host.context.time_s(), 0.0).unwrap();
+        host.context.update(f64::from(i as u32) + 0.3).unwrap();
+        let at = puddle(&host);
+        let eye = at.extend(0.0) + DVec3::new(0.0, -0.9, 0.7);
+        let camera = look(eye, 0.0, -37.9, 0.4);
+        let picture = |host: &mut Host| host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]));
+        let first = picture(&mut host);
+        assert_eq!(first, picture(&mut host), "time stands");
+        // The light against that of water without rings a column away: 0 without rings.
+        let differs = |a: &[f32; 4], b: &[f32; 4]| (a[1] - b[1]).abs() > 0.02 * a[1];
+        let rough = first.windows(2).filter(|p| differs(&p[0], &p[1])).count();
+        roughness.push(rough as f64 / first.len() as f64);
+        host.context.update(host.context.time_s() + 0.1).unwrap();
+        let moved = first.iter().zip(picture(&mut host)).filter(|(a, b)| differs(a, b)).count();
+        assert_eq!(moved > 300, rate > 0.0, "{rate} mm/h: {moved}");
+    }
+    assert!(roughness[0] < 0.02 && roughness[2] > 3.0 * roughness[1] && roughness[1] > 0.01, "{roughness:?}");
+}
