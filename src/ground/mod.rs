@@ -14,6 +14,8 @@
 mod hollows;
 pub mod reference;
 mod uniform;
+pub mod water;
 
 pub use hollows::Hollows;
 pub(crate) use uniform::{GroundUniform, Seen};
+pub use water::GroundWater;

@@ -67,6 +67,16 @@ pub fn ring_drops_per_m2_s(rain_mm_h: f64) -> f64 {
 /// Drops above this diameter make a ring that is drawn, mm.
 pub const RING_DIAMETER_MM: f64 = 1.8;
 
+/// Density of the normal distribution.
+pub fn normal_density(x: f64) -> f64 {
+    libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt()
+}
+
+/// The normal distribution function.
+pub fn normal_share(x: f64) -> f64 {
+    0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
+}
+
 /// Quantile of the normal distribution for a probability in (0, 1) (Acklam 2003, relative error below 1.2e-9).
 pub fn normal_quantile(p: f64) -> f64 {
     const A: [f64; 6] = [

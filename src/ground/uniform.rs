@@ -108,7 +108,7 @@ impl Seen<'_> {
         let f = |c: [f64; 3]| c.map(|v| v as f32);
         GroundUniform {
             to_lamp: lamp.apparent.as_vec3().to_array(),
-            soaked: smooth(0.0, 0.6, cover.wetness) as f32,
+            soaked: smooth(0.0, 0.3, cover.wetness) as f32,
             lamp_lux: f(lamp_lux),
             level: level_of(cover.puddles),
             sky_lux: f(scene.ground.sky_lux),

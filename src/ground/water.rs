@@ -1,0 +1,272 @@
+//! Water on and in the ground as a state: a film, what the pores hold, what stands in hollows; millimetres over level, open
+//! ground.
+//!
+//! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often it is
+//! asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away, hollows leak and
+//! overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no step can overshoot.
+//! Not in it: freezing and thawing, dew, the host's terrain and roofs.
+
+use super::reference::{normal_density, normal_quantile, normal_share};
+use crate::weather::{Conditions, SurfaceCover, saturation_pressure_hpa};
+
+/// Length of a step, s.
+pub const STEP_S: f64 = 10.0;
+
+/// What the pores of the uppermost ground hold, mm (asphalt: initial losses of 0.3 to 0.6 mm).
+const PORES_MM: f64 = 0.4;
+/// Time in which dry pores take up most of what lies on them, s.
+const SOAK_S: f64 = 90.0;
+/// Run-off of a film, Nusselt (1916): g sin(slope) / (3 nu) film^3 a metre of width, on a slope of 2 % and 5 m length; mm^-2
+/// s^-1.
+const RUN_OFF: f64 = 9.81 * 0.02 / (3.0 * 1.3e-6) / 5.0 * 1e-6;
+/// Share of the run-off that meets a hollow.
+const INTO_HOLLOWS: f64 = 0.4;
+/// Root mean square depth of hollows, mm.
+const HOLLOW_MM: f64 = 6.0;
+/// Share of the ground under water when the hollows overflow.
+const OVERFLOW_SHARE: f64 = 0.35;
+/// What hollows lose to the ground below, mm/h.
+const LEAK_MM_H: f64 = 0.4;
+/// Film at which 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
+const FILM_MM: f64 = 0.15;
+/// Wetness of soaked ground without a film ([`SurfaceCover::wetness`]: damp).
+const DAMP: f64 = 0.3;
+
+/// Water on level, open ground.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct GroundWater {
+    /// Water between and on the grains, mm.
+    pub film_mm: f64,
+    /// Water in the pores, mm, \[0, 0.4\].
+    pub soaked_mm: f64,
+    /// Water in the hollows, mm over all of the ground.
+    pub hollows_mm: f64,
+}
+
+/// What acts on the ground during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forcing {
+    /// Liquid that falls, mm/h.
+    pub liquid_mm_h: f64,
+    /// What open water evaporates, mm/h.
+    pub evaporation_mm_h: f64,
+}
+
+impl Forcing {
+    /// That of `c` with this sunlight on level ground, W/m^2.
+    pub fn of(c: &Conditions, sunlight_w_m2: f64) -> Self {
+        let f = &c.precipitation;
+        let melting = if c.air.temperature_c > 0.0 { f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h } else { 0.0 };
+        let liquid_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing) + melting;
+        Self { liquid_mm_h, evaporation_mm_h: evaporation_mm_h(c, sunlight_w_m2) }
+    }
+}
+
+/// Evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with Penman's net long-wave
+/// loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N), e in mmHg, n/N the share of clear sky, and an albedo of 0.08.
+pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
+    let (t, humidity) = (c.air.temperature_c, c.air.relative_humidity);
+    let saturated = 0.1 * saturation_pressure_hpa(t);
+    let slope = saturated * 17.62 * 243.12 / (243.12 + t).powi(2);
+    let psychrometric = 0.665e-3 * 0.1 * c.air.station_pressure_hpa;
+    let vapour_mm_hg = humidity * saturated / 0.133_322;
+    let kelvin = t + 273.15;
+    let clear = 1.0 - c.cloud_cover();
+    let long_wave = 5.67e-8 * kelvin.powi(4) * (0.56 - 0.092 * vapour_mm_hg.sqrt()).max(0.0) * (0.1 + 0.9 * clear);
+    // MJ a square metre and day.
+    let net = (0.92 * sunlight_w_m2 - long_wave) * 0.0864;
+    let wind = 6.43 * (1.0 + 0.536 * c.wind.speed_at_height_m_s(2.0));
+    let deficit = saturated * (1.0 - humidity).max(0.0);
+    let mm_a_day = (slope * net + psychrometric * wind * deficit) / (2.45 * (slope + psychrometric));
+    (mm_a_day / 24.0).max(0.0)
+}
+
+/// Water over all of the ground, mm, that stands in hollows of which the share `covered` is under water.
+fn hollows_mm(covered: f64) -> f64 {
+    if covered <= 0.0 {
+        return 0.0;
+    }
+    let level = normal_quantile(1.0 - covered);
+    HOLLOW_MM * (normal_density(level) - level * covered)
+}
+
+/// The inverse of [`hollows_mm`], by bisection of the level.
+fn covered_by(water_mm: f64) -> f64 {
+    if water_mm <= 0.0 {
+        return 0.0;
+    }
+    let wanted = water_mm / HOLLOW_MM;
+    let (mut low, mut high) = (-1.0, 7.0);
+    for _ in 0..48 {
+        let level = 0.5 * (low + high);
+        let holds = normal_density(level) - level * normal_share(-level);
+        if holds > wanted { low = level } else { high = level }
+    }
+    normal_share(-0.5 * (low + high)).min(OVERFLOW_SHARE)
+}
+
+impl GroundWater {
+    /// The water of a ground that looks like this.
+    pub fn of_cover(cover: &SurfaceCover) -> Self {
+        let film = ((cover.wetness - DAMP) / (1.0 - DAMP)).clamp(0.0, 0.95);
+        Self {
+            film_mm: -FILM_MM * libm::log(1.0 - film),
+            soaked_mm: PORES_MM * (cover.wetness / DAMP).clamp(0.0, 1.0),
+            hollows_mm: hollows_mm(cover.puddles.clamp(0.0, OVERFLOW_SHARE)),
+        }
+    }
+
+    /// All of it, mm.
+    pub fn total_mm(&self) -> f64 {
+        self.film_mm + self.soaked_mm + self.hollows_mm
+    }
+
+    /// How it looks: wetness and share of puddles.
+    pub fn cover(&self) -> (f64, f64) {
+        let film = 1.0 - libm::exp(-self.film_mm / FILM_MM);
+        (DAMP * self.soaked_mm / PORES_MM + (1.0 - DAMP) * film, covered_by(self.hollows_mm))
+    }
+
+    /// The state `seconds` later under this forcing.
+    pub fn after(&self, forcing: &Forcing, seconds: f64) -> Self {
+        let hours = seconds / 3600.0;
+        let mut next = *self;
+        // Half of the rain before the run-off, half after it: right to second order.
+        let half = 0.5 * forcing.liquid_mm_h * hours;
+        next.film_mm += half;
+        let room = (PORES_MM - next.soaked_mm) * (1.0 - libm::exp(-seconds / SOAK_S));
+        let soaked = next.film_mm.min(room);
+        next.film_mm -= soaked;
+        next.soaked_mm += soaked;
+        // d film / dt = - k film^3, solved.
+        let run = 1.0 + 2.0 * RUN_OFF * next.film_mm * next.film_mm * seconds;
+        let left = next.film_mm / run.sqrt();
+        next.hollows_mm += INTO_HOLLOWS * (next.film_mm - left);
+        next.film_mm = left + half;
+        next.hollows_mm = next.hollows_mm.min(hollows_mm(OVERFLOW_SHARE));
+        next.dried(forcing.evaporation_mm_h * hours, LEAK_MM_H * hours)
+    }
+
+    /// What is left after `evaporated` mm of open water's evaporation and `leaked` mm from below the hollows.
+    fn dried(mut self, evaporated: f64, leaked: f64) -> Self {
+        let covered = covered_by(self.hollows_mm);
+        self.hollows_mm = (self.hollows_mm - (evaporated + leaked) * covered).max(0.0);
+        // The last of a puddle is a film in a crack.
+        if self.hollows_mm < 1e-4 {
+            self.hollows_mm = 0.0;
+        }
+        let from_film = self.film_mm.min(evaporated);
+        self.film_mm -= from_film;
+        // Pores give up water ever more slowly, at a rate that falls with what is left.
+        self.soaked_mm *= libm::exp(-(evaporated - from_film) / PORES_MM);
+        if self.soaked_mm < 1e-4 {
+            self.soaked_mm = 0.0;
+        }
+        self
+    }
+}
+
+/// Depth of water, mm, at a point of a ground under `water` whose hollow there is `hollow` deep, in units of their root mean
+/// square: the film, or the water that stands in it.
+pub fn depth_at_mm(water: &GroundWater, hollow: f64) -> f64 {
+    let covered = covered_by(water.hollows_mm);
+    if covered <= 0.0 {
+        return water.film_mm;
+    }
+    water.film_mm + HOLLOW_MM * (hollow - normal_quantile(1.0 - covered)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weather::{Weather, derive};
+
+    fn conditions(temperature_c: f64, relative_humidity: f64, wind: f64) -> Conditions {
+        let mut w = Weather { temperature_c, relative_humidity, ..Weather::default() };
+        w.wind.speed_m_s = wind;
+        derive(&w).unwrap()
+    }
+
+    const WET: GroundWater = GroundWater { film_mm: 0.8, soaked_mm: PORES_MM, hollows_mm: 0.7 };
+
+    #[test]
+    fn open_water_evaporates_as_penman_says() {
+        // By hand, 20 C, humidity 0.5, 3 m/s at 2 m, 1013.25 hPa, clear, 600 W/m^2: es 2.336 kPa (WMO), slope 0.1445, psychrometric
+        // 0.0674 kPa/K, e 8.76 mmHg, long wave 5.67e-8 293.15^4 (0.56 - 0.2723) = 120.5 W/m^2, net 37.28 MJ/d, wind 16.77:
+        // (5.387 + 1.320) / (2.45 0.2119) = 12.92 mm/d.
+        let c = conditions(20.0, 0.5, 3.0 * (10.0f64 / 0.03).ln() / (2.0f64 / 0.03).ln());
+        let got = 24.0 * evaporation_mm_h(&c, 600.0);
+        assert!((got / 12.92 - 1.0).abs() < 0.02, "{got}");
+        let at = |t, h, u, sun| evaporation_mm_h(&conditions(t, h, u), sun);
+        assert!(at(20.0, 0.5, 8.0, 300.0) > at(20.0, 0.5, 2.0, 300.0), "wind dries");
+        assert!(at(20.0, 0.5, 2.0, 600.0) > at(20.0, 0.5, 2.0, 0.0), "the sun dries");
+        assert!(at(20.0, 0.9, 5.0, 0.0) < at(20.0, 0.4, 5.0, 0.0), "damp air does not");
+        assert_eq!(at(5.0, 1.0, 3.0, 0.0), 0.0, "nor does saturated air at night");
+    }
+
+    #[test]
+    fn water_in_hollows_and_the_share_under_it_are_each_others_inverse() {
+        for share in [0.01, 0.1, 0.25, 0.349] {
+            assert!((covered_by(hollows_mm(share)) - share).abs() < 1e-6, "{share}: {}", covered_by(hollows_mm(share)));
+        }
+        assert_eq!((covered_by(0.0), hollows_mm(0.0)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn no_water_comes_from_nowhere() {
+        let rain = Forcing { liquid_mm_h: 6.0, evaporation_mm_h: 0.1 };
+        let mut water = GroundWater::default();
+        for i in 1..2000 {
+            let before = water;
+            water = water.after(&rain, STEP_S);
+            let gained = rain.liquid_mm_h * STEP_S / 3600.0;
+            assert!(water.total_mm() <= before.total_mm() + gained + 1e-12, "step {i}");
+            assert!(water.film_mm >= 0.0 && water.soaked_mm >= 0.0 && water.hollows_mm >= 0.0);
+        }
+        // 6 mm/h at rest: what falls runs off, k F^3 = R.
+        let film = (6.0 / 3600.0 / RUN_OFF).cbrt();
+        assert!((water.film_mm / film - 1.0).abs() < 0.02, "{} {film}", water.film_mm);
+        let (wetness, puddles) = water.cover();
+        assert!(wetness > 0.9 && puddles > 0.3, "{wetness} {puddles}");
+    }
+
+    #[test]
+    fn drying_is_monotone_and_ends() {
+        let dry = Forcing { liquid_mm_h: 0.0, evaporation_mm_h: 0.4 };
+        let mut water = WET;
+        let mut hours = 0.0;
+        while water.total_mm() > 0.0 && hours < 100.0 {
+            let next = water.after(&dry, STEP_S);
+            assert!(next.film_mm <= water.film_mm && next.soaked_mm <= water.soaked_mm);
+            assert!(next.total_mm() < water.total_mm() && next.cover().0 <= water.cover().0);
+            (water, hours) = (next, hours + STEP_S / 3600.0);
+        }
+        assert!((2.0..60.0).contains(&hours), "{hours} h");
+    }
+
+    #[test]
+    fn a_long_step_is_stable_and_close_to_short_ones() {
+        let f = Forcing { liquid_mm_h: 2.0, evaporation_mm_h: 0.2 };
+        let fine = (0..3600).fold(WET, |w, _| w.after(&f, 1.0));
+        let coarse = (0..360).fold(WET, |w, _| w.after(&f, STEP_S));
+        assert!((fine.film_mm / coarse.film_mm - 1.0).abs() < 0.02, "{fine:?} {coarse:?}");
+        assert!((fine.hollows_mm / coarse.hollows_mm - 1.0).abs() < 0.02, "{fine:?} {coarse:?}");
+        let huge = WET.after(&Forcing { liquid_mm_h: 500.0, evaporation_mm_h: 2.0 }, 1e6);
+        assert!(huge.total_mm().is_finite() && huge.film_mm >= 0.0 && huge.hollows_mm <= hollows_mm(OVERFLOW_SHARE));
+    }
+
+    #[test]
+    fn a_reported_ground_has_water_that_looks_like_it() {
+        for (wetness, puddles) in [(0.0, 0.0), (0.3, 0.0), (0.7, 0.1), (0.95, 0.3)] {
+            let cover = SurfaceCover { wetness, puddles, ice: 0.0, snow_depth_m: 0.0 };
+            let (w, p) = GroundWater::of_cover(&cover).cover();
+            assert!((w - wetness).abs() < 1e-6 && (p - puddles).abs() < 1e-6, "{wetness} {puddles}: {w} {p}");
+        }
+    }
+
+    #[test]
+    fn water_is_deepest_in_the_hollows() {
+        assert_eq!(depth_at_mm(&WET, -1.0), WET.film_mm);
+        assert!(depth_at_mm(&WET, 2.0) > 5.0 && depth_at_mm(&WET, 2.0) < 15.0, "{}", depth_at_mm(&WET, 2.0));
+    }
+}
