@@ -1,6 +1,6 @@
 //! Rain: sized by its rate, falling at the speeds that drops have, each drop where (seed, id, time) puts it.
 //!
-//! The model: [`drops`] has the physics in f64. [`lattice`] has the places: a repeated cell of air full of drops that a camera
+//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many. [`lattice`] has the places: a repeated cell of air full of drops that a camera
 //! sees the nearest copy of, with no state and no update. One quad draws a drop's streak, as faint as the drop's disc is
 //! small against the way it falls during the exposure; streaks make a layer of their own, which the composition puts before
 //! the picture. What is too small or too far for a drop is the fog's extinction.
@@ -10,6 +10,7 @@ pub mod lattice;
 mod passes;
 mod settings;
 pub mod shelter;
+pub mod sizes;
 mod splash;
 mod uniforms;
 

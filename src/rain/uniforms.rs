@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec3};
 
 use super::{
-    drops,
     lattice::{CLASSES, FADE, Moment, SHELLS, SIDE_M, SPEED_UNIT, short_seed, side_m},
+    sizes::DropSizes,
 };
 use crate::{
     scene::{DepthUniform, ViewRays},
@@ -56,16 +56,15 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Of what falls at an altitude that makes drops faster by `density_factor` ([`drops::altitude_factor`]), at most `most`
+    /// Of what falls at an altitude that makes drops faster by `density_factor` ([`super::drops::factor_in`]), at most `most`
     /// drops in all shells together.
     pub fn new(falling: &Falling, density_factor: f64, most: u32) -> Self {
         let (low, high) = DRAWN_MM;
         let step = (high / low).powf(1.0 / CLASSES as f64);
         let edges = |k: usize| low * step.powi(k as i32);
         let volume = SIDE_M.powi(3);
-        let spectra = drops::spectra(falling);
-        let between = |a: f64, b: f64| spectra.iter().flatten().map(|s| s.number_between(a, b)).sum::<f64>();
-        let number: [f64; CLASSES] = std::array::from_fn(|k| volume / density_factor * between(edges(k), edges(k + 1)));
+        let sizes = DropSizes::new(falling, density_factor);
+        let number: [f64; CLASSES] = std::array::from_fn(|k| volume * sizes.number_between(edges(k), edges(k + 1)));
         let all: f64 = number.iter().sum();
         let share = (f64::from(most) / SHELLS as f64 / all.max(1.0)).min(1.0);
         let mut upto = 0.0f64;
@@ -74,7 +73,7 @@ impl Classes {
         let table: [[f32; 4]; CLASSES] = std::array::from_fn(|k| {
             upto += number[k] * share;
             let d = (edges(k) * edges(k + 1)).sqrt();
-            let speed = drops::terminal_speed_m_s(d) * density_factor;
+            let speed = sizes.speed_m_s(d);
             flux[k] = (d, speed, number[k] / volume * speed);
             extinction += number[k] / volume * std::f64::consts::FRAC_PI_2 * d * d * 1e-6;
             [(d * 1e-3) as f32, (speed / SPEED_UNIT).round() as f32, upto.floor() as f32, 0.0]
