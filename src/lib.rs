@@ -17,5 +17,6 @@ pub mod rain;
 pub mod scene;
 pub mod sky;
 pub mod weather;
+pub mod wind;
 
 pub use error::{Error, Result, Status};

@@ -12,10 +12,11 @@ use crate::{
 /// Altitudes above the sea.
 ///
 /// One layer holds both, so that a reported visibility is the drawn one at the station: rain or snow alone fills the air
-/// up to the lowest cloud; with fog, the denser of the two gives the shape.
-pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
+/// up to the lowest cloud; with fog, the denser of the two gives the shape. Patches go with the air: `drift_m` is how far
+/// the wind has carried it (east, north).
+pub fn fog_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let falling = c.precipitation.extinction_per_m;
-    let fog = ground_layer(c, seed);
+    let fog = ground_layer(c, seed, drift_m);
     if falling <= 0.0 {
         return fog;
     }
@@ -33,12 +34,12 @@ pub fn fog_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
 }
 
 /// Where the falling begins: the lowest cloud's base, at least 100 m up; 2 km if no cloud is known.
-fn falling_top_m(c: &Conditions) -> f64 {
+pub(super) fn falling_top_m(c: &Conditions) -> f64 {
     let lowest = c.cloud_slabs().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
     c.air.station_altitude_m + if lowest.is_finite() { lowest.max(100.0) } else { 2000.0 }
 }
 
-fn ground_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
+fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let f = &c.fog;
     if f.extinction_per_m <= 0.0 {
         return None;
@@ -63,8 +64,7 @@ fn ground_layer(c: &Conditions, seed: u64) -> Option<FogLayer> {
     // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part of
     // the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
     let inside = 1.0 - amount * f.coverage.max(0.01).ln();
-    let patches =
-        (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m: [0.0; 2] });
+    let patches = (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m });
     // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
     let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
     let exponent = f.angstrom_exponent - c.aerosol.absorption_angstrom_exponent;
@@ -93,7 +93,7 @@ pub(super) fn through_fog(
     above: ([[f64; 3]; 3], [f64; 3]),
 ) -> Result<[[f64; 3]; 3]> {
     let ([sun_lux, moon_lux, sky_lux], ground_albedo) = above;
-    let Some(layer) = fog_layer(c, 0) else { return Ok(above.0) };
+    let Some(layer) = fog_layer(c, 0, [0.0; 2]) else { return Ok(above.0) };
     let law = Law::Layer(FogLayer { patches: None, ..layer });
     let view = viewpoint(place, c, [0.0; 2], f64::INFINITY);
     let under = |light: &Light, lux, sky| -> Result<[[f64; 3]; 2]> {
@@ -115,7 +115,7 @@ impl Scene {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
-        let own = fog_layer(&self.conditions, seed).map_or(Law::Clear, Law::Layer);
+        let own = fog_layer(&self.conditions, seed, self.drift_m).map_or(Law::Clear, Law::Layer);
         let light = self.brighter();
         let lux = if light == &self.sun { self.above_fog.sun_lux } else { self.above_fog.moon_lux };
         let light = FogLight {
@@ -157,7 +157,8 @@ mod tests {
                 let c = derive(&w).unwrap();
                 let eye = Viewpoint::flat(c.air.station_altitude_m + 0.5);
                 let level = DVec3::X * visibility;
-                let layer = fog_layer(&c, 1).map_or(1.0, |l| transmittance_between(&l, &eye, level).unwrap()[1]);
+                let layer =
+                    fog_layer(&c, 1, [0.0; 2]).map_or(1.0, |l| transmittance_between(&l, &eye, level).unwrap()[1]);
                 let others = c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m;
                 let contrast = layer * (-others * visibility).exp();
                 assert!((contrast - 0.05).abs() < 1e-6, "{kind:?} {visibility} m {fall:?}: {contrast}");

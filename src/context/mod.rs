@@ -7,9 +7,11 @@ mod air;
 mod fog;
 mod lights;
 mod queries;
+mod rain;
 mod scene;
 mod sky;
 mod state;
+mod wind;
 
 use std::{
     path::PathBuf,
@@ -20,6 +22,7 @@ use glam::DVec3;
 
 pub use lights::Light;
 pub use queries::{Between, LightAt};
+pub use rain::{RainAt, RainOn, RainSurface};
 pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;
 
@@ -37,6 +40,7 @@ use crate::{
         sun::{Utc, direction},
     },
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
+    wind::{Drift, Wind},
 };
 
 /// How to make a context.
@@ -110,6 +114,9 @@ pub struct Context {
     color: [[f64; 3]; 3],
     desc: ContextDesc,
     timeline: Timeline,
+    wind: Wind,
+    /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
+    drifted: Drift,
     given_sun: Option<GivenDirection>,
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
@@ -139,6 +146,8 @@ impl Context {
             shared,
             sky,
             color,
+            wind: Wind::new(desc.seed),
+            drifted: Drift::ZERO,
             desc,
             timeline,
             given_sun: None,
@@ -222,11 +231,6 @@ impl Context {
         }
         self.fog_law = law;
         Ok(())
-    }
-
-    /// The wind's run from time 0 to `time_s`, m east and north: see [`Timeline::wind_run_m`].
-    pub fn wind_run_m(&self, time_s: f64) -> [f64; 2] {
-        self.timeline.wind_run_m(time_s)
     }
 
     /// What keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every frame.
@@ -336,6 +340,7 @@ impl Context {
             return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
         }
         self.time_s = time_s;
+        self.drifted = self.drifted.kept(&self.wind, &self.timeline, time_s);
         self.timeline.advance(time_s);
         Ok(())
     }

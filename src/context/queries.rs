@@ -62,7 +62,7 @@ impl Context {
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
-        if let Some(layer) = fog_layer(&scene.conditions, self.desc.seed) {
+        if let Some(layer) = fog_layer(&scene.conditions, self.desc.seed, scene.drift_m) {
             let view = Viewpoint {
                 altitude_m: scene.place.altitude_m,
                 map_m: scene.map_m,
@@ -96,7 +96,7 @@ impl Context {
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
         // Clouds and fog turn the clear sky's pattern into an even one of the light that they let through.
-        let through = match fog_layer(&scene.conditions, 0) {
+        let through = match fog_layer(&scene.conditions, 0, scene.drift_m) {
             Some(layer) if scene.ground != scene.above_fog => {
                 let layer = FogLayer { patches: None, ..layer };
                 transmittance_between(&layer, &Viewpoint::flat(scene.place.altitude_m), DVec3::Z * 1e5)?[1]

@@ -42,6 +42,8 @@ pub struct Scene {
     pub world_to_enu: DMat3,
     /// Place on the map, m east and north of the world's origin.
     pub map_m: [f64; 2],
+    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]).
+    pub drift_m: [f64; 2],
     /// The weather there.
     pub conditions: Conditions,
     /// The planet's air under that weather.
@@ -219,6 +221,7 @@ impl Context {
             place: local.place,
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position, &local),
+            drift_m: self.wind_displacement(time_s)?.truncate().to_array(),
             color: self.color,
             planet,
             sun,

@@ -1,5 +1,6 @@
 //! Saving a context and taking it up again, and a number by which channels compare theirs.
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::{Context, GivenDirection};
@@ -7,6 +8,7 @@ use crate::{
     error::{Error, Result, Status, check_range},
     sky::sun::Utc,
     weather::Timeline,
+    wind::Drift,
 };
 
 const VERSION: u32 = 1;
@@ -22,11 +24,27 @@ struct Saved {
     sun: Option<[f64; 2]>,
     moon: Option<[f64; 2]>,
     timeline: String,
+    /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drifted: Option<[f64; 4]>,
+}
+
+/// Where counting goes on: at the end of what `timeline` has forgotten. States written before there was a drift begin there
+/// anew.
+fn drifted_from(saved: Option<[f64; 4]>, timeline: &Timeline) -> std::result::Result<Drift, &'static str> {
+    let Some([time_s, path_m, east, north]) = saved else {
+        let forgotten = timeline.known_from_s();
+        return Ok(if timeline.known_since_ever() { Drift::ZERO } else { Drift { time_s: forgotten, ..Drift::ZERO } });
+    };
+    let sound = [path_m, east, north].iter().all(|v| v.is_finite()) && time_s == timeline.known_from_s();
+    let drift = Drift { time_s, path_m, displacement_m: DVec2::new(east, north) };
+    sound.then_some(drift).ok_or("drifted must be finite and belong to the end of what the timeline has forgotten")
 }
 
 impl Context {
     fn saved(&self) -> Result<String> {
         let angles = |g: Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
+        let drifted = self.drifted();
         let saved = Saved {
             version: VERSION,
             time_s: self.time_s,
@@ -36,6 +54,10 @@ impl Context {
             sun: angles(self.given_sun),
             moon: angles(self.given_moon),
             timeline: self.timeline.save()?,
+            drifted: (drifted != Drift::ZERO).then(|| {
+                let d = drifted.displacement_m;
+                [drifted.time_s, drifted.path_m, d.x, d.y]
+            }),
         };
         toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
     }
@@ -77,7 +99,8 @@ impl Context {
         crate::sky::sun::sun_position(Utc(saved.utc_at_zero), &self.desc.world.origin)?;
         let (sun, moon) = (given("sun", saved.sun)?, given("moon", saved.moon)?);
         let timeline = Timeline::load(&saved.timeline)?;
-        self.timeline = timeline;
+        let drifted = drifted_from(saved.drifted, &timeline).map_err(|e| parse(&e))?;
+        (self.timeline, self.drifted) = (timeline, drifted);
         (self.given_sun, self.given_moon) = (sun, moon);
         self.time_s = saved.time_s;
         self.desc.utc_at_zero = Utc(saved.utc_at_zero);

@@ -159,7 +159,8 @@ impl CloudLightOverride {
 }
 
 impl WindProfile {
-    fn blend(&self, to: &Self, t: f64) -> Self {
+    /// As in [`Conditions::lerp`].
+    pub(crate) fn blend(&self, to: &Self, t: f64) -> Self {
         Self {
             east_m_s: mix(self.east_m_s, to.east_m_s, t),
             north_m_s: mix(self.north_m_s, to.north_m_s, t),

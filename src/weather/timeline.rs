@@ -14,31 +14,28 @@ const VERSION: u32 = 1;
 /// Most changes that are under way or to come.
 const MAX_CHANGES: usize = 1024;
 
-/// Positive nodes and weights of Gauss and Legendre's rule with 8 points (Abramowitz and Stegun 1964, table 25.4).
-const GAUSS_8: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
-];
-
 /// One change: towards `to`, from `start_s` on, for `transition_s`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Change {
-    start_s: f64,
+pub(crate) struct Change {
+    pub(crate) start_s: f64,
     transition_s: f64,
-    to: Conditions,
+    pub(crate) to: Conditions,
 }
 
 impl Change {
     /// Share of the change that has happened at `t`: 3x^2 - 2x^3, at rest at both ends.
-    fn share(&self, t: f64) -> f64 {
-        if t >= self.start_s + self.transition_s {
+    pub(crate) fn share(&self, t: f64) -> f64 {
+        if t >= self.end_s() {
             return 1.0;
         }
         let x = ((t - self.start_s) / self.transition_s).clamp(0.0, 1.0);
         x * x * (3.0 - 2.0 * x)
+    }
+
+    /// When it is over, s.
+    pub(crate) fn end_s(&self) -> f64 {
+        self.start_s + self.transition_s
     }
 }
 
@@ -57,11 +54,6 @@ pub struct Timeline {
     #[serde(default = "always", skip_serializing_if = "is_always")]
     known_from_s: f64,
     base: Conditions,
-    /// Time up to which `run_m` counts, s, and the wind's run from time 0 to it, m east and north.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    run_to_s: f64,
-    #[serde(default, skip_serializing_if = "are_zero")]
-    run_m: [f64; 2],
     #[serde(default)]
     changes: Vec<Change>,
 }
@@ -74,26 +66,10 @@ fn is_always(time_s: &f64) -> bool {
     *time_s == always()
 }
 
-fn is_zero(v: &f64) -> bool {
-    *v == 0.0
-}
-
-fn are_zero(v: &[f64; 2]) -> bool {
-    v.iter().all(is_zero)
-}
-
 impl Timeline {
     /// `base` for ever.
     pub fn new(base: Conditions) -> Self {
-        Self {
-            version: VERSION,
-            now_s: -MAX_TIME_S,
-            known_from_s: always(),
-            base,
-            run_to_s: 0.0,
-            run_m: [0.0; 2],
-            changes: Vec::new(),
-        }
+        Self { version: VERSION, now_s: -MAX_TIME_S, known_from_s: always(), base, changes: Vec::new() }
     }
 
     /// Changes to `to`, beginning at simulation time `start_s` (\[-1e12, 1e12\] s) and lasting `transition_s`
@@ -135,65 +111,41 @@ impl Timeline {
         })
     }
 
-    /// The wind's run from time 0 to `t`, m east and north: the way that air at 10 m goes with the mean wind. Whatever carries
-    /// with the wind is moved by it, never by velocity times time, so that no change of the wind throws it.
-    ///
-    /// Exact for up to five changes laid over each other (each a cubic in time, by Gauss and Legendre's 8 points), whatever
-    /// the steps by which the timeline was advanced.
-    pub fn wind_run_m(&self, t: f64) -> [f64; 2] {
-        let (from, to) = (self.run_to_s.min(t), self.run_to_s.max(t));
-        // Between these the wind is one polynomial.
-        let next = |after: f64| {
-            let knots = |c: &Change| [c.start_s, c.start_s + c.transition_s];
-            // What a later change has covered is no knot: it may be forgotten already.
-            let open = |i: usize, k: f64| self.changes[i + 1..].iter().all(|c| c.start_s + c.transition_s > k);
-            let all = self.changes.iter().enumerate().flat_map(|(i, c)| knots(c).map(|k| (i, k)));
-            all.filter(|&(i, k)| k > after && open(i, k)).fold(to, |least, (_, k)| least.min(k))
-        };
-        let sign = if t < self.run_to_s { -1.0 } else { 1.0 };
-        let (mut run, mut a) = (self.run_m, from);
-        while a < to {
-            let b = next(a);
-            let way = self.run_between(a, b);
-            run = [run[0] + sign * way[0], run[1] + sign * way[1]];
-            a = b;
-        }
-        run
-    }
-
-    fn run_between(&self, a: f64, b: f64) -> [f64; 2] {
-        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-        let ended = self.changes.iter().rposition(|c| c.start_s + c.transition_s <= a).map_or(0, |i| i + 1);
-        if !self.changes[ended..].iter().any(|c| c.start_s < b && c.start_s + c.transition_s > a) {
-            let w = self.at(middle).wind;
-            return [w.east_m_s * (b - a), w.north_m_s * (b - a)];
-        }
-        GAUSS_8.iter().fold([0.0; 2], |sum, &(x, weight)| {
-            let [w, v] = [self.at(middle - half * x).wind, self.at(middle + half * x).wind];
-            let k = half * weight;
-            [sum[0] + k * (w.east_m_s + v.east_m_s), sum[1] + k * (w.north_m_s + v.north_m_s)]
-        })
-    }
-
     /// Whether the conditions at two times may differ.
     pub fn changes_between(&self, a: f64, b: f64) -> bool {
         let (a, b) = (a.min(b), a.max(b));
-        self.changes.iter().any(|c| c.start_s <= b && c.start_s + c.transition_s >= a)
+        self.changes.iter().any(|c| c.start_s <= b && c.end_s() >= a)
     }
 
     /// Moves the present to `now_s` and forgets what has ended before it. Earlier times do nothing.
     pub fn advance(&mut self, now_s: f64) {
         self.now_s = self.now_s.max(now_s);
-        if let Some(ended) =
-            self.changes.iter().rposition(|c| c.start_s + c.transition_s <= now_s && c.start_s <= now_s)
-        {
-            let end_s = self.changes[ended].start_s + self.changes[ended].transition_s;
-            (self.run_m, self.run_to_s) = (self.wind_run_m(end_s), end_s);
+        if let Some(ended) = self.last_ended(now_s) {
             let change = &self.changes[ended];
             self.base = change.to;
-            self.known_from_s = end_s;
+            self.known_from_s = change.end_s();
             self.changes.drain(..=ended);
         }
+    }
+
+    /// Index of the last change that is over at `now_s`: it covers all before it.
+    fn last_ended(&self, now_s: f64) -> Option<usize> {
+        self.changes.iter().rposition(|c| c.end_s() <= now_s && c.start_s <= now_s)
+    }
+
+    /// What [`known_from_s`](Self::known_from_s) will be after an advance to `now_s`, if that forgets anything.
+    pub(crate) fn ends_before(&self, now_s: f64) -> Option<f64> {
+        self.last_ended(now_s).map(|i| self.changes[i].end_s())
+    }
+
+    /// Whether nothing has been forgotten.
+    pub(crate) fn known_since_ever(&self) -> bool {
+        is_always(&self.known_from_s)
+    }
+
+    /// The wind below all changes, and the changes that lie over it, in order of their starts.
+    pub(crate) fn winds(&self) -> (&super::WindProfile, &[Change]) {
+        (&self.base.wind, &self.changes)
     }
 
     /// The timeline as text (a seal, then TOML), for [`Timeline::load`]; numbers come back bit for bit.
@@ -329,42 +281,5 @@ mod tests {
         let body = text.split_once('\n').unwrap().1;
         let broken = sealed(&body.replacen("transition_s = 60.0", "transition_s = nan", 1));
         assert!(Timeline::load(&broken).unwrap_err().message.contains("finite"));
-    }
-
-    #[test]
-    fn the_winds_run_is_its_integral_however_the_timeline_is_advanced() {
-        let wind = |speed: f64, from: f64| {
-            derive(&Weather { wind: super::super::Wind::of(speed, from), ..Weather::default() }).unwrap()
-        };
-        let told = || {
-            let mut t = Timeline::new(wind(4.0, 270.0));
-            t.change(wind(12.0, 180.0), 100.0, 60.0).unwrap();
-            t.change(wind(2.0, 300.0), 130.0, 90.0).unwrap();
-            t.change(wind(20.0, 10.0), 140.0, 0.0).unwrap();
-            t.change(wind(6.0, 90.0), 500.0, 30.0).unwrap();
-            t
-        };
-        let timeline = told();
-        assert!((timeline.wind_run_m(50.0)[0] - 200.0).abs() < 1e-9 && timeline.wind_run_m(-10.0)[0] + 40.0 < 1e-9);
-        let n = 400_000;
-        let (mut sum, h) = ([0.0; 2], 600.0 / f64::from(n));
-        for i in 0..n {
-            let w = timeline.at((f64::from(i) + 0.5) * h).wind;
-            sum = [sum[0] + w.east_m_s * h, sum[1] + w.north_m_s * h];
-        }
-        let whole = timeline.wind_run_m(600.0);
-        assert!((0..2).all(|i| (whole[i] - sum[i]).abs() < 0.02), "{whole:?} {sum:?}");
-        let mut stepped = told();
-        for i in 0..=1200 {
-            stepped.advance(f64::from(i) * 0.5);
-        }
-        assert_eq!(stepped.wind_run_m(600.0), whole, "bit for bit");
-        let loaded = Timeline::load(&stepped.save().unwrap()).unwrap();
-        assert_eq!(loaded.wind_run_m(1e6), stepped.wind_run_m(1e6));
-        // A storm that breaks loose after eleven days throws nothing.
-        let mut late = Timeline::new(wind(3.0, 0.0));
-        late.change(wind(30.0, 90.0), 1e6, 0.0).unwrap();
-        let (a, b) = (late.wind_run_m(1e6 - 0.01), late.wind_run_m(1e6 + 0.01));
-        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.02 * 30.0);
     }
 }

@@ -1,0 +1,123 @@
+//! The rain that a context answers for: what is in the air, and what lands on a surface.
+
+use glam::DVec3;
+
+use super::{Context, fog::falling_top_m};
+use crate::{
+    error::{Error, Result, check_range},
+    rain::{
+        drops::factor_in,
+        sizes::{DropSizes, SMALLEST_MM, Weight},
+    },
+};
+
+/// Rain and drizzle at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainAt {
+    /// On level ground, mm/h.
+    pub rate_mm_h: f64,
+    /// Drops from 0.1 to 6 mm, 1/m^3.
+    pub number_per_m3: f64,
+    /// Water in the air, g/m^3.
+    pub liquid_g_m3: f64,
+    /// Extinction by the drops, 1/m.
+    pub extinction_per_m: f64,
+    /// Mean diameter of the drops in the air, mm.
+    pub mean_diameter_mm: f64,
+    /// Diameter below which half of the water in the air is, mm.
+    pub median_volume_diameter_mm: f64,
+    /// Drops that land on level ground, 1/(m^2 s).
+    pub drops_per_m2_s: f64,
+    /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes steeper, the other
+    /// flatter. Along it an occluder's picture is taken. 0 without rain.
+    pub fall_velocity_m_s: DVec3,
+}
+
+/// A surface that rain may land on, or a window that it may come through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainSurface {
+    /// Where, in the host's world.
+    pub position: DVec3,
+    /// The way that its wet side faces, (east, north, up) of the place; any length but 0.
+    pub normal: DVec3,
+    /// How it moves, m/s (east, north, up), each within \[-1000, 1000\].
+    pub velocity_m_s: DVec3,
+    /// Its size, m^2, \[0, 1e6\].
+    pub area_m2: f64,
+}
+
+/// What lands on a surface, without shelter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainOn {
+    /// Water, mm/h: litres a square metre and hour.
+    pub rate_mm_h: f64,
+    /// Drops on all of it, 1/s.
+    pub drops_per_s: f64,
+}
+
+impl RainSurface {
+    fn validate(&self) -> Result<()> {
+        let length = self.normal.length();
+        if !(length.is_finite() && length > 1e-9) {
+            return Err(Error::range("normal", "finite and longer than 1e-9", self.normal));
+        }
+        for (axis, v) in ["[0]", "[1]", "[2]"].iter().zip(self.velocity_m_s.to_array()) {
+            check_range(&format!("velocity_m_s{axis}"), v, -1000.0, 1000.0, "m/s")?;
+        }
+        check_range("area_m2", self.area_m2, 0.0, 1e6, "m^2")
+    }
+}
+
+impl Context {
+    /// The drops in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the cloud that
+    /// it falls from there is no rain.
+    fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, DVec3)> {
+        let place = self.desc.world.frame_at(position).place;
+        place.validate()?;
+        let c = self.weather_at(time_s)?;
+        let mut falling = c.precipitation;
+        if place.altitude_m > falling_top_m(&c) {
+            (falling.rain_mm_h, falling.drizzle_mm_h) = (0.0, 0.0);
+        }
+        let sizes = DropSizes::new(&falling, factor_in(&c.air, place.altitude_m));
+        Ok((sizes, self.carrying_wind(time_s)?))
+    }
+
+    /// Rain and drizzle at `position` and simulation time `time_s`.
+    ///
+    /// Any thread. Laws: [`crate::rain::sizes`].
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`].
+    pub fn rain_at(&self, position: DVec3, time_s: f64) -> Result<RainAt> {
+        let (sizes, wind) = self.drops_at(position, time_s)?;
+        let level = sizes.on_level_ground();
+        let [median] = sizes.diameters(Weight::Water, SMALLEST_MM, [0.5]);
+        let falls = level.drops_per_m2_s > 0.0;
+        Ok(RainAt {
+            rate_mm_h: level.rate_mm_h,
+            number_per_m3: sizes.number_per_m3(),
+            liquid_g_m3: sizes.liquid_g_m3(),
+            extinction_per_m: sizes.extinction_per_m(),
+            mean_diameter_mm: sizes.mean_diameter_mm(),
+            median_volume_diameter_mm: sizes.median_volume_diameter_mm(),
+            drops_per_m2_s: level.drops_per_m2_s,
+            fall_velocity_m_s: if falls { wind - DVec3::Z * sizes.speed_m_s(median) } else { DVec3::ZERO },
+        })
+    }
+
+    /// Rain and drizzle that land on a surface, or come through a window, at simulation time `time_s`: each size of drop along its own
+    /// slant in the wind, and in that which the surface's own motion makes. Nothing shelters it.
+    ///
+    /// Any thread.
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`]; [`crate::Status::InvalidArgument`] naming the field of `surface`.
+    pub fn rain_on(&self, surface: &RainSurface, time_s: f64) -> Result<RainOn> {
+        surface.validate()?;
+        let (sizes, wind) = self.drops_at(surface.position, time_s)?;
+        let fall = surface.velocity_m_s;
+        let flux = sizes.on_surface(surface.normal.normalize(), wind - fall);
+        Ok(RainOn { rate_mm_h: flux.rate_mm_h, drops_per_s: flux.drops_per_m2_s * surface.area_m2 })
+    }
+}

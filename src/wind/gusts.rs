@@ -1,0 +1,202 @@
+//! Gusts as sums of waves along the way that the mean wind has blown, and the integrals of such waves.
+//!
+//! Eddies are carried past by the mean wind (Taylor 1938): a gust is a function of the path s, the integral of the mean speed,
+//! and not of time. When the wind picks up the same gusts pass faster, and none of them starts anew.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+/// Waves in each direction.
+const TONES: usize = 24;
+/// Longest and shortest wave, m. What is longer is a change of weather, what is shorter is no wind of a whole scene.
+const WAVES_M: (f64, f64) = (3000.0, 8.0);
+/// Turbulence scale at 10 m above ground, m: 0.7 of the height (IEC 61400-1, 6.3).
+const SCALE_M: f64 = 7.0;
+/// Integral scales of Kaimal's spectrum along and across the wind, m (IEC 61400-1, annex C).
+const LENGTHS_M: [f64; 2] = [8.1 * SCALE_M, 2.7 * SCALE_M];
+/// Standard deviation across the wind over that along it (IEC 61400-1, annex C).
+pub(super) const ACROSS: f64 = 0.8;
+/// Length of the wave by which the direction wanders, m: three minutes in the light winds that do.
+const WANDER_M: f64 = 600.0;
+/// Orders of the wander's series: J_13(pi) is 1e-8.
+const ORDERS: usize = 12;
+
+/// One wave: amplitude x cos(wavenumber s + phase).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Tone {
+    wavenumber: f64,
+    amplitude: f64,
+    phase: f64,
+}
+
+/// The gusts of a seed: two sums of waves with a variance of 1 each, spread over wavelengths as Kaimal et al. (1972) found it,
+/// and the wave that turns the wind.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Gusts {
+    along: [Tone; TONES],
+    across: [Tone; TONES],
+    wander: Tone,
+}
+
+/// How the air stirs about the mean wind, per m/s of mean speed, in quantities that can be mixed. Vectors (east, north).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stir {
+    /// Standard deviation of gusts along the wind.
+    along: DVec2,
+    /// What the wander adds to the mean, as a series in its wave: orders -12 to 12. A wind d that turns by w sin p is the
+    /// sum of J_n(w) d e^(i n p) (Jacobi and Anger).
+    turning: [DVec2; 2 * ORDERS + 1],
+}
+
+impl Stir {
+    /// Of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
+    pub fn new(direction: DVec2, turbulence_intensity: f64, wander: f64) -> Self {
+        let mut turning = [DVec2::ZERO; 2 * ORDERS + 1];
+        if wander > 0.0 {
+            for n in 0..=ORDERS {
+                let j = direction * libm::jn(n as i32, wander);
+                turning[ORDERS + n] = j;
+                // J_-n = (-1)^n J_n.
+                turning[ORDERS - n] = if n % 2 == 0 { j } else { -j };
+            }
+            turning[ORDERS] -= direction;
+        }
+        Self { along: direction * turbulence_intensity, turning }
+    }
+
+    fn zip(&self, other: &Self, f: impl Fn(DVec2, DVec2) -> DVec2) -> Self {
+        Self {
+            along: f(self.along, other.along),
+            turning: std::array::from_fn(|i| f(self.turning[i], other.turning[i])),
+        }
+    }
+}
+
+/// A stretch of path on which the stirring goes evenly from one state to another: `from` at `start_m`, `to` after `length_m`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stretch {
+    pub start_m: f64,
+    pub length_m: f64,
+    pub from: Stir,
+    pub to: Stir,
+}
+
+/// Share of the variance in waves longer than L / x: the integral of Kaimal's 4 / (1 + 6 x)^(5/3) from 0 to x.
+fn share_below(x: f64) -> f64 {
+    1.0 - libm::pow(1.0 + 6.0 * x, -2.0 / 3.0)
+}
+
+/// Numbers in [0, 1) from a seed: SplitMix64 (Steele, Lea and Flood 2014).
+fn randoms(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Complex exponential of an angle.
+fn turn(angle: f64) -> DVec2 {
+    let (sin, cos) = libm::sincos(angle);
+    DVec2::new(cos, sin)
+}
+
+/// Integrals of e^(i k y) and of y e^(i k y) over y from 0 to `length`.
+fn wave_integrals(k: f64, length: f64) -> [DVec2; 2] {
+    if k == 0.0 {
+        return [DVec2::X * length, DVec2::X * (0.5 * length * length)];
+    }
+    let (end, half) = (turn(k * length), libm::sin(0.5 * k * length));
+    let plain = DVec2::new(end.y, 2.0 * half * half) / k;
+    // By parts: (Y e^(ikY) - plain) / (i k).
+    let ramp = end * length - plain;
+    [plain, DVec2::new(ramp.y, -ramp.x) / k]
+}
+
+impl Gusts {
+    pub fn new(seed: u64) -> Self {
+        // A word of its own, so that nothing else that the seed decides goes with the gusts.
+        let mut random = randoms(seed ^ 0x7769_6e64_2067_7573);
+        let mut tones = |scale_m: f64| -> [Tone; TONES] {
+            let (low, high) = (scale_m / WAVES_M.0, scale_m / WAVES_M.1);
+            let edge = |i: f64| low * libm::pow(high / low, i / TONES as f64);
+            let whole = share_below(high) - share_below(low);
+            std::array::from_fn(|i| {
+                let variance = (share_below(edge(i as f64 + 1.0)) - share_below(edge(i as f64))) / whole;
+                Tone {
+                    wavenumber: TAU / scale_m * edge(i as f64 + random()),
+                    amplitude: (2.0 * variance).sqrt(),
+                    phase: TAU * random(),
+                }
+            })
+        };
+        let (along, across) = (tones(LENGTHS_M[0]), tones(LENGTHS_M[1]));
+        let wander = Tone { wavenumber: TAU / WANDER_M, amplitude: 1.0, phase: TAU * random() };
+        Self { along, across, wander }
+    }
+
+    /// Gusts along and across the wind at path `s_m`, in standard deviations.
+    fn at(&self, s_m: f64) -> [f64; 2] {
+        let sum = |tones: &[Tone; TONES]| {
+            tones.iter().map(|t| t.amplitude * libm::cos(t.wavenumber * s_m + t.phase)).sum::<f64>()
+        };
+        [sum(&self.along), sum(&self.across)]
+    }
+
+    /// What the stirring adds to the mean wind at `y_m` on a stretch, per m/s of mean speed: the turning, and the gusts.
+    pub fn velocity(&self, stretch: &Stretch, y_m: f64) -> [DVec2; 2] {
+        let s = stretch.start_m + y_m;
+        let [along, across] = self.at(s);
+        let stir = stretch.stir_after(y_m);
+        let phase = self.wander.wavenumber * s + self.wander.phase;
+        let turned = orders(&stir.turning).map(|(n, c)| turn(n * phase).rotate(c)).sum();
+        [turned, stir.along * along + stir.along.perp() * (ACROSS * across)]
+    }
+
+    /// The integral of both parts of [`Gusts::velocity`] over the first `y_m` of a stretch, m.
+    pub fn displacement(&self, stretch: &Stretch, y_m: f64) -> DVec2 {
+        let (from, rise) = (&stretch.from, &stretch.rise_per_m());
+        let [along, across] = [&self.along, &self.across].map(|tones| {
+            tones.iter().fold([0.0; 2], |[plain, ramp], t| {
+                let start = turn(t.wavenumber * stretch.start_m + t.phase) * t.amplitude;
+                let [p, r] = wave_integrals(t.wavenumber, y_m);
+                [plain + start.rotate(p).x, ramp + start.rotate(r).x]
+            })
+        });
+        let gusts = from.along * along[0] + rise.along * along[1];
+        let aside = from.along.perp() * across[0] + rise.along.perp() * across[1];
+        let phase = self.wander.wavenumber * stretch.start_m + self.wander.phase;
+        let turned = |stir: &Stir, power: usize| -> DVec2 {
+            let waves = orders(&stir.turning).map(|(n, c)| {
+                let wave = wave_integrals(n * self.wander.wavenumber, y_m)[power];
+                turn(n * phase).rotate(wave.rotate(c))
+            });
+            waves.sum()
+        };
+        gusts + aside * ACROSS + turned(from, 0) + turned(rise, 1)
+    }
+}
+
+/// The coefficients of a series with their orders; none if all are 0, as they are where the wind does not wander.
+fn orders(series: &[DVec2; 2 * ORDERS + 1]) -> impl Iterator<Item = (f64, DVec2)> {
+    let present = series.iter().any(|c| *c != DVec2::ZERO);
+    let count = if present { series.len() } else { 0 };
+    series[..count].iter().enumerate().map(|(i, c)| (i as f64 - ORDERS as f64, *c))
+}
+
+impl Stretch {
+    /// The stirring after `y_m` of it.
+    pub fn stir_after(&self, y_m: f64) -> Stir {
+        let part = if self.length_m > 0.0 { y_m / self.length_m } else { 0.0 };
+        self.from.zip(&self.to, |a, b| a + (b - a) * part)
+    }
+
+    fn rise_per_m(&self) -> Stir {
+        let length = if self.length_m > 0.0 { self.length_m } else { f64::INFINITY };
+        self.from.zip(&self.to, |a, b| (b - a) / length)
+    }
+}
