@@ -34,8 +34,8 @@ struct FrameUniform {
     medium_share: f32,
     // Share of the sun's or moon's direct light that clouds let through.
     direct_share: f32,
-    pad0: f32,
-    pad1: f32,
+    // Of what falls: what drawn drops hide, 1/m, up to which distance, m; the veil leaves that to them.
+    drops: vec2f,
     // How much of air, fog and clear sky is drawn, 1 all of it, 0 not at all (src/plan);
     // w: the compositions that the gauge makes, everything and without each part.
     drawn: vec4f,

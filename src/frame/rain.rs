@@ -10,7 +10,8 @@ use crate::{
     error::Result,
     gpu::Device,
     rain::{
-        Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shot, Splashes, drops, lattice::SHELLS,
+        Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shot, Splashes, drops,
+        lattice::{FADE, REACH_M, SHELLS},
     },
     scene::{LightUniform, ViewRays},
     weather::Falling,
@@ -47,7 +48,16 @@ impl Rain {
         self.layer.view(device, color.size())
     }
 
-    fn classes(&mut self, falling: &Falling, factor: f64, most: u32) -> Classes {
+    /// What the drops hide, as an extinction (their discs: half of theirs, the rest is diffraction), and the distance up to
+    /// which they do.
+    pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
+        [0.5 * self.classes(device, scene).extinction_per_m, 0.5 * (1.0 + FADE) * REACH_M].map(|v| v as f32)
+    }
+
+    fn classes(&mut self, device: &Device, scene: &Scene) -> Classes {
+        let most = self.settings.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 });
+        let factor = drops::altitude_factor(scene.conditions.air.station_altitude_m);
+        let falling = &scene.conditions.precipitation;
         match &self.counted {
             Some((f, x, m, classes)) if f == falling && *x == factor && *m == most => *classes,
             _ => {
@@ -68,9 +78,7 @@ impl Rain {
         color: &wgpu::Texture,
         exposure: f64,
     ) -> Result<u32> {
-        let most = self.settings.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 });
-        let factor = drops::altitude_factor(scene.conditions.air.station_altitude_m);
-        let classes = self.classes(&scene.conditions.precipitation, factor, most);
+        let classes = self.classes(device, scene);
         let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
         let enu = |v: DVec3| scene.world_to_enu * v;
         let shot = Shot {

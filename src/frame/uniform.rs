@@ -22,7 +22,7 @@ pub(crate) struct FrameUniform {
     pub encode: u32,
     pub medium_share: f32,
     pub direct_share: f32,
-    pub pad: [f32; 2],
+    pub drops: [f32; 2],
     /// How much of air, fog and clear sky is drawn.
     pub drawn: [f32; 4],
 }
@@ -61,6 +61,6 @@ mod tests {
             y_sign,
             dither_step
         );
-        same!(pixel_angle, encode, medium_share, direct_share, drawn);
+        same!(pixel_angle, encode, medium_share, direct_share, drops, drawn);
     }
 }

@@ -378,7 +378,10 @@ impl View {
             self.planner.begin(&self.device, &situation, &present, pure);
         }
         let drawn = self.planner.drawn();
-        let block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
+        let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
+        if rain::falls(scene) {
+            block.drops = self.rain.hidden(&self.device, scene);
+        }
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
@@ -537,7 +540,7 @@ fn uniform(
         medium_share: scene.medium_share as f32,
         direct_share: scene.brighter().direct_share as f32,
         encode: u32::from(encode),
-        pad: [0.0; 2],
+        drops: [0.0; 2],
         drawn,
     }
 }

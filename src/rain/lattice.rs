@@ -25,7 +25,7 @@ pub const SPEED_UNIT: f64 = 1.0 / 64.0;
 pub const REACH_M: f64 = SIDE_M * (1 << (SHELLS - 1)) as f64 * 0.5;
 
 /// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
-pub(super) const FADE: f64 = 0.75;
+pub(crate) const FADE: f64 = 0.75;
 /// Drops nearer than this fade away, m: `NEAREST` of `shaders/rain/drops.wgsl`.
 const NEAREST_M: f64 = 0.25;
 

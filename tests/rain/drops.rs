@@ -71,6 +71,38 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
     }
 }
 
+/// What falls between the eye and a wall takes as much of its light with drops before the veil as without: nothing is
+/// counted twice.
+#[test]
+fn drops_and_veil_together_take_what_the_rain_takes() {
+    let mut host = white((320, 180));
+    host.boxes[0] = upright([0.0, 30.0, 300.0], [2000.0, 1e-3, 2000.0]);
+    for (i, (rate, visibility_m)) in [(30.0, 700.0), (200.0, 200.0)].into_iter().enumerate() {
+        let t = 10.0 * (i + 1) as f64;
+        let weather = Weather { visibility_m, ..rain(rate, 0.0) };
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        let all = Stages::PREPARE.with(Stages::MEDIUM).with(Stages::PARTICLES);
+        let mut seen = Vec::new();
+        for k in 0..6 {
+            host.context.update(t + 0.7 * f64::from(k)).unwrap();
+            host.draw(|_, _| [WHITE; 3]);
+            host.record(all).unwrap();
+            seen.push(mean(&host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect::<Vec<_>>()));
+        }
+        let c = derive(&weather).unwrap();
+        // The wall is flat: the mean over the picture of the slanted way to it.
+        let rays = host.rays();
+        let n = 60;
+        let want: f64 = (0..n * n)
+            .map(|i| DVec2::new(f64::from(i % n), f64::from(i / n)) * 2.0 / f64::from(n) - 1.0 + 1.0 / f64::from(n))
+            .map(|ndc| (-c.extinction_per_m * 30.0 / rays.view_ray(ndc).direction.y).exp())
+            .sum::<f64>()
+            / f64::from(n * n);
+        let (got, want) = (-mean(&seen).ln(), -want.ln());
+        assert!((got / want - 1.0).abs() < 0.05, "{rate} mm/h: {got} of {want}");
+    }
+}
+
 #[test]
 fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
     let mut host = white((480, 270));
