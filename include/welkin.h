@@ -3015,6 +3015,14 @@ typedef uint32_t wk_report_flags;
 
 /** wk_report.ms. */
 #define WK_REPORT_HAS_MS 1
+/** wk_report.predicted_ms: the view has a budget, its picture was gauged and a time reported. */
+#define WK_REPORT_HAS_PREDICTED_MS 2
+/** wk_report.reported_ms: wk_view_report_time was called since the frame. */
+#define WK_REPORT_HAS_REPORTED_MS 4
+/** wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged. */
+#define WK_REPORT_HAS_PREDICTED_ERROR 8
+/** wk_report.checked_error_bound and checked_error: it was gauged again since. */
+#define WK_REPORT_HAS_CHECKED_ERROR 16
 
 /** What the last frame of a view took and showed. */
 typedef struct wk_report {
@@ -3042,6 +3050,20 @@ typedef struct wk_report {
      * What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
      */
     double ms;
+    /** What the plan expected the weather to take in this frame, ms, by the times reported before it. */
+    double predicted_ms;
+    /** What the host said that it took, ms. */
+    double reported_ms;
+    /**
+     * Estimated error of what this frame left out, parts that still fade not counted: 95th percentile over the gauged pixels.
+     */
+    double predicted_error;
+    /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
+    double predicted_error_bound;
+    /** Of the newest gauge's picture: the bound that had been predicted for what it left out .. */
+    double checked_error_bound;
+    /** .. and the error that was found. */
+    double checked_error;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3056,7 +3078,13 @@ typedef struct wk_report {
     /* bytes */ UINT64_C(0), \
     /* has */ 0, \
     /* reserved0 */ 0, \
-    /* ms */ 0.0 \
+    /* ms */ 0.0, \
+    /* predicted_ms */ 0.0, \
+    /* reported_ms */ 0.0, \
+    /* predicted_error */ 0.0, \
+    /* predicted_error_bound */ 0.0, \
+    /* checked_error_bound */ 0.0, \
+    /* checked_error */ 0.0 \
 }
 
 /** What a frame spends time on. */
@@ -3241,7 +3269,8 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
  *
  * What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
- * that must also leave out alike pin their plan.
+ * that must also leave out alike pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or one that another view found
+ * (wk_view_save_plan, wk_view_load_plan).
  * ====================================================================================================
  */
 
@@ -3278,8 +3307,8 @@ typedef struct wk_budget {
     /** Which optional fields are set. Default 0: everything is drawn. */
     wk_budget_has_flags has;
     /**
-     * Optional: just these parts are drawn, whatever the tolerance, so that all channels draw alike; a union of
-     * WK_PART_ constants, 0 for none.
+     * Optional: just these parts are drawn, whatever the tolerance and the time, so that all channels draw alike; a union of
+     * WK_PART_ constants, 0 for none. What of a tolerance and a time they do not keep is still said (wk_plan.gave_way).
      */
     wk_part_flags pinned_parts;
     /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
@@ -3321,7 +3350,10 @@ typedef uint32_t wk_gave_way;
 #define WK_GAVE_WAY_NOTHING 0
 /** The tolerance: the time allows no better picture. */
 #define WK_GAVE_WAY_TOLERANCE 1
-/** Time, and the tolerance: even with every part left out the picture takes longer than the budget. */
+/**
+ * Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer than
+ * the budget.
+ */
 #define WK_GAVE_WAY_TIME 2
 
 /** What a view's last frame left out. Errors are estimates from the gauged pixels. */
@@ -3403,7 +3435,9 @@ typedef struct wk_part_plan {
     double error;
     /** The same at the worst gauged pixel. */
     double worst;
-    /** Its work in this picture, were it drawn, in units of a pixel with none of the parts. */
+    /**
+     * What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+     */
     double work;
 } wk_part_plan;
 
@@ -3430,7 +3464,7 @@ WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
 
 /**
  * Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
- * call). Under a budget of time the plan follows the median of the last three reports.
+ * call). Under a budget of time the plan follows the median of the last five reports.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
  */
@@ -3448,6 +3482,33 @@ WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
  * Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
  */
 WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part_flags part, wk_part_plan *out_part);
+
+/**
+ * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
+ * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is
+ * written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
+ * jump of camera, sun or weather.
+ */
+WK_API
+wk_status wk_view_save_plan(wk_view *view,
+                            void *buffer,
+                            size_t capacity,
+                            size_t *out_size);
+
+/**
+ * Pins a plan that wk_view_save_plan wrote, as WK_BUDGET_HAS_PINNED_PARTS does; the rest of the view's budget stays, and
+ * wk_view_set_budget ends it.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
+ * WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. The view's plan stays as it
+ * was then.
+ */
+WK_API
+wk_status wk_view_load_plan(wk_view *view,
+                            const void *plan,
+                            size_t size);
 
 /**
  * Writes the default of every field: the same bytes as `WK_BUDGET_INIT`. `struct_size` is `sizeof(wk_budget)`

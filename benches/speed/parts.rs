@@ -1,5 +1,5 @@
 //! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of
-//! `plan::planner`, in units of a pixel with none of them.
+//! `plan::planner`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
 
 use std::{sync::Arc, time::Instant};
 
@@ -8,7 +8,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    plan::Budget,
+    plan::{Budget, Part},
     scene::Camera,
     weather::Weather,
 };
@@ -69,14 +69,21 @@ impl Bench {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    /// The least time of a frame, ms, with these parts.
-    fn time(&mut self, parts: [bool; 3]) -> Fallible<f64> {
+    fn frame_with(&mut self, parts: [bool; 3]) -> Fallible<f64> {
         self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() })?;
-        let mut least = f64::INFINITY;
-        for _ in 0..31 {
-            least = least.min(self.frame()?);
+        self.frame()
+    }
+
+    /// Time of a frame with these parts in times of the one with none before it: the median of many, so that whatever else
+    /// the machine does falls on both.
+    fn ratio(&mut self, parts: [bool; 3]) -> Fallible<f64> {
+        // The first of each compiles.
+        let mut ratios = Vec::new();
+        for _ in 0..42 {
+            let none = self.frame_with([false; 3])?;
+            ratios.push(self.frame_with(parts)? / none);
         }
-        Ok(least)
+        Ok(median(&mut ratios[1..]))
     }
 
     fn set(&mut self, weather: &str, time_s: f64) -> Fallible<()> {
@@ -90,35 +97,74 @@ impl Bench {
     }
 }
 
+fn median(of: &mut [f64]) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+/// Scenes and sets of parts one after the other: the time predicted before the first frame of each, by what earlier ones
+/// took, against the median that it then takes. A fixed picture drawn before each frame is the clock.
+fn predictions(bench: &mut Bench) -> Fallible<()> {
+    let (mut within, mut all, mut worst) = (0, 0, 0.0f64);
+    let mut clock = View::new(&bench.context)?;
+    clock.set_budget(Budget { pinned: Some([false; 3]), ..Budget::default() })?;
+    for (weather, horizon) in [("clear", 0), ("clear", 180), ("fog", 120), ("overcast", 300), ("mist", 60)] {
+        bench.world(horizon);
+        bench.set(weather, bench.frame_id as f64 + 1.0)?;
+        for parts in [[true; 3], [false, true, true], [true, false, true], [false; 3], [true, true, false]] {
+            let budget = Budget { pinned: Some(parts), tolerance: Some(0.01), ..Budget::default() };
+            bench.view.set_budget(budget)?;
+            let (mut said, mut times) = (None, Vec::new());
+            for frame in 0..32 {
+                std::mem::swap(&mut bench.view, &mut clock);
+                let tick = bench.frame()?;
+                std::mem::swap(&mut bench.view, &mut clock);
+                let time = bench.frame()? / tick;
+                said = said.or(bench.view.report().prediction.milliseconds);
+                bench.view.report_time(time)?;
+                if frame > 12 {
+                    times.push(time);
+                }
+            }
+            let took = median(&mut times);
+            if let Some(said) = said {
+                let error = said / took - 1.0;
+                all += 1;
+                within += u32::from(error.abs() <= 0.25);
+                worst = worst.max(error.abs());
+                println!("  {weather}, ground below row {horizon}, {parts:?}: {said:.2} predicted, {took:.2} taken");
+            }
+        }
+    }
+    println!("  predicted within 25 %: {within} of {all}, the worst off by {:.0} %", 100.0 * worst);
+    Ok(())
+}
+
 pub fn run() -> Fallible<()> {
     println!("parts of a picture of {} x {}, in shares of one with none of them:", SIZE.width, SIZE.height);
     let mut bench = Bench::new()?;
-    for (name, weather, horizon, part) in [("air", "clear", 0, 0), ("fog", "fog", 0, 1), ("sky", "clear", 360, 2)] {
+    for (weather, horizon, part) in [("clear", 0, 0), ("fog", 0, 1), ("mist", 0, 1), ("rain", 0, 1), ("clear", 360, 2)]
+    {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
         let mut only = [false; 3];
-        let none = bench.time(only)?;
         only[part] = true;
-        let with = bench.time(only)?;
-        println!("  {name}: {:.2} ({none:.2} ms without, {with:.2} ms with)", with / none - 1.0);
+        println!("  {} in {weather}: {:.2}", Part::ALL[part].name(), bench.ratio(only)? - 1.0);
     }
     bench.world(180);
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
-    let pinned = bench.time([true; 3])?;
     bench.view.set_budget(Budget { tolerance: Some(1e-6), ..Budget::default() })?;
     for _ in 0..16 {
         bench.frame()?;
     }
-    // One frame in eight has a gauge: the least time of each of the eight.
-    let mut least = [f64::INFINITY; 8];
-    for i in 0..400 {
-        least[i % 8] = least[i % 8].min(bench.frame()?);
+    // One frame in eight has a gauge: each frame in times of the one before it, by its place among eight.
+    let (mut ratios, mut before) = ([const { Vec::new() }; 8], bench.frame()?);
+    for i in 0..328 {
+        let now = bench.frame()?;
+        ratios[i % 8].push(now / before);
+        before = now;
     }
-    let gauged = least.iter().copied().fold(0.0, f64::max);
-    println!(
-        "  gauge: {:.2} ms in every eighth frame, {:.3} of the pictures' {pinned:.1} ms",
-        gauged - pinned,
-        (gauged - pinned) / 8.0 / pinned
-    );
-    Ok(())
+    let gauged = ratios.each_mut().map(|r| median(r)).into_iter().fold(0.0, f64::max) - 1.0;
+    println!("  gauge: {gauged:.2} of a picture in every eighth frame");
+    predictions(&mut bench)
 }

@@ -1,6 +1,6 @@
 //! Checks of plain parameters: numbers, enumerations, texts, buffers, lists.
 
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 
 use super::layout::{self, EnumInfo, Layout};
 use crate::error::{Error, Result, Status};
@@ -85,6 +85,34 @@ pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: usize
     layout::check_pointer(&param, p)?;
     // SAFETY: checked, and the caller's promise.
     Ok(unsafe { std::slice::from_raw_parts_mut(p, count) })
+}
+
+/// Writes a state's bytes into the caller's room: `*out_size` gets their number, and where `capacity` is 0 nothing more.
+///
+/// # Safety
+/// `buffer` is NULL or has `capacity` bytes, `out_size` is NULL or a place, both the caller's alone.
+///
+/// # Errors
+/// Missing places, or too little room.
+pub(super) unsafe fn answer_bytes(
+    bytes: &[u8],
+    buffer: *mut c_void,
+    capacity: usize,
+    out_size: *mut usize,
+) -> Result<()> {
+    let place = out("out_size", out_size)?;
+    // SAFETY: the caller's promise.
+    let room = unsafe { slice_mut("buffer", buffer.cast::<u8>(), capacity, usize::MAX)? };
+    // SAFETY: `place` was checked and is the caller's.
+    unsafe { place.write(bytes.len()) };
+    if capacity == 0 {
+        return Ok(());
+    }
+    let Some(room) = room.get_mut(..bytes.len()) else {
+        return Err(Error::range("capacity", &format!("at least {}", bytes.len()), capacity));
+    };
+    room.copy_from_slice(bytes);
+    Ok(())
 }
 
 fn check_count(param: &str, count: usize, limit: usize) -> Result<()> {

@@ -11,7 +11,8 @@
 //! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
 //!
 //! What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
-//! that must also leave out alike pin their plan.
+//! that must also leave out alike pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or one that another view found
+//! (wk_view_save_plan, wk_view_load_plan).
 
 use std::{
     ffi::{c_char, c_void},
@@ -20,6 +21,7 @@ use std::{
 
 use super::{
     boundary::guard,
+    input,
     layout::{self, init_struct, struct_size},
     status::*,
     view::{ViewObject, wk_view},
@@ -74,7 +76,8 @@ pub type wk_gave_way = u32;
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
 /// The tolerance: the time allows no better picture.
 pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
-/// Time, and the tolerance: even with every part left out the picture takes longer than the budget.
+/// Time, and the tolerance: even with every part left out, or with the parts that are pinned, the picture takes longer than
+/// the budget.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
 /// How wrong a view's pictures may be, and how long they may take.
@@ -89,8 +92,8 @@ pub struct wk_budget {
     pub next: *const c_void,
     /// Which optional fields are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
-    /// Optional: just these parts are drawn, whatever the tolerance, so that all channels draw alike; a union of
-    /// WK_PART_ constants, 0 for none.
+    /// Optional: just these parts are drawn, whatever the tolerance and the time, so that all channels draw alike; a union of
+    /// WK_PART_ constants, 0 for none. What of a tolerance and a time they do not keep is still said (wk_plan.gave_way).
     pub pinned_parts: wk_part_flags,
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
@@ -187,7 +190,7 @@ pub struct wk_part_plan {
     pub error: f64,
     /// The same at the worst gauged pixel.
     pub worst: f64,
-    /// Its work in this picture, were it drawn, in units of a pixel with none of the parts.
+    /// What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
     pub work: f64,
 }
 
@@ -258,7 +261,7 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
 }
 
 /// Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
-/// call). Under a budget of time the plan follows the median of the last three reports.
+/// call). Under a budget of time the plan follows the median of the last five reports.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
 #[unsafe(no_mangle)]
@@ -317,6 +320,47 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
         // SAFETY: the caller's promise about `out_part`.
         let place = unsafe { layout::out_struct(&"out_part", out_part)? };
         place.set(&wk_part_plan::of(&object.lock().plan().parts[i]));
+        Ok(Status::Ok)
+    })
+}
+
+/// Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
+/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is
+/// written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
+/// jump of camera, sun or weather.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_save_plan(
+    view: *mut wk_view,
+    buffer: *mut c_void,
+    capacity: usize,
+    out_size: *mut usize,
+) -> wk_status {
+    guard("wk_view_save_plan", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let saved = object.lock().save_plan()?;
+        // SAFETY: the caller's promises.
+        unsafe { input::answer_bytes(saved.as_bytes(), buffer, capacity, out_size)? };
+        Ok(Status::Ok)
+    })
+}
+
+/// Pins a plan that wk_view_save_plan wrote, as WK_BUDGET_HAS_PINNED_PARTS does; the rest of the view's budget stays, and
+/// wk_view_set_budget ends it.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
+/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. The view's plan stays as it
+/// was then.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
+    guard("wk_view_load_plan", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        layout::check_pointer(&"plan", plan.cast::<u8>())?;
+        // SAFETY: the caller promises `size` readable bytes.
+        let bytes = unsafe { input::slice("plan", plan.cast::<u8>(), size, usize::MAX)? };
+        object.cell.drain();
+        object.lock().load_plan(bytes)?;
         Ok(Status::Ok)
     })
 }

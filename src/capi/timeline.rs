@@ -204,19 +204,9 @@ pub unsafe extern "C" fn wk_context_save(
 ) -> wk_status {
     guard("wk_context_save", |call| {
         let object = call.get::<ContextObject>("context", context)?;
-        let place = out("out_size", out_size)?;
-        // SAFETY: the caller promises `capacity` writable bytes.
-        let room = unsafe { input::slice_mut("buffer", buffer.cast::<u8>(), capacity, usize::MAX)? };
         let saved = object.read().save()?;
-        // SAFETY: `place` was checked and is the caller's.
-        unsafe { place.write(saved.len()) };
-        if capacity == 0 {
-            return Ok(Status::Ok);
-        }
-        let Some(room) = room.get_mut(..saved.len()) else {
-            return Err(Error::range("capacity", &format!("at least {}", saved.len()), capacity));
-        };
-        room.copy_from_slice(&saved);
+        // SAFETY: the caller's promises.
+        unsafe { input::answer_bytes(&saved, buffer, capacity, out_size)? };
         Ok(Status::Ok)
     })
 }

@@ -88,6 +88,14 @@ impl wk_view_desc {
 pub type wk_report_flags = u32;
 /// wk_report.ms.
 pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
+/// wk_report.predicted_ms: the view has a budget, its picture was gauged and a time reported.
+pub const WK_REPORT_HAS_PREDICTED_MS: wk_report_flags = 2;
+/// wk_report.reported_ms: wk_view_report_time was called since the frame.
+pub const WK_REPORT_HAS_REPORTED_MS: wk_report_flags = 4;
+/// wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged.
+pub const WK_REPORT_HAS_PREDICTED_ERROR: wk_report_flags = 8;
+/// wk_report.checked_error_bound and checked_error: it was gauged again since.
+pub const WK_REPORT_HAS_CHECKED_ERROR: wk_report_flags = 16;
 
 /// What the last frame of a view took and showed.
 #[repr(C)]
@@ -115,6 +123,18 @@ pub struct wk_report {
     pub reserved0: u32,
     /// What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
     pub ms: f64,
+    /// What the plan expected the weather to take in this frame, ms, by the times reported before it.
+    pub predicted_ms: f64,
+    /// What the host said that it took, ms.
+    pub reported_ms: f64,
+    /// Estimated error of what this frame left out, parts that still fade not counted: 95th percentile over the gauged pixels.
+    pub predicted_error: f64,
+    /// Upper end of the 95 % confidence interval of that percentile over all pixels.
+    pub predicted_error_bound: f64,
+    /// Of the newest gauge's picture: the bound that had been predicted for what it left out ..
+    pub checked_error_bound: f64,
+    /// .. and the error that was found.
+    pub checked_error: f64,
 }
 
 impl wk_report {
@@ -130,6 +150,12 @@ impl wk_report {
         has: 0,
         reserved0: 0,
         ms: 0.0,
+        predicted_ms: 0.0,
+        reported_ms: 0.0,
+        predicted_error: 0.0,
+        predicted_error_bound: 0.0,
+        checked_error_bound: 0.0,
+        checked_error: 0.0,
     };
 }
 
@@ -283,14 +309,30 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
         // SAFETY: the caller's promise about `out_report`.
         let place = unsafe { layout::out_struct(&"out_report", out_report)? };
         let report = *object.lock().report();
+        let expected = report.prediction;
+        let error = expected.error.unwrap_or_default();
+        let [checked_error_bound, checked_error] = expected.checked.unwrap_or_default();
+        let has = [
+            (report.costs.is_some(), WK_REPORT_HAS_MS),
+            (expected.milliseconds.is_some(), WK_REPORT_HAS_PREDICTED_MS),
+            (report.reported_ms.is_some(), WK_REPORT_HAS_REPORTED_MS),
+            (expected.error.is_some(), WK_REPORT_HAS_PREDICTED_ERROR),
+            (expected.checked.is_some(), WK_REPORT_HAS_CHECKED_ERROR),
+        ];
         place.set(&wk_report {
             frame_id: report.frame_id,
             passes: report.passes,
             tables_rebuilt: report.tables_rebuilt,
             exposure: report.exposure,
             bytes: report.bytes,
-            has: if report.costs.is_some() { WK_REPORT_HAS_MS } else { 0 },
+            has: has.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
             ms: report.costs.map_or(0.0, |c| c.whole_ms),
+            predicted_ms: expected.milliseconds.unwrap_or(0.0),
+            reported_ms: report.reported_ms.unwrap_or(0.0),
+            predicted_error: error.p95,
+            predicted_error_bound: error.bound,
+            checked_error_bound,
+            checked_error,
             ..wk_report::INIT
         });
         Ok(Status::Ok)

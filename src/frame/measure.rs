@@ -1,4 +1,5 @@
-//! What each effect of a frame costs, where the host asks for it ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
+//! A frame's report, and what each effect of it costs where the host asks for that
+//! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
 //! Wall time round a submission that is waited for, one an effect: true on every driver (timestamps of software drivers are
 //! not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds an effect on a
@@ -6,7 +7,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::{error::Result, gpu::Device};
+use crate::{error::Result, gpu::Device, plan::Prediction};
 
 /// What a frame spends time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +84,29 @@ impl Costs {
     pub(crate) fn add(&mut self, effect: Effect, ms: f64) {
         self.ms[effect as usize] += ms;
     }
+}
+
+/// What the last frame of a view took and showed.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Report {
+    /// The host's frame_id.
+    pub frame_id: u64,
+    /// Full-screen draws recorded for this frame_id so far.
+    pub passes: u32,
+    /// Tables rebuilt for this frame_id so far; 0 when only the camera turned.
+    pub tables_rebuilt: u32,
+    /// Display units per cd/m^2 that were applied.
+    pub exposure: f64,
+    /// Bytes of GPU memory the view holds for itself.
+    pub bytes: u64,
+    /// Drops of rain that were drawn.
+    pub drops: u32,
+    /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
+    pub costs: Option<Costs>,
+    /// What the plan expects of the frame.
+    pub prediction: Prediction,
+    /// What the host said that the weather took in it, ms ([`View::report_time`](super::View::report_time)).
+    pub reported_ms: Option<f64>,
 }
 
 fn ms_since(start: Instant) -> f64 {

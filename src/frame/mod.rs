@@ -6,6 +6,7 @@
 mod composite;
 mod froxels;
 mod measure;
+mod planned;
 mod rain;
 mod shared;
 mod surface;
@@ -15,11 +16,11 @@ mod uniform;
 mod view;
 
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
-pub use measure::{Costs, Effect};
+pub use measure::{Costs, Effect, Report};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};
-pub use view::{Report, View};
+pub use view::View;
 
 use glam::DVec3;
 

@@ -11,7 +11,7 @@ use super::{
     Frame, FrameFlags,
     composite::Variant,
     froxels::{FrameTextures, Froxels},
-    measure::{Costs, Effect, Recording},
+    measure::{Effect, Recording, Report},
     rain::{self, Rain},
     shared::Shared,
     surface,
@@ -24,30 +24,11 @@ use crate::{
     fog::{FogKind, FogUniform, FogVariant},
     gpu::Device,
     ground::GroundUniform,
-    plan::{Budget, Plan, Planner, Present, Situation},
+    plan::{Planner, Present, Situation},
     rain::RainSettings,
     scene::{Camera, ViewRays},
     sky::SkyVolume,
 };
-
-/// What the last frame of a view took and showed.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Report {
-    /// The host's frame_id.
-    pub frame_id: u64,
-    /// Full-screen draws recorded for this frame_id so far.
-    pub passes: u32,
-    /// Tables rebuilt for this frame_id so far; 0 when only the camera turned.
-    pub tables_rebuilt: u32,
-    /// Display units per cd/m^2 that were applied.
-    pub exposure: f64,
-    /// Bytes of GPU memory the view holds for itself.
-    pub bytes: u64,
-    /// Drops of rain that were drawn.
-    pub drops: u32,
-    /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`]).
-    pub costs: Option<Costs>,
-}
 
 /// The textures of one bind group: it is made anew only when the host hands over others.
 #[derive(PartialEq)]
@@ -60,21 +41,21 @@ struct Bound {
 
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
-    device: Arc<Device>,
+    pub(super) device: Arc<Device>,
     shared: Arc<Shared>,
     uniform: wgpu::Buffer,
     fog: wgpu::Buffer,
     ground: wgpu::Buffer,
     copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
-    sky: SkyVolume,
+    pub(super) sky: SkyVolume,
     froxels: Option<Froxels>,
     rain: Rain,
-    planner: Planner,
+    pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
     recorded: Stages,
-    report: Report,
+    pub(super) report: Report,
     /// What the last measured call took, its wait for earlier work included.
     last_call: Option<Duration>,
 }
@@ -127,18 +108,6 @@ impl View {
         &self.report
     }
 
-    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged
-    /// after an error. Default: everything is drawn.
-    ///
-    /// # Errors
-    /// [`Status::InvalidArgument`] naming the field and its range.
-    pub fn set_budget(&mut self, budget: Budget) -> Result<()> {
-        let device = self.device.clone();
-        let _entered = device.enter()?;
-        self.planner.set_budget(&device, budget)?;
-        device.check()
-    }
-
     /// Sets how rain is drawn. Default: [`RainSettings::default`].
     ///
     /// # Errors
@@ -147,20 +116,6 @@ impl View {
         settings.validate()?;
         self.rain.settings = settings;
         Ok(())
-    }
-
-    /// Says what the weather took in the last frame, ms of whatever the host's budget counts (its GPU timer, or the
-    /// waited call): under a budget of time the plan follows it.
-    ///
-    /// # Errors
-    /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; nothing changes then.
-    pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
-        self.planner.report_time(milliseconds)
-    }
-
-    /// What the last frame drew of the weather, and why.
-    pub fn plan(&self) -> &Plan {
-        self.planner.plan()
     }
 
     /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
@@ -376,6 +331,7 @@ impl View {
             };
             let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
             self.planner.begin(&self.device, &situation, &present, pure);
+            self.report.prediction = self.planner.prediction();
         }
         let drawn = self.planner.drawn();
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));

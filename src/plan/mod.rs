@@ -7,7 +7,8 @@
 //!
 //! A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back without waiting), chooses
 //! which [`Part`]s of the weather it can do without ([`parts`]), and fades them out and in so that nothing pops.
-//! [`Plan`] says what was chosen and why, and the error to expect.
+//! [`Plan`] says what was chosen and why, and the error to expect; [`Prediction`] holds that against what was. A plan can be
+//! saved and pinned elsewhere ([`View::save_plan`](crate::frame::View::save_plan)).
 //!
 //! ```
 //! use welkin::plan::{Effect, Method, candidate, candidates};
@@ -26,10 +27,12 @@ mod gauge;
 pub mod governor;
 pub mod parts;
 mod planner;
+mod saved;
 
 pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
 pub use difference::{Difference, difference};
 pub use governor::GaveWay;
 pub use parts::{Estimate, Part, Reason};
-pub use planner::{Budget, PartPlan, Plan};
+pub use planner::{Budget, PartPlan, Plan, Prediction};
 pub(crate) use planner::{Planner, Present, Situation};
+pub(crate) use saved::{read, write};

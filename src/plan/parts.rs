@@ -133,7 +133,7 @@ impl Estimator {
 
 #[cfg(test)]
 mod tests {
-    use super::super::governor::{Choice, Governor};
+    use super::super::governor::{Amount, Choice, Governor};
     use super::*;
 
     /// The set that a tolerance leaves out.
@@ -143,7 +143,7 @@ mod tests {
             possible: (0..3).all(|i| set & (1 << i) == 0 || present[i]),
             error: estimator.estimate(samples, set),
             loss: 0.0,
-            work: 10.0 - (0..3).filter(|i| set & (1 << i) != 0).map(|i| work[i]).sum::<f64>(),
+            amount: Amount { pixels: 6.0, parts: work, before_fog: 0.0 }.without(set),
         });
         Governor::default().choose(&choices, Some(tolerance), None, 0).0
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     gauge::{EVERY, Gauge},
-    governor::{Choice, GaveWay, Governor, IMPORTANCE},
+    governor::{Amount, Choice, GaveWay, Governor, IMPORTANCE},
     parts::{Estimate, Estimator, Part, Reason, Sample},
 };
 use crate::{
@@ -25,8 +25,8 @@ pub struct Budget {
     /// How much parts matter to those who look, [0, 1], in the order of [`Part::ALL`]: what is left out first under a
     /// budget of time. Default [`IMPORTANCE`].
     pub importance: [f64; 3],
-    /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance, so that all channels of a simulator
-    /// draw alike. Default `None`: plan.
+    /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance and the time, so that all channels of a
+    /// simulator draw alike; what of these they do not keep is still said ([`Plan::gave_way`]). Default `None`: plan.
     pub pinned: Option<[bool; 3]>,
 }
 
@@ -50,9 +50,14 @@ impl Budget {
         Ok(())
     }
 
-    /// Whether parts may be left out by what pictures show.
-    fn plans(&self) -> bool {
-        self.pinned.is_none() && (self.tolerance.is_some() || self.milliseconds.is_some())
+    /// Whether it asks what pictures show.
+    fn gauges(&self) -> bool {
+        self.tolerance.is_some() || self.milliseconds.is_some()
+    }
+
+    /// The parts that are pinned out, as a set.
+    fn pinned_out(&self) -> Option<usize> {
+        self.pinned.map(|drawn| (0..3).filter(|i| !drawn[*i]).fold(0, |set, i| set | 1 << i))
     }
 }
 
@@ -73,7 +78,7 @@ pub struct PartPlan {
     pub reason: Reason,
     /// Error of the picture without this part alone, as last gauged.
     pub worth: Estimate,
-    /// Its work in this picture, were it drawn, in units of a pixel with none of the parts.
+    /// What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
     pub work: f64,
 }
 
@@ -92,6 +97,28 @@ pub struct Plan {
     pub milliseconds: Option<f64>,
     /// What could not be kept of the budget.
     pub gave_way: GaveWay,
+}
+
+impl Plan {
+    /// Which parts are drawn once they have faded, in the order of [`Part::ALL`]; a part that there is none of would be.
+    pub fn drawn(&self) -> [bool; 3] {
+        self.parts.map(|p| match p.reason {
+            Reason::WithinTolerance | Reason::OutOfTime => false,
+            Reason::Pinned => p.share > 0.0,
+            _ => true,
+        })
+    }
+}
+
+/// What was predicted of a frame, to be held against what it was.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// What the weather should take in this frame, ms; `None` before the first gauge, and before the first reported time.
+    pub milliseconds: Option<f64>,
+    /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
+    pub error: Option<Estimate>,
+    /// The newest gauge's picture: the bound that had been predicted for what it left out, and the error that was found.
+    pub checked: Option<[f64; 2]>,
 }
 
 impl Default for Plan {
@@ -124,10 +151,11 @@ pub(crate) struct Present {
 }
 
 /// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
-/// air between and clear sky for one lamp and for each further one, fog as a layer.
+/// air between and clear sky for one lamp and for each further one, fog as a layer. Fog has air before it, which costs that
+/// once more in every pixel.
 const AIR: (f64, f64) = (0.4, 0.2);
 const SKY: (f64, f64) = (0.07, 0.05);
-const FOG: f64 = 0.17;
+const FOG: f64 = 0.27;
 
 /// What a gauge was made of: a picture far from it needs another.
 #[derive(Clone, Copy, PartialEq)]
@@ -158,6 +186,13 @@ impl Situation {
     }
 }
 
+/// A gauge under way: of which picture, which parts that leaves out, and the bound predicted for its error.
+struct Gauging {
+    there: Situation,
+    absent: usize,
+    bound: Option<f64>,
+}
+
 /// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
 const FADE_STEP: f64 = 0.005;
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
@@ -167,15 +202,18 @@ pub(crate) struct Planner {
     gauge: Option<Gauge>,
     estimator: Estimator,
     governor: Governor,
-    /// Of the gauge under way, and of the one that the choices stand on.
-    gauging: Option<Situation>,
+    gauging: Option<Gauging>,
+    /// Of the gauge that the choices stand on.
     planned: Option<Situation>,
     last: Option<Situation>,
     /// Every set of parts that could be left out, as last gauged.
     choices: [Choice; 8],
+    /// Work of the picture with everything.
+    all: Amount,
     left_out: usize,
     frames: u32,
     plan: Plan,
+    prediction: Prediction,
 }
 
 impl Planner {
@@ -189,15 +227,17 @@ impl Planner {
             planned: None,
             last: None,
             choices: [Choice::default(); 8],
+            all: Amount::default(),
             left_out: 0,
             frames: 0,
             plan: Plan::default(),
+            prediction: Prediction::default(),
         }
     }
 
     pub fn set_budget(&mut self, device: &Device, budget: Budget) -> Result<()> {
         budget.validate()?;
-        if budget.plans() && self.gauge.is_none() {
+        if budget.gauges() && self.gauge.is_none() {
             self.gauge = Some(Gauge::new(device));
         }
         if budget != self.budget {
@@ -207,8 +247,17 @@ impl Planner {
         Ok(())
     }
 
+    pub fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Of the last frame.
+    pub fn prediction(&self) -> Prediction {
+        self.prediction
     }
 
     /// What the last frame took.
@@ -216,13 +265,16 @@ impl Planner {
         if !(milliseconds.is_finite() && milliseconds > 0.0 && milliseconds <= 1e5) {
             return Err(Error::range("milliseconds", "in (0, 1e5] ms", milliseconds));
         }
-        // A part that fades is paid whole.
-        let fading = |i: &usize| self.plan.parts[*i].share > 0.0 || self.left_out & (1 << i) == 0;
-        let absent = (0..3).filter(|i| !fading(i)).fold(0, |set, i| set | 1 << i);
         if self.planned.is_some() {
-            self.governor.report(milliseconds, self.choices[absent].work);
+            self.governor.report(milliseconds, &self.all, self.absent());
         }
         Ok(())
+    }
+
+    /// The parts of which nothing is drawn: one that fades is paid whole.
+    fn absent(&self) -> usize {
+        let gone = |i: &usize| self.plan.parts[*i].share == 0.0 && self.left_out & (1 << i) != 0;
+        (0..3).filter(gone).fold(0, |set, i| set | 1 << i)
     }
 
     /// Draw everything until the next gauge answers.
@@ -230,39 +282,55 @@ impl Planner {
         (self.planned, self.gauging, self.left_out, self.frames) = (None, None, 0, EVERY);
     }
 
-    /// Once a frame: takes a gauge's answer, chooses, fades. `pure`: the picture may not depend on earlier ones.
+    /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
-        if let Some(pinned) = self.budget.pinned {
-            self.plan = Plan::default();
-            for (part, drawn) in self.plan.parts.iter_mut().zip(pinned) {
-                (part.share, part.reason) = (f32::from(u8::from(drawn)), Reason::Pinned);
+        let mut pure = pure;
+        if self.budget.gauges() {
+            self.frames = self.frames.saturating_add(1);
+            pure |= self.last.replace(*here).is_some_and(|last| last.is_cut(here));
+            if pure || self.planned.as_ref().is_some_and(|p| !p.is_near(here)) {
+                self.forget();
             }
-            return;
-        }
-        if !self.budget.plans() {
-            self.plan = Plan::default();
-            return;
-        }
-        self.frames = self.frames.saturating_add(1);
-        let pure = pure || self.last.replace(*here).is_some_and(|last| last.is_cut(here));
-        if pure || self.planned.as_ref().is_some_and(|p| !p.is_near(here)) {
-            self.forget();
-        }
-        if let Some(gauge) = &mut self.gauge
-            && let Some(samples) = gauge.advance(device)
-            && let Some(there) = self.gauging.take()
-            && !pure
-            && there.is_near(here)
-        {
-            let importance = self.budget.importance;
-            weigh(&mut self.estimator, samples, present, importance, (&mut self.choices, &mut self.plan));
-            self.planned = Some(there);
+            self.take_gauge(device, here, present);
+        } else {
+            (self.plan, self.prediction) = (Plan::default(), Prediction::default());
         }
         if self.planned.is_some() {
             self.choose(present);
-        } else {
+        } else if self.budget.gauges() {
+            self.plan = Plan { parts: self.plan.parts, ..Plan::default() };
             self.plan.parts.iter_mut().for_each(|p| p.reason = Reason::NotGauged);
         }
+        match self.budget.pinned_out() {
+            Some(set) => self.pin_parts(set),
+            None => self.fade(present, pure),
+        }
+        let absent = self.absent();
+        self.prediction.milliseconds = self.planned.as_ref().and_then(|_| self.governor.ms(&self.all.without(absent)));
+        self.prediction.error = self.planned.as_ref().map(|_| self.choices[absent].error);
+    }
+
+    /// Takes the gauge's answer, if it has come.
+    fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Present) {
+        let Some(samples) = self.gauge.as_mut().and_then(|g| g.advance(device)) else { return };
+        let Some(gauging) = self.gauging.take().filter(|g| g.there.is_near(here)) else { return };
+        let importance = self.budget.importance;
+        let to = (&mut self.choices, &mut self.plan);
+        self.all = weigh(&mut self.estimator, samples, present, importance, to);
+        let found = self.choices[gauging.absent].error.p95;
+        self.prediction.checked = gauging.bound.map(|bound| [bound, found]);
+        self.planned = Some(gauging.there);
+    }
+
+    /// Parts appear and go at once where they are pinned.
+    fn pin_parts(&mut self, out: usize) {
+        self.left_out = out;
+        for (i, part) in self.plan.parts.iter_mut().enumerate() {
+            (part.share, part.reason) = (f32::from(u8::from(out & (1 << i) == 0)), Reason::Pinned);
+        }
+    }
+
+    fn fade(&mut self, present: &Present, pure: bool) {
         for (i, part) in self.plan.parts.iter_mut().enumerate() {
             let p99 = part.worth.worst.min(2.0 * part.worth.p95);
             // A pixel that loses half of its light sees each step twice as large at the end.
@@ -276,7 +344,10 @@ impl Planner {
     /// Chooses anew among what was gauged last: a reported time may ask for another set in any frame.
     fn choose(&mut self, present: &Present) {
         let Budget { tolerance, milliseconds, .. } = self.budget;
-        let (set, gave_way) = self.governor.choose(&self.choices, tolerance, milliseconds, self.left_out);
+        let (set, gave_way) = match self.budget.pinned_out() {
+            Some(set) => (set, self.governor.judge(&self.choices[set], tolerance, milliseconds)),
+            None => self.governor.choose(&self.choices, tolerance, milliseconds, self.left_out),
+        };
         self.left_out = set;
         let chosen = self.choices[set];
         let within = tolerance.is_some_and(|t| chosen.error.keeps(t));
@@ -290,9 +361,9 @@ impl Planner {
             };
         }
         self.plan.error = chosen.error;
-        self.plan.work = chosen.work;
-        self.plan.work_of_everything = self.choices[0].work;
-        self.plan.milliseconds = self.governor.ms_per_work().map(|k| k * chosen.work);
+        self.plan.work = chosen.amount.total();
+        self.plan.work_of_everything = self.all.total();
+        self.plan.milliseconds = self.governor.ms(&chosen.amount);
         self.plan.gave_way = gave_way;
     }
 
@@ -304,39 +375,46 @@ impl Planner {
 
     /// The gauge, if this frame should be gauged.
     pub fn due(&mut self, here: &Situation) -> Option<&mut Gauge> {
+        let absent = self.absent();
         let gauge = self.gauge.as_mut()?;
-        if !self.budget.plans() || self.frames < EVERY || !gauge.is_idle() {
+        if !self.budget.gauges() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
-        (self.frames, self.gauging) = (0, Some(*here));
+        let bound = self.prediction.error.map(|e| e.bound);
+        self.gauging = Some(Gauging { there: *here, absent, bound });
+        self.frames = 0;
         Some(gauge)
     }
 }
 
-/// Work and error of every set of parts, from a gauge's samples.
+/// Work and error of every set of parts, from a gauge's samples. The work of everything.
 fn weigh(
     estimator: &mut Estimator,
     samples: &[Sample],
     present: &Present,
     importance: [f64; 3],
     (choices, plan): (&mut [Choice; 8], &mut Plan),
-) {
+) -> Amount {
     let share = |kind: f32| samples.iter().filter(|s| s[3] == kind).count() as f64 / samples.len().max(1) as f64;
     let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
     let lamps = f64::from(present.lamps.saturating_sub(1));
-    let work =
-        [objects * (AIR.0 + AIR.1 * lamps), (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
-    let all = pixels + (0..3).filter(|i| present.parts[*i]).map(|i| work[i]).sum::<f64>();
+    let air = AIR.0 + AIR.1 * lamps;
+    let work = [objects * air, (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
+    let both = present.parts[0] && present.parts[1];
+    let before_fog = if both { (objects + sky) * air * pixels } else { 0.0 };
+    let all = Amount { pixels, parts: [0, 1, 2].map(|i| if present.parts[i] { work[i] } else { 0.0 }), before_fog };
     for (set, choice) in choices.iter_mut().enumerate() {
         choice.error = estimator.estimate(samples, set);
     }
     for (i, part) in plan.parts.iter_mut().enumerate() {
-        (part.worth, part.work) = (choices[1 << i].error, work[i]);
+        part.worth = choices[1 << i].error;
+        part.work = if present.parts[i] { all.total() - all.without(1 << i).total() } else { work[i] };
     }
     for (set, choice) in choices.iter_mut().enumerate() {
         let parts = || (0..3).filter(|i| set & (1 << i) != 0);
         choice.possible = parts().all(|i| present.parts[i]);
         choice.loss = parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum();
-        choice.work = all - parts().map(|i| work[i]).sum::<f64>();
+        choice.amount = all.without(set);
     }
+    all
 }

@@ -142,12 +142,9 @@ impl SkySettings {
         self.wavelengths / 3
     }
 
-    /// Checks every number against its range.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field and the range.
-    pub fn check(&self) -> Result<()> {
-        let fields = [
+    /// Every number with its name and range.
+    pub(crate) fn numbers(&self) -> [(&'static str, u32, u32, u32); 19] {
+        [
             ("wavelengths", self.wavelengths, 3, MOST_WAVELENGTHS),
             ("orders", self.orders, 3, 16),
             ("suns", self.suns, 16, 128),
@@ -167,8 +164,15 @@ impl SkySettings {
             ("air_slices", self.air_slices, 4, 64),
             ("air_panels", self.air_panels, 1, 16),
             ("march_cells", self.march_cells, 1, 4096),
-        ];
-        for (name, value, lo, hi) in fields {
+        ]
+    }
+
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and the range.
+    pub fn check(&self) -> Result<()> {
+        for (name, value, lo, hi) in self.numbers() {
             if !(lo..=hi).contains(&value) {
                 return Err(Error::range(name, &format!("in [{lo}, {hi}]"), value));
             }

@@ -145,6 +145,11 @@ impl SkyVolume {
         Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, written })
     }
 
+    /// Of the tables that it was made for.
+    pub fn settings(&self) -> &SkySettings {
+        &self.kit.settings
+    }
+
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
     pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
         use Slot::{Sampler, Table, TableArray, Uniform};

@@ -5,6 +5,7 @@
 //! if a function of the header has none.
 
 mod handles;
+mod plan;
 mod queries;
 mod sky;
 mod structs;

@@ -1,6 +1,8 @@
 //! The plan against pictures: what it leaves out is within the tolerance, what it keeps is needed.
 
+mod kept;
 mod scenes;
+mod time;
 
 use scenes::{Bench, Shot};
 use welkin::plan::{Budget, GaveWay, Reason, difference, parts::WORST};
@@ -17,8 +19,10 @@ fn keeps(picture: &[f64], everything: &[f64], tolerance: f64) -> bool {
 #[test]
 fn planned_pictures_are_sufficient_and_minimal() {
     let mut bench = Bench::new();
-    let (mut left_out, mut exceeded, mut needless) = (0, 0, Vec::new());
-    for seed in 0..24 {
+    // Every preset once, or four times over.
+    let scenes = if std::env::var_os("WELKIN_ACCEPT").is_some() { 112 } else { 28 };
+    let (mut left_out, mut planned_less, mut exceeded, mut needless) = (0, 0, 0, Vec::new());
+    for seed in 0..scenes {
         let shot = Shot::seeded(seed);
         bench.set(&shot);
         let everything = bench.everything(&shot);
@@ -36,8 +40,11 @@ fn planned_pictures_are_sufficient_and_minimal() {
             plan.work / plan.work_of_everything,
             plan.parts.map(|p| (p.share, p.reason, p.worth.p95))
         );
-        assert!(d.p95 <= shot.tolerance, "{}: {d:?} {plan:?}", shot.name);
-        exceeded += u32::from(d.p95 > plan.error.bound + 2e-3);
+        // The gauge sees every ninth of these pixels.
+        let kept = d.p95 <= shot.tolerance && d.worst <= 1.2 * WORST * shot.tolerance;
+        assert!(kept, "{}: {d:?} {plan:?}", shot.name);
+        planned_less += u32::from(plan.work < plan.work_of_everything);
+        exceeded += u32::from(d.p95 > plan.error.bound + 1e-4);
         let drawn = plan.parts.map(|p| p.share > 0.0);
         for (i, part) in plan.parts.iter().enumerate() {
             match part.reason {
@@ -55,7 +62,7 @@ fn planned_pictures_are_sufficient_and_minimal() {
         }
     }
     assert!(left_out >= 5, "{left_out} parts left out in all: these scenes ask nothing of the planner");
-    assert!(exceeded <= 1, "the bound was exceeded in {exceeded} of 24");
+    assert!(20 * exceeded <= planned_less.max(20), "the bound was exceeded in {exceeded} of {planned_less}");
     assert!(needless.is_empty(), "{needless:?}");
 }
 

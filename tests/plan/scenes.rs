@@ -41,7 +41,7 @@ fn chance(seed: u64, draw: u64) -> f64 {
 impl Shot {
     pub fn seeded(seed: u64) -> Self {
         let names: Vec<&'static str> = Weather::preset_names().collect();
-        let weather = names[(seed as usize * 7 + 3) % names.len()];
+        let weather = names[seed as usize % names.len()];
         let u = |draw| chance(seed + 1, draw);
         let height_m = [2.0, 2.0, 30.0, 400.0, 3000.0, 11_000.0][(u(1) * 6.0) as usize];
         Self {
@@ -93,7 +93,7 @@ pub struct Bench {
     device: Arc<Device>,
     context: Context,
     pub view: View,
-    plain: View,
+    pub plain: View,
     color: wgpu::Texture,
     depth: wgpu::Texture,
     time_s: f64,
@@ -169,6 +169,11 @@ impl Bench {
         }
     }
 
+    /// Share of the pixels in which the host drew something.
+    pub fn share_of_objects(&self) -> f64 {
+        self.host.1.iter().filter(|d| **d > 0.0).count() as f64 / self.host.1.len() as f64
+    }
+
     fn upload(&self) {
         let size = self.color.size();
         let put = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
@@ -180,7 +185,7 @@ impl Bench {
         put(&self.depth, bytemuck::cast_slice(&self.host.1), 4);
     }
 
-    fn draw(&mut self, shot: &Shot, planned: bool, flags: FrameFlags) -> Vec<f64> {
+    pub fn draw(&mut self, shot: &Shot, planned: bool, flags: FrameFlags) -> Vec<f64> {
         self.upload();
         self.frame_id += 1;
         let frame = Frame {

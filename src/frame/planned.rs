@@ -1,0 +1,62 @@
+//! A view's budget and plan: what it may leave out of its pictures, and what it did.
+
+use super::View;
+use crate::{
+    error::{Error, Result, Status},
+    plan::{self, Budget, Plan, Reason},
+};
+
+impl View {
+    /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged
+    /// after an error. Default: everything is drawn.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field and its range.
+    pub fn set_budget(&mut self, budget: Budget) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        self.planner.set_budget(&device, budget)?;
+        device.check()
+    }
+
+    /// Says what the weather took in the last frame, ms of whatever the host's budget counts (its GPU timer, or the
+    /// waited call): under a budget of time the plan follows it.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; nothing changes then.
+    pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
+        self.planner.report_time(milliseconds)?;
+        self.report.reported_ms = Some(milliseconds);
+        Ok(())
+    }
+
+    /// The plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn, and the sky's
+    /// settings.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] while the view has a budget but has not gauged its picture yet: some frames follow each jump
+    /// of camera, sun or weather.
+    pub fn save_plan(&self) -> Result<String> {
+        let plan = self.plan();
+        if plan.parts.iter().any(|p| p.reason == Reason::NotGauged) {
+            return Err(Error::new(Status::WrongOrder, "the plan is not made yet: this picture has not been gauged"));
+        }
+        Ok(plan::write(plan.drawn(), self.sky.settings()))
+    }
+
+    /// Pins a plan that [`View::save_plan`] wrote ([`Budget::pinned`]); the rest of the budget stays, and says what the
+    /// plan does not keep. Unchanged after an error.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what is no such plan or of another version, naming line and column or the field;
+    /// [`Status::InvalidArgument`] naming the setting of the sky in which the view's context differs.
+    pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
+        let pinned = Some(plan::read(plan, self.sky.settings())?);
+        self.set_budget(Budget { pinned, ..*self.planner.budget() })
+    }
+
+    /// What the last frame drew of the weather, and why.
+    pub fn plan(&self) -> &Plan {
+        self.planner.plan()
+    }
+}

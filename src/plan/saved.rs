@@ -1,0 +1,183 @@
+//! A plan as text, so that other channels and later sessions draw alike.
+//!
+//! Beside the parts that are drawn it holds the sky's settings: views of a context with others would not draw alike, and
+//! refuse it.
+
+use toml::{Table, Value};
+
+use super::parts::Part;
+use crate::{
+    error::{Error, Result, Status},
+    sky::{SkyModel, SkySettings},
+};
+
+const VERSION: u32 = 1;
+/// A plan has some hundreds.
+const MOST_BYTES: usize = 1 << 16;
+
+/// The parts that are drawn, under these settings.
+pub(crate) fn write(drawn: [bool; 3], sky: &SkySettings) -> String {
+    let mut text = format!("version = {VERSION}\n\n[sky]\nmodel = \"{}\"\n", sky.model.name());
+    for (name, value, ..) in sky.numbers() {
+        text += &format!("{name} = {value}\n");
+    }
+    text += "\n[drawn]\n";
+    for (part, drawn) in Part::ALL.iter().zip(drawn) {
+        text += &format!("{} = {drawn}\n", part.name());
+    }
+    text
+}
+
+/// The parts that a plan draws, where the settings are its own.
+///
+/// # Errors
+/// [`Status::Parse`] for what is no plan or of another version, by line and column or by the field's name;
+/// [`Status::InvalidArgument`] if the settings are others.
+pub(crate) fn read(bytes: &[u8], sky: &SkySettings) -> Result<[bool; 3]> {
+    if bytes.len() > MOST_BYTES {
+        return Err(fault(&format!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|e| fault(&format!(": {e}")))?;
+    let whole: Table = toml::from_str(text).map_err(|e| fault(&format!(": {e}")))?;
+    // First: what else a plan of another version holds is not known.
+    let version = whole.get("version");
+    if version != Some(&Value::from(i64::from(VERSION))) {
+        return Err(fault(&format!(".version must be {VERSION}, got {}", shown(version))));
+    }
+    only(&whole, "", &["version", "sky", "drawn"])?;
+    let (settings, drawn) = (table(&whole, "sky")?, table(&whole, "drawn")?);
+    let numbers = sky.numbers();
+    let names: Vec<&str> = std::iter::once("model").chain(numbers.iter().map(|n| n.0)).collect();
+    only(settings, ".sky", &names)?;
+    only(drawn, ".drawn", &Part::ALL.map(Part::name))?;
+    let mut answer = [false; 3];
+    for (part, answer) in Part::ALL.iter().zip(&mut answer) {
+        let found = drawn.get(part.name());
+        *answer = found
+            .and_then(Value::as_bool)
+            .ok_or_else(|| fault(&format!(".drawn.{} must be true or false, got {}", part.name(), shown(found))))?;
+    }
+    let model = text_of(settings, "model")?;
+    SkyModel::from_name(model).map_err(|e| Error::new(Status::Parse, format!("plan.sky.{}", e.message)))?;
+    differs("model", model, sky.model.name())?;
+    for (name, own, lo, hi) in numbers {
+        let found = settings.get(name);
+        let value = found.and_then(Value::as_integer).filter(|v| (i64::from(lo)..=i64::from(hi)).contains(v));
+        let value = value.ok_or_else(|| {
+            fault(&format!(".sky.{name} must be a whole number in [{lo}, {hi}], got {}", shown(found)))
+        })?;
+        differs(name, value, i64::from(own))?;
+    }
+    Ok(answer)
+}
+
+fn fault(what: &str) -> Error {
+    Error::new(Status::Parse, format!("plan{}{what}", if what.starts_with(['.', ':']) { "" } else { " " }))
+}
+
+fn shown(value: Option<&Value>) -> String {
+    value.map_or("nothing".into(), |v| v.to_string().chars().take(40).collect())
+}
+
+fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
+    let unknown = table.keys().find(|k| !known.contains(&k.as_str()));
+    unknown.map_or(Ok(()), |k| {
+        let k: String = k.chars().take(40).collect();
+        Err(fault(&format!("{path}.{k} is unknown: the fields are {}", known.join(", "))))
+    })
+}
+
+fn table<'a>(whole: &'a Table, name: &str) -> Result<&'a Table> {
+    let found = whole.get(name);
+    found.and_then(Value::as_table).ok_or_else(|| fault(&format!(".{name} must be a table, got {}", shown(found))))
+}
+
+fn text_of<'a>(table: &'a Table, name: &str) -> Result<&'a str> {
+    let found = table.get(name);
+    found.and_then(Value::as_str).ok_or_else(|| fault(&format!(".sky.{name} must be a text, got {}", shown(found))))
+}
+
+/// Views draw alike only with the same sky.
+fn differs<T: PartialEq + std::fmt::Display>(name: &str, saved: T, own: T) -> Result<()> {
+    if saved == own {
+        return Ok(());
+    }
+    Err(Error::range(&format!("plan.sky.{name}"), &format!("{own} as in this view's context"), saved))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_plan_comes_back_as_it_was() {
+        let sky = SkySettings::default();
+        for set in 0..8 {
+            let drawn = [0, 1, 2].map(|i| set & (1 << i) != 0);
+            assert_eq!(read(write(drawn, &sky).as_bytes(), &sky).unwrap(), drawn);
+        }
+    }
+
+    #[test]
+    fn what_is_cut_or_mangled_is_refused_or_says_the_same() {
+        let sky = SkySettings::default();
+        let drawn = [true, false, true];
+        let text = write(drawn, &sky);
+        let mut refused = 0;
+        let mut tried = |bytes: &[u8], what: &str| match read(bytes, &sky) {
+            Ok(answer) => assert_eq!(answer, drawn, "{what}"),
+            Err(e) => {
+                assert!(matches!(e.status, Status::Parse | Status::InvalidArgument), "{what}: {e:?}");
+                assert!(e.message.starts_with("plan"), "{what}: {}", e.message);
+                refused += 1;
+            }
+        };
+        let bytes = text.as_bytes();
+        for end in 0..bytes.len() {
+            tried(&bytes[..end], &format!("cut at {end}"));
+        }
+        for at in 0..bytes.len() {
+            for byte in 0..=255 {
+                let mut mangled = bytes.to_vec();
+                mangled[at] = byte;
+                tried(&mangled, &format!("{byte} at {at}"));
+            }
+            let mut shorter = bytes.to_vec();
+            shorter.remove(at);
+            tried(&shorter, &format!("without {at}"));
+        }
+        for line in text.lines() {
+            tried(text.replacen(&format!("{line}\n"), "", 1).as_bytes(), &format!("without `{line}`"));
+            tried(text.replacen(line, &format!("{line}\n{line}"), 1).as_bytes(), &format!("twice `{line}`"));
+        }
+        assert!(refused > 50_000, "{refused} refused");
+    }
+
+    #[test]
+    fn faults_name_the_field_and_what_is_accepted() {
+        let sky = SkySettings::default();
+        let text = write([true; 3], &sky);
+        let says = |from: &str, to: &str| read(text.replacen(from, to, 1).as_bytes(), &sky).unwrap_err().message;
+        for (from, to, want) in [
+            ("version = 1", "version = 2\nparts = 5", "plan.version must be 1, got 2"),
+            ("version = 1", "", "plan.version must be 1, got nothing"),
+            ("fog = true", "fog = 1", "plan.drawn.fog must be true or false, got 1"),
+            ("fog = true\n", "", "plan.drawn.fog must be true or false, got nothing"),
+            ("fog = true", "fog = true\nhail = true", "plan.drawn.hail is unknown: the fields are air, fog, sky"),
+            ("[drawn]", "[done]", "plan.done is unknown"),
+            ("suns = 64", "suns = 48", "plan.sky.suns must be 64 as in this view's context, got 48"),
+            ("suns = 64", "suns = 1e9", "plan.sky.suns must be a whole number in [16, 128], got 1000000000"),
+            ("suns = 64", "suns = -3", "plan.sky.suns must be a whole number in [16, 128], got -3"),
+            ("\"directional\"", "\"best\"", "plan.sky.model must be one of table3d"),
+            ("\"directional\"", "\"isotropic\"", "plan.sky.model must be directional as in this view's context"),
+            ("[sky]", "[sky", "plan: TOML parse error at line 3"),
+        ] {
+            assert!(says(from, to).starts_with(want), "{}", says(from, to));
+        }
+        let deep = format!("version = {}1{}", "[".repeat(20_000), "]".repeat(20_000));
+        assert!(read(deep.as_bytes(), &sky).unwrap_err().message.starts_with("plan: "));
+        assert!(read(&[0xff; 8], &sky).unwrap_err().message.starts_with("plan: invalid utf-8"));
+        assert!(read(&vec![b'#'; MOST_BYTES + 1], &sky).unwrap_err().message.contains("at most 65536 bytes"));
+        assert!(read(b"", &sky).unwrap_err().message.contains("plan.version"));
+    }
+}

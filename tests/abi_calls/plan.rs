@@ -1,0 +1,174 @@
+//! Budgets and plans: figures out of range, plans that go from view to view, and files that are no plans.
+
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+use welkin::capi::{frame::*, plan::*, status::*, view::*};
+
+use super::world::{World, init, message, next_frame};
+
+fn budget(has: wk_budget_has_flags) -> wk_budget {
+    wk_budget { has, tolerance: 0.01, milliseconds: 2.0, ..init("wk_budget") }
+}
+
+/// Draws a frame and answers the parts in it.
+fn drawn(world: &World) -> wk_part_flags {
+    let target = wk_own_target { color: world.texture, ..init("wk_own_target") };
+    let mut projection = [0.0; 16];
+    (projection[0], projection[5], projection[11], projection[14]) = (1.0, 1.0, -1.0, 0.1);
+    let target = (&raw const target).cast();
+    let flags = WK_FRAME_DEPTH_REVERSED;
+    let frame = wk_frame { frame_id: next_frame(), projection, flags, target, ..init("wk_frame") };
+    let mut plan = init::<wk_plan>("wk_plan");
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL & !WK_STAGE_TONE), WK_OK, "{}", message());
+        assert_eq!(wk_view_get_plan(world.view, &mut plan), WK_OK);
+    }
+    plan.drawn
+}
+
+fn report(world: &World) -> wk_report {
+    let mut report = init("wk_report");
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_view_get_report(world.view, &mut report) }, WK_OK);
+    report
+}
+
+fn saved(world: &World) -> Vec<u8> {
+    let mut size = 0;
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        assert_eq!(wk_view_save_plan(world.view, null_mut(), 0, &mut size), WK_OK, "{}", message());
+        let mut plan = vec![0xAA_u8; size + 1];
+        let mut got = 0;
+        let few = wk_view_save_plan(world.view, plan.as_mut_ptr().cast(), size - 1, &mut got);
+        assert!(few == WK_ERROR_INVALID_ARGUMENT && got == size && plan[0] == 0xAA);
+        assert!(message().contains(&format!("capacity must be at least {size}")), "{}", message());
+        assert_eq!(wk_view_save_plan(world.view, plan.as_mut_ptr().cast(), plan.len(), &mut got), WK_OK);
+        assert!(got == size && plan.pop() == Some(0xAA));
+        plan
+    }
+}
+
+fn load(world: &World, plan: &[u8]) -> (wk_status, String) {
+    // SAFETY: live pointers with the size given.
+    (unsafe { wk_view_load_plan(world.view, plan.as_ptr().cast(), plan.len()) }, message())
+}
+
+#[test]
+fn budgets_and_times_out_of_range_are_named_with_their_range() {
+    let world = World::new();
+    // SAFETY, for all: live pointers.
+    let refused = |b: wk_budget, names: &str| {
+        assert_eq!(unsafe { wk_view_set_budget(world.view, &b) }, WK_ERROR_INVALID_ARGUMENT, "{names}");
+        assert!(message().starts_with(&format!("wk_view_set_budget: {names}")), "{}", message());
+    };
+    for tolerance in [0.0, -0.01, 1.01, f64::MAX] {
+        refused(wk_budget { tolerance, ..budget(WK_BUDGET_HAS_TOLERANCE) }, "budget.tolerance must be in (0, 1], got");
+    }
+    for milliseconds in [0.0, -2.0, 1000.1, f64::MAX] {
+        let b = wk_budget { milliseconds, ..budget(WK_BUDGET_HAS_MILLISECONDS) };
+        refused(b, "budget.milliseconds must be in (0, 1000], got");
+    }
+    for importance_fog in [-0.1, 1.1] {
+        let b = wk_budget { importance_fog, ..budget(WK_BUDGET_HAS_IMPORTANCE) };
+        refused(b, "budget.importance of fog must be in [0, 1], got");
+    }
+    for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
+        assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().starts_with("wk_view_report_time: milliseconds must be in (0, 1e5] ms"), "{}", message());
+        assert_eq!(report(&world).has & WK_REPORT_HAS_REPORTED_MS, 0);
+    }
+    for part in [0, WK_PART_AIR | WK_PART_FOG, 8, u32::MAX] {
+        let mut plan = init::<wk_part_plan>("wk_part_plan");
+        assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());
+    }
+    // What is not asked for is not looked at.
+    let b = wk_budget { tolerance: -1.0, milliseconds: -1.0, importance_air: 7.0, ..budget(0) };
+    assert_eq!(unsafe { wk_view_set_budget(world.view, &b) }, WK_OK);
+}
+
+#[test]
+fn a_plan_goes_from_one_view_to_another() {
+    let (one, other) = (World::new(), World::new());
+    let everything = WK_PART_AIR | WK_PART_FOG | WK_PART_SKY;
+    assert_eq!((drawn(&one), drawn(&other)), (everything, everything));
+    let pins = wk_budget { pinned_parts: WK_PART_SKY, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_view_set_budget(one.view, &pins) }, WK_OK);
+    assert_eq!(drawn(&one), WK_PART_SKY);
+    let plan = saved(&one);
+    assert_eq!(load(&other, &plan).0, WK_OK, "{}", message());
+    assert_eq!(drawn(&other), WK_PART_SKY);
+    assert_eq!(saved(&other), plan);
+    let mut part = init::<wk_part_plan>("wk_part_plan");
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_view_get_part_plan(other.view, WK_PART_AIR, &mut part), WK_OK);
+        assert_eq!((part.reason, part.share), (WK_PLAN_REASON_PINNED, 0.0));
+        assert_eq!(wk_view_set_budget(other.view, null()), WK_OK);
+    }
+    assert_eq!(drawn(&other), everything, "wk_view_set_budget ends a pinned plan");
+}
+
+#[test]
+fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
+    let world = World::new();
+    let pins = wk_budget { pinned_parts: WK_PART_FOG, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_view_set_budget(world.view, &pins) }, WK_OK);
+    assert_eq!(drawn(&world), WK_PART_FOG);
+    let plan = saved(&world);
+    let text = String::from_utf8(plan.clone()).unwrap().replace("= false", "= true");
+    let later = text.replace("version = 1", "version = 7");
+    let finer = text.replace("suns = 64", "suns = 96");
+    for (bytes, status, says) in [
+        (&[][..], WK_ERROR_PARSE, "plan.version must be 1, got nothing"),
+        (&text.as_bytes()[..text.len() / 2], WK_ERROR_PARSE, "plan"),
+        (later.as_bytes(), WK_ERROR_PARSE, "plan.version must be 1, got 7"),
+        (finer.as_bytes(), WK_ERROR_INVALID_ARGUMENT, "plan.sky.suns must be 64 as in this view's context, got 96"),
+        (&[0xff, 0, 0xff], WK_ERROR_PARSE, "plan: invalid utf-8"),
+        (&[0; 4096], WK_ERROR_PARSE, "plan: TOML parse error at line 1"),
+        (&[b' '; 1 << 17], WK_ERROR_PARSE, "plan must have at most 65536 bytes, got 131072"),
+    ] {
+        let (got, message) = load(&world, bytes);
+        assert_eq!(got, status, "{message}");
+        assert!(message.starts_with("wk_view_load_plan: ") && message.contains(says), "{says}: {message}");
+        assert_eq!(drawn(&world), WK_PART_FOG, "{says}");
+    }
+    // SAFETY: NULL, or sizes that are the buffer's.
+    unsafe {
+        assert_eq!(wk_view_load_plan(world.view, null(), 9), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("plan must not be NULL"), "{}", message());
+        assert_eq!(wk_view_save_plan(world.view, null_mut(), 9, &mut 0), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("buffer must not be NULL"), "{}", message());
+        let mut buffer = [0_u8; 8];
+        let at: *mut c_void = buffer.as_mut_ptr().cast();
+        assert_eq!(wk_view_save_plan(world.view, at, 8, null_mut()), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("out_size must not be NULL"), "{}", message());
+    }
+    assert_eq!(drawn(&world), WK_PART_FOG);
+}
+
+#[test]
+fn a_plan_that_is_not_made_yet_is_not_saved_and_the_report_says_what_it_does_not_know() {
+    let world = World::new();
+    drawn(&world);
+    assert_eq!(report(&world).has, 0, "no budget");
+    // SAFETY: live pointers.
+    unsafe {
+        let both = budget(WK_BUDGET_HAS_TOLERANCE | WK_BUDGET_HAS_MILLISECONDS);
+        assert_eq!(wk_view_set_budget(world.view, &both), WK_OK);
+        drawn(&world);
+        let mut size = 7;
+        assert_eq!(wk_view_save_plan(world.view, null_mut(), 0, &mut size), WK_ERROR_WRONG_ORDER);
+        assert!(message().contains("the plan is not made yet") && size == 7, "{}", message());
+        let says = report(&world);
+        assert_eq!((says.has, says.predicted_ms, says.predicted_error), (0, 0.0, 0.0));
+        assert_eq!(wk_view_report_time(world.view, 3.5), WK_OK);
+        let says = report(&world);
+        assert_eq!((says.has, says.reported_ms), (WK_REPORT_HAS_REPORTED_MS, 3.5));
+    }
+}
