@@ -13,8 +13,8 @@ use crate::{
     sky::{LightTable, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables},
 };
 
-/// Largest share of a rebuild that one frame pays.
-const SHARE_PER_FRAME: f32 = 1.0 / 16.0;
+/// A fade's share per frame, whatever the time: it costs as much in a frame however long it lasts.
+const FADE_PER_FRAME: f32 = 1.0 / 16.0;
 
 /// Tables that follow the weather's air.
 pub(crate) struct FollowedSky {
@@ -43,22 +43,23 @@ impl FollowedSky {
         }
     }
 
-    /// Leads the tables after `planet` by one frame's share of work; whole at the first frame, and where the picture may
-    /// not depend on earlier ones. Says whether anything was built.
+    /// Leads the tables after `planet` by `share` of a rebuild's work; whole at the first frame, and with a share of 1, where
+    /// the picture may not depend on earlier ones. Says whether anything was built.
     pub fn follow(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         planet: &Planet,
         frame_id: u64,
-        whole: bool,
+        share: f32,
     ) -> Result<bool> {
-        if !whole && self.frame_id == Some(frame_id) {
+        if share < 1.0 && self.frame_id == Some(frame_id) {
             return Ok(false);
         }
         self.frame_id = Some(frame_id);
         self.begin(planet)?;
-        let progress = self.tables.update(encoder, planet, if whole { 1.0 } else { SHARE_PER_FRAME })?;
+        let share = if self.tables.is_fading() { share.max(FADE_PER_FRAME) } else { share };
+        let progress = self.tables.update(encoder, planet, share)?;
         device.check()?;
         Ok(progress.work > 0.0)
     }

@@ -80,6 +80,7 @@ impl View {
         let ground = buffer("ground", size_of::<GroundUniform>());
         let shared = context.shared().clone();
         let sky = SkyVolume::new(&*context.sky()?)?;
+        let planner = Planner::new(sky.settings());
         let rain = Rain::new(&device, RainSettings::default());
         device.check()?;
         drop(_entered);
@@ -94,7 +95,7 @@ impl View {
             sky,
             froxels: None,
             rain,
-            planner: Planner::new(),
+            planner,
             planned_for: None,
             light_scale: 0.0,
             recorded: Stages(0),
@@ -228,7 +229,8 @@ impl View {
     fn prepare(&mut self, context: &Context, frame: &Frame<'_>, scene: &Scene, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = context.sky()?;
         let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
-        let work = tables.follow(&self.device, to.encoder, &scene.planet, frame.frame_id, pure)?;
+        let share = if pure { 1.0 } else { self.planner.share_of_tables() };
+        let work = tables.follow(&self.device, to.encoder, &scene.planet, frame.frame_id, share)?;
         to.ends(Effect::SkyTables, work)?;
         let drawn = self.sky.prepare(to.encoder, &tables, &scene.observer(pure))?;
         to.ends(Effect::SkyView, drawn)?;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{
+    Price,
     gauge::{EVERY, Gauge},
     governor::{Amount, Choice, GaveWay, Governor, IMPORTANCE},
     parts::{Estimate, Estimator, Part, Reason, Sample},
@@ -10,6 +11,7 @@ use super::{
 use crate::{
     error::{Error, Result, check_range},
     gpu::Device,
+    sky::SkySettings,
     weather::Conditions,
 };
 
@@ -193,12 +195,17 @@ struct Gauging {
     bound: Option<f64>,
 }
 
+/// Least and largest share of a rebuild of the sky's tables that one frame pays: finer strips are not cut.
+const SHARE: (f64, f64) = (1.0 / 48.0, 1.0 / 16.0);
+
 /// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
 const FADE_STEP: f64 = 0.005;
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
 pub(crate) struct Planner {
     budget: Budget,
+    /// Work of building the sky's tables, in pixels with none of the parts.
+    rebuild: f64,
     gauge: Option<Gauge>,
     estimator: Estimator,
     governor: Governor,
@@ -217,8 +224,10 @@ pub(crate) struct Planner {
 }
 
 impl Planner {
-    pub fn new() -> Self {
+    pub fn new(sky: &SkySettings) -> Self {
+        let (work, price) = (crate::sky::candidates::work(sky), Price::default());
         Self {
+            rebuild: work.rebuild.at(&price) / work.pixel.at(&price),
             budget: Budget::default(),
             gauge: None,
             estimator: Estimator::new(0),
@@ -365,6 +374,15 @@ impl Planner {
         self.plan.work_of_everything = self.all.total();
         self.plan.milliseconds = self.governor.ms(&chosen.amount);
         self.plan.gave_way = gave_way;
+    }
+
+    /// The share of a rebuild of the sky's tables that a frame has time for.
+    pub fn share_of_tables(&self) -> f32 {
+        let frame = self.governor.ms(&self.all.without(self.absent()));
+        let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);
+        let whole = self.governor.ms(&Amount { pixels: self.rebuild, ..Amount::default() });
+        let share = spare.zip(whole).map_or(SHARE.1, |(spare, whole)| (spare / whole).clamp(SHARE.0, SHARE.1));
+        share as f32
     }
 
     /// How much of each part the frame draws, and how often the gauge composes.

@@ -235,6 +235,11 @@ impl SkyTables {
         }
     }
 
+    /// Whether what was built fades in, or is about to.
+    pub(crate) fn is_fading(&self) -> bool {
+        matches!(self.state, State::Fading(..))
+    }
+
     /// The air that look-ups use: between two while one fades into the other.
     pub(crate) fn air(&self) -> AirUniform {
         let shown = AirUniform::of(self.planet().unwrap_or(&Planet::earth()));

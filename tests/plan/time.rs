@@ -88,3 +88,32 @@ fn a_report_says_what_was_predicted_and_what_was_found() {
     let cut = bench.view.report().prediction;
     assert!(cut.milliseconds.is_none() && cut.error.is_none(), "{cut:?}");
 }
+
+#[test]
+fn tables_that_follow_the_air_take_longer_where_there_is_no_time_for_them() {
+    let mut bench = Bench::new();
+    let clear = Shot { weather: "clear", ..Shot::yard() };
+    let smoke = Shot { weather: "smoke", ..Shot::yard() };
+    // Frames with work on tables after a change of air, where a frame takes 10 ms.
+    let mut frames_with = |budget: f64| {
+        bench.set(&clear);
+        bench.everything(&clear);
+        let budget = Budget { milliseconds: Some(budget), ..Budget::default() };
+        bench.view.set_budget(budget).unwrap();
+        for _ in 0..20 {
+            bench.draw(&clear, true, FrameFlags(0));
+            bench.view.report_time(10.0).unwrap();
+        }
+        assert_eq!(bench.view.report().tables_rebuilt, 0);
+        bench.set(&smoke);
+        let mut frames = 0;
+        for _ in 0..120 {
+            bench.draw(&smoke, true, FrameFlags(0));
+            frames += u32::from(bench.view.report().tables_rebuilt > 0);
+        }
+        frames
+    };
+    let (ample, tight) = (frames_with(1000.0), frames_with(10.5));
+    println!("{ample} frames, {tight} where time is short");
+    assert!((20..40).contains(&ample) && tight > ample + 15 && tight < 110, "{ample} {tight}");
+}
