@@ -233,6 +233,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SHELTER 32
 /** wk_light */
 #define WK_STRUCT_TYPE_LIGHT 36
+/** wk_wind */
+#define WK_STRUCT_TYPE_WIND 40
+/** wk_rainfall */
+#define WK_STRUCT_TYPE_RAINFALL 41
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -2770,6 +2774,171 @@ WK_API wk_status wk_celestial_init(wk_celestial *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Queries: wind and rain
+ *
+ * How the air moves and how far it has come, what falls through it, and what lands on a surface, at any place and any
+ * simulation time that the timeline still knows: closed form, no device is asked. Vectors are (east, north, up) at the
+ * place. What is said of a surface is without shelter: it knows no roofs.
+ * ====================================================================================================
+ */
+
+/** Wind at a place and time. */
+typedef struct wk_wind {
+    /** sizeof(wk_wind) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WIND. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Where the air goes at this moment, gusts included, m/s. */
+    double velocity_m_s[3];
+    /** The mean about which gusts go, m/s. */
+    double mean_m_s[3];
+    /**
+     * How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m; the same at every place. What
+     * goes with the air is moved by its differences, never by velocity times time: it is continuous whatever the weather
+     * does, and the same to the last bit on every channel.
+     */
+    double displacement_m[3];
+    /** Standard deviation of gusts along the mean wind, m/s. */
+    double gust_deviation_m_s;
+} wk_wind;
+
+/** Every field of `wk_wind` at its default. */
+#define WK_WIND_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_wind), \
+    /* struct_type */ WK_STRUCT_TYPE_WIND, \
+    /* next */ NULL, \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* mean_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* displacement_m */ { 0.0, 0.0, 0.0 }, \
+    /* gust_deviation_m_s */ 0.0 \
+}
+
+/** Rain and drizzle at a place and time; all 0 where none falls. */
+typedef struct wk_rainfall {
+    /** sizeof(wk_rainfall) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_RAINFALL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** On level ground, mm/h. */
+    double rate_mm_h;
+    /**
+     * Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; their number
+     * such that they make the rate).
+     */
+    double number_per_m3;
+    /** Water in the air, g/m^3. */
+    double liquid_g_m3;
+    /** Extinction by the drops, 1/m. */
+    double extinction_per_m;
+    /** Mean diameter of the drops in the air, mm. */
+    double mean_diameter_mm;
+    /** Diameter below which half of the water in the air is, mm. */
+    double median_volume_diameter_mm;
+    /** Drops that land on level ground, 1/(m^2 s). */
+    double drops_per_m2_s;
+    /**
+     * Velocity of the drop that divides the water that falls into halves, m/s: one half comes steeper, the other flatter. Its
+     * direction is the one along which to take a picture of what keeps rain off. It falls at Gunn and Kinzer's (1949) speed
+     * and goes with the wind at 10 m.
+     */
+    double fall_velocity_m_s[3];
+} wk_rainfall;
+
+/** Every field of `wk_rainfall` at its default. */
+#define WK_RAINFALL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_rainfall), \
+    /* struct_type */ WK_STRUCT_TYPE_RAINFALL, \
+    /* next */ NULL, \
+    /* rate_mm_h */ 0.0, \
+    /* number_per_m3 */ 0.0, \
+    /* liquid_g_m3 */ 0.0, \
+    /* extinction_per_m */ 0.0, \
+    /* mean_diameter_mm */ 0.0, \
+    /* median_volume_diameter_mm */ 0.0, \
+    /* drops_per_m2_s */ 0.0, \
+    /* fall_velocity_m_s */ { 0.0, 0.0, 0.0 } \
+}
+
+/** A surface that rain lands on, or an opening that it comes through; plain values of a list. */
+typedef struct wk_rain_surface {
+    /** Where, in the host's world. */
+    double position_m[3];
+    /** The way its wet side faces, (east, north, up) of the place; of any length but 0. */
+    double normal[3];
+    /** How it moves, m/s (east, north, up). Range [-1000, 1000] each. */
+    double velocity_m_s[3];
+    /** Its size, m^2. Range [0, 1e6]. */
+    double area_m2;
+} wk_rain_surface;
+
+/** What lands on a surface; plain values of a list. */
+typedef struct wk_rain_on {
+    /** Water, mm/h: litres a square metre and hour. */
+    double rate_mm_h;
+    /** Drops of 0.1 to 6 mm on all of it, 1/s. */
+    double drops_per_s;
+} wk_rain_on;
+
+/**
+ * The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
+ * roughness, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
+ * from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
+ * plus the height above its own ground. At and below the roughness length nothing blows.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_wind_at(const wk_context *context,
+                                 const double (*position_m)[3],
+                                 double time_s,
+                                 wk_wind *out_wind);
+
+/**
+ * Rain and drizzle at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_rainfall_at(const wk_context *context,
+                                     const double (*position_m)[3],
+                                     double time_s,
+                                     wk_rainfall *out_rainfall);
+
+/**
+ * What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
+ * the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
+ * the ground. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
+ * surface, and nothing is written.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions; the field of a surface by name and range.
+ */
+WK_API
+wk_status wk_context_get_rain_on_at(const wk_context *context,
+                                    const wk_rain_surface *surfaces,
+                                    uint32_t count,
+                                    uint32_t surface_size,
+                                    double time_s,
+                                    wk_rain_on *on,
+                                    uint32_t on_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WIND_INIT`. `struct_size` is `sizeof(wk_wind)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_wind_init(wk_wind *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_RAINFALL_INIT`. `struct_size` is `sizeof(wk_rainfall)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -116,6 +116,10 @@ pub const WK_STRUCT_TYPE_RAIN: wk_struct_type = 31;
 pub const WK_STRUCT_TYPE_SHELTER: wk_struct_type = 32;
 /// wk_light
 pub const WK_STRUCT_TYPE_LIGHT: wk_struct_type = 36;
+/// wk_wind
+pub const WK_STRUCT_TYPE_WIND: wk_struct_type = 40;
+/// wk_rainfall
+pub const WK_STRUCT_TYPE_RAINFALL: wk_struct_type = 41;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, plan::*, query::*, rain::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -69,6 +69,15 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
         case("wk_context_get_conditions", "context", false, |h| unsafe {
             wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_wind_at", "context", false, |h| unsafe {
+            wk_context_get_wind_at(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_rainfall_at", "context", false, |h| unsafe {
+            wk_context_get_rainfall_at(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_rain_on_at", "context", false, |h| unsafe {
+            wk_context_get_rain_on_at(h.cast(), null(), 0, 0, 0.0, null_mut(), 0)
         }),
         case("wk_context_get_cloud_slabs", "context", false, |h| unsafe {
             wk_context_get_cloud_slabs(h.cast(), null(), 0.0, null_mut(), 0, 0, null_mut())

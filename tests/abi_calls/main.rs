@@ -10,4 +10,5 @@ mod queries;
 mod sky;
 mod structs;
 mod weather;
+mod wind;
 mod world;

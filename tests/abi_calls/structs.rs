@@ -8,7 +8,7 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, opengl::*, plan::*, query::*, rain::*,
-    report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -117,6 +117,10 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_conditions", "out_conditions", false, move |p| unsafe {
             wk_context_get_conditions(context, &ORIGIN, 0.0, p.cast())
         }),
+        case("wk_wind", "out_wind", false, move |p| unsafe { wk_context_get_wind_at(context, &ORIGIN, 0.0, p.cast()) }),
+        case("wk_rainfall", "out_rainfall", false, move |p| unsafe {
+            wk_context_get_rainfall_at(context, &ORIGIN, 0.0, p.cast())
+        }),
         case("wk_celestial", "out_sun", false, move |p| unsafe { wk_context_get_sun(context, &ORIGIN, p.cast()) }),
         case("wk_ambient", "out_ambient", false, move |p| unsafe {
             wk_context_get_ambient(context, &ORIGIN, p.cast())
@@ -146,6 +150,8 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_light",
     "wk_segment",
     "wk_between",
+    "wk_rain_on",
+    "wk_rain_surface",
     "wk_opengl_image",
     "wk_opengl_target",
     "wk_vulkan_image",

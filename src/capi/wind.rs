@@ -1,0 +1,251 @@
+//! Queries: wind and rain
+//!
+//! How the air moves and how far it has come, what falls through it, and what lands on a surface, at any place and any
+//! simulation time that the timeline still knows: closed form, no device is asked. Vectors are (east, north, up) at the
+//! place. What is said of a surface is without shelter: it knows no roofs.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    MAX_BATCH,
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    input::{self, check_finite},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    context::{RainAt, RainOn, RainSurface},
+    error::{Result, Status},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_wind.rs"));
+
+/// Wind at a place and time.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_wind {
+    /// sizeof(wk_wind) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WIND.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Where the air goes at this moment, gusts included, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// The mean about which gusts go, m/s.
+    pub mean_m_s: [f64; 3],
+    /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m; the same at every place. What
+    /// goes with the air is moved by its differences, never by velocity times time: it is continuous whatever the weather
+    /// does, and the same to the last bit on every channel.
+    pub displacement_m: [f64; 3],
+    /// Standard deviation of gusts along the mean wind, m/s.
+    pub gust_deviation_m_s: f64,
+}
+
+impl wk_wind {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WIND,
+        next: null(),
+        velocity_m_s: [0.0, 0.0, 0.0],
+        mean_m_s: [0.0, 0.0, 0.0],
+        displacement_m: [0.0, 0.0, 0.0],
+        gust_deviation_m_s: 0.0,
+    };
+}
+
+/// Rain and drizzle at a place and time; all 0 where none falls.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_rainfall {
+    /// sizeof(wk_rainfall) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_RAINFALL.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// On level ground, mm/h.
+    pub rate_mm_h: f64,
+    /// Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; their number
+    /// such that they make the rate).
+    pub number_per_m3: f64,
+    /// Water in the air, g/m^3.
+    pub liquid_g_m3: f64,
+    /// Extinction by the drops, 1/m.
+    pub extinction_per_m: f64,
+    /// Mean diameter of the drops in the air, mm.
+    pub mean_diameter_mm: f64,
+    /// Diameter below which half of the water in the air is, mm.
+    pub median_volume_diameter_mm: f64,
+    /// Drops that land on level ground, 1/(m^2 s).
+    pub drops_per_m2_s: f64,
+    /// Velocity of the drop that divides the water that falls into halves, m/s: one half comes steeper, the other flatter. Its
+    /// direction is the one along which to take a picture of what keeps rain off. It falls at Gunn and Kinzer's (1949) speed
+    /// and goes with the wind at 10 m.
+    pub fall_velocity_m_s: [f64; 3],
+}
+
+impl wk_rainfall {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_RAINFALL,
+        next: null(),
+        rate_mm_h: 0.0,
+        number_per_m3: 0.0,
+        liquid_g_m3: 0.0,
+        extinction_per_m: 0.0,
+        mean_diameter_mm: 0.0,
+        median_volume_diameter_mm: 0.0,
+        drops_per_m2_s: 0.0,
+        fall_velocity_m_s: [0.0, 0.0, 0.0],
+    };
+
+    fn of(rain: &RainAt) -> Self {
+        Self {
+            rate_mm_h: rain.rate_mm_h,
+            number_per_m3: rain.number_per_m3,
+            liquid_g_m3: rain.liquid_g_m3,
+            extinction_per_m: rain.extinction_per_m,
+            mean_diameter_mm: rain.mean_diameter_mm,
+            median_volume_diameter_mm: rain.median_volume_diameter_mm,
+            drops_per_m2_s: rain.drops_per_m2_s,
+            fall_velocity_m_s: rain.fall_velocity_m_s.to_array(),
+            ..Self::INIT
+        }
+    }
+}
+
+/// A surface that rain lands on, or an opening that it comes through; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_rain_surface {
+    /// Where, in the host's world.
+    pub position_m: [f64; 3],
+    /// The way its wet side faces, (east, north, up) of the place; of any length but 0.
+    pub normal: [f64; 3],
+    /// How it moves, m/s (east, north, up). Range [-1000, 1000] each.
+    pub velocity_m_s: [f64; 3],
+    /// Its size, m^2. Range [0, 1e6].
+    pub area_m2: f64,
+}
+
+/// What lands on a surface; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_rain_on {
+    /// Water, mm/h: litres a square metre and hour.
+    pub rate_mm_h: f64,
+    /// Drops of 0.1 to 6 mm on all of it, 1/s.
+    pub drops_per_s: f64,
+}
+
+impl wk_rain_on {
+    fn of(on: &RainOn) -> Self {
+        Self { rate_mm_h: on.rate_mm_h, drops_per_s: on.drops_per_s }
+    }
+}
+
+/// The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
+/// roughness, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
+/// from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
+/// plus the height above its own ground. At and below the roughness length nothing blows.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_wind_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_wind: *mut wk_wind,
+) -> wk_status {
+    guard("wk_context_get_wind_at", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_wind", out_wind)?) };
+        let time_s = check_finite("time_s", time_s)?;
+        let context = object.read();
+        let wind = context.wind_at(DVec3::from_array(at), time_s)?;
+        place.set(&wk_wind {
+            velocity_m_s: wind.velocity_m_s.to_array(),
+            mean_m_s: wind.mean_m_s.to_array(),
+            displacement_m: context.wind_displacement(time_s)?.to_array(),
+            gust_deviation_m_s: wind.gust_deviation_m_s,
+            ..wk_wind::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
+
+/// Rain and drizzle at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_rainfall_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_rainfall: *mut wk_rainfall,
+) -> wk_status {
+    guard("wk_context_get_rainfall_at", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let (at, place) =
+            unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_rainfall", out_rainfall)?) };
+        let time_s = check_finite("time_s", time_s)?;
+        place.set(&wk_rainfall::of(&object.read().rain_at(DVec3::from_array(at), time_s)?));
+        Ok(Status::Ok)
+    })
+}
+
+/// What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
+/// the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
+/// the ground. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
+/// surface, and nothing is written.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions; the field of a surface by name and range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_rain_on_at(
+    context: *const wk_context,
+    surfaces: *const wk_rain_surface,
+    count: u32,
+    surface_size: u32,
+    time_s: f64,
+    on: *mut wk_rain_on,
+    on_size: u32,
+) -> wk_status {
+    guard("wk_context_get_rain_on_at", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let list = input::Places::new("surfaces", "surface_size", surfaces, count, surface_size, MAX_BATCH)?;
+        let room = input::Room::new("on", "on_size", on, count, on_size)?;
+        let context = object.read();
+        context.check_time(check_finite("time_s", time_s)?)?;
+        let answer = |i: usize| {
+            // SAFETY: `i` is below the count that the caller promises, and the size was checked.
+            let c = unsafe { list.at(i).read() };
+            let vector = |name: &str, v: [f64; 3]| -> Result<DVec3> {
+                for (k, x) in v.into_iter().enumerate() {
+                    check_finite(&format!("surfaces[{i}].{name}[{k}]"), x)?;
+                }
+                Ok(DVec3::from_array(v))
+            };
+            let surface = RainSurface {
+                position: vector("position_m", c.position_m)?,
+                normal: vector("normal", c.normal)?,
+                velocity_m_s: vector("velocity_m_s", c.velocity_m_s)?,
+                area_m2: check_finite(&format!("surfaces[{i}].area_m2"), c.area_m2)?,
+            };
+            let on = context.rain_on(&surface, time_s);
+            Ok(wk_rain_on::of(&on.map_err(|e| e.within(&format!("surfaces[{i}].")))?))
+        };
+        let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
+        for (i, on) in answers.iter().enumerate() {
+            // SAFETY: as above.
+            unsafe { room.write(i, on) };
+        }
+        Ok(Status::Ok)
+    })
+}
