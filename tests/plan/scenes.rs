@@ -195,7 +195,9 @@ impl Bench {
             ..Frame::new(self.frame_id, shot.camera(), &self.color, shot.has_depth.then_some(&self.depth))
         };
         let view = if planned { &mut self.view } else { &mut self.plain };
-        view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
+        // What a plan decides on.
+        let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
+        view.record(&self.context, &frame, stages).unwrap();
         let pixels = readback::rgba(&self.device, &self.color).unwrap();
         let luminance = |p: &[f32; 4]| 0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2]);
         pixels.iter().map(luminance).collect()
