@@ -231,6 +231,12 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_RAIN 31
 /** wk_shelter */
 #define WK_STRUCT_TYPE_SHELTER 32
+/** wk_windscreen */
+#define WK_STRUCT_TYPE_WINDSCREEN 33
+/** wk_wiper_arm */
+#define WK_STRUCT_TYPE_WIPER_ARM 34
+/** wk_windscreen_report */
+#define WK_STRUCT_TYPE_WINDSCREEN_REPORT 35
 /** wk_light */
 #define WK_STRUCT_TYPE_LIGHT 36
 /** wk_wind */
@@ -3279,6 +3285,8 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_PARTICLES 8
 /** Water on surfaces. */
 #define WK_EFFECT_SURFACE 9
+/** Water on the windscreen: its steps (after the sky's tables) and the lens. */
+#define WK_EFFECT_WINDSCREEN 10
 
 /** What one effect of a frame cost; plain values of a list. */
 typedef struct wk_effect_cost {
@@ -3861,6 +3869,214 @@ wk_status wk_context_set_lights(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Water on the windscreen
+ *
+ * A view may look through a window: rain lands on it at the rate and speed at which the window meets it, beads merge, run
+ * down by gravity or up by the air, are wiped, and bend the picture behind them; mist on the inside blurs it. The stage
+ * LENS draws that over all that was drawn so far, within the window only; pixels of the mask stay. In a call with TONE the
+ * glass lies before the tone curve where the target is a float one, else after it.
+ *
+ * The water is part of the view and moves on a grid of 1/60 s from simulation time 0, with the frame that records
+ * WK_STAGE_PREPARE or first comes after: the frame rate changes nothing, views of one seed and history agree bit for bit.
+ * At the first frame, after WK_FRAME_CUT, and where a frame comes more than half a second after the one before, it takes the
+ * declared state of that moment, a pure function of (seed, time, rain); with WK_FRAME_NO_HISTORY it always has that state.
+ * Without a windscreen, or where it is dry and clear, LENS costs nothing.
+ * ====================================================================================================
+ */
+
+/** Where the glass is. */
+typedef uint32_t wk_windscreen_pane;
+
+/** A flat window of four corners. */
+#define WK_WINDSCREEN_PANE_QUAD 0
+/** Glass across the whole view. */
+#define WK_WINDSCREEN_PANE_WHOLE_VIEW 1
+
+/** A wiper: a blade on an arm that turns about a pivot in the glass's plane. */
+typedef struct wk_wiper_arm {
+    /** sizeof(wk_wiper_arm) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WIPER_ARM. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12] each.
+     * Default 0, 0.
+     */
+    double pivot_m[2];
+    /** From the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
+    double length_m;
+    /** From the pivot to the blade's inner end, m. Range [0, length_m), default 0.1. */
+    double inner_radius_m;
+    /**
+     * Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
+     * default 0.
+     */
+    double parked_deg;
+    /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
+    double far_deg;
+    /**
+     * Where the blade is in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+     */
+    double position;
+    /** Width of the rubber on the glass, m. Range [0, 0.1], default 0.006. */
+    double blade_width_m;
+} wk_wiper_arm;
+
+/** Every field of `wk_wiper_arm` at its default. */
+#define WK_WIPER_ARM_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_wiper_arm), \
+    /* struct_type */ WK_STRUCT_TYPE_WIPER_ARM, \
+    /* next */ NULL, \
+    /* pivot_m */ { 0.0, 0.0 }, \
+    /* length_m */ 0.6, \
+    /* inner_radius_m */ 0.1, \
+    /* parked_deg */ 0.0, \
+    /* far_deg */ 90.0, \
+    /* position */ 0.0, \
+    /* blade_width_m */ 0.006 \
+}
+
+/** The window that a view looks through. */
+typedef struct wk_windscreen {
+    /** sizeof(wk_windscreen) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WINDSCREEN. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_WINDSCREEN_PANE_QUAD. */
+    wk_windscreen_pane pane;
+    /** Number of wipers in `arms`, at most 2. Default 0. */
+    uint32_t arm_count;
+    /**
+     * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower left,
+     * lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex, edges in
+     * [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x 0.6 m across
+     * the view, 0.7 m away.
+     */
+    double corners_m[12];
+    /** Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6. */
+    double distance_m;
+    /**
+     * Velocity of the glass against the air (the vehicle's less the wind's) in the camera's axes, m/s: decides how many
+     * drops it meets. Range [-400, 400] each, default 0, 0, 0.
+     */
+    double velocity_m_s[3];
+    /**
+     * Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
+     * on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+     */
+    double airflow_m_s;
+    /** Share of the weather's rain that reaches the glass: 0 in a tunnel. Range [0, 1], default 1. */
+    double exposed;
+    /** Mist on the inside. Range [0, 1], default 0. */
+    double fogging;
+    /** How far the blower has cleared the mist, from the lower edge upwards. Range [0, 1], default 0. */
+    double demist;
+    /** The wipers; may be NULL if there are none. Read during the call only. */
+    const wk_wiper_arm *arms;
+    /** sizeof(wk_wiper_arm) of your header. Default that of this header. */
+    uint32_t arm_stride;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_windscreen;
+
+/** Every field of `wk_windscreen` at its default. */
+#define WK_WINDSCREEN_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_windscreen), \
+    /* struct_type */ WK_STRUCT_TYPE_WINDSCREEN, \
+    /* next */ NULL, \
+    /* pane */ WK_WINDSCREEN_PANE_QUAD, \
+    /* arm_count */ 0, \
+    /* corners_m */ { -0.5, -0.3, -0.7, 0.5, -0.3, -0.7, 0.5, 0.3, -0.7, -0.5, 0.3, -0.7 }, \
+    /* distance_m */ 0.6, \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* airflow_m_s */ 0.0, \
+    /* exposed */ 1.0, \
+    /* fogging */ 0.0, \
+    /* demist */ 0.0, \
+    /* arms */ NULL, \
+    /* arm_stride */ (uint32_t)sizeof(wk_wiper_arm), \
+    /* reserved0 */ 0 \
+}
+
+/** Water on a windscreen. */
+typedef struct wk_windscreen_report {
+    /** sizeof(wk_windscreen_report) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WINDSCREEN_REPORT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Drops that hit the pane in a second (rain from 0.1 mm of diameter). */
+    double drops_per_s;
+    /** Water that hits it, mm/h of its area. */
+    double water_mm_h;
+    /** Share of the pane under water, 0 to 1. */
+    double covered;
+    /** Water on it, kg. */
+    double water_kg;
+    /** Simulation time of the state, s. */
+    double state_time_s;
+} wk_windscreen_report;
+
+/** Every field of `wk_windscreen_report` at its default. */
+#define WK_WINDSCREEN_REPORT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_windscreen_report), \
+    /* struct_type */ WK_STRUCT_TYPE_WINDSCREEN_REPORT, \
+    /* next */ NULL, \
+    /* drops_per_s */ 0.0, \
+    /* water_mm_h */ 0.0, \
+    /* covered */ 0.0, \
+    /* water_kg */ 0.0, \
+    /* state_time_s */ 0.0 \
+}
+
+/**
+ * Sets the window that the view looks through; NULL takes it away. A host that drives, wipes or turns its head sets it anew
+ * before each frame: the water stays on the glass as long as its size does. Unchanged after an error.
+ * The stage LENS then answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_view_set_windscreen(wk_view *view,
+                                 const wk_windscreen *windscreen);
+
+/**
+ * Says how much water is on the view's windscreen as of its last frame, and what it meets. Reads the state back and waits
+ * for the GPU: for a figure now and then, not for every frame. All 0 without a windscreen or before its first frame.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_DEVICE_LOST.
+ */
+WK_API
+wk_status wk_view_get_windscreen_report(wk_view *view,
+                                        wk_windscreen_report *out_report);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WIPER_ARM_INIT`. `struct_size` is `sizeof(wk_wiper_arm)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_wiper_arm_init(wk_wiper_arm *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WINDSCREEN_INIT`. `struct_size` is `sizeof(wk_windscreen)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_windscreen_init(wk_windscreen *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WINDSCREEN_REPORT_INIT`. `struct_size` is `sizeof(wk_windscreen_report)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_windscreen_report_init(wk_windscreen_report *out,
+                                    uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -10,6 +10,7 @@ pub mod context;
 pub mod error;
 pub mod fog;
 pub mod frame;
+pub mod glass;
 pub mod gpu;
 pub mod ground;
 pub mod plan;

@@ -53,6 +53,8 @@ pub mod rain;
 
 pub mod light;
 
+pub mod windscreen;
+
 mod boundary;
 mod device_cell;
 mod handles;

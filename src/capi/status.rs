@@ -114,6 +114,12 @@ pub const WK_STRUCT_TYPE_PART_PLAN: wk_struct_type = 30;
 pub const WK_STRUCT_TYPE_RAIN: wk_struct_type = 31;
 /// wk_shelter
 pub const WK_STRUCT_TYPE_SHELTER: wk_struct_type = 32;
+/// wk_windscreen
+pub const WK_STRUCT_TYPE_WINDSCREEN: wk_struct_type = 33;
+/// wk_wiper_arm
+pub const WK_STRUCT_TYPE_WIPER_ARM: wk_struct_type = 34;
+/// wk_windscreen_report
+pub const WK_STRUCT_TYPE_WINDSCREEN_REPORT: wk_struct_type = 35;
 /// wk_light
 pub const WK_STRUCT_TYPE_LIGHT: wk_struct_type = 36;
 /// wk_wind

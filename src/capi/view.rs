@@ -181,6 +181,8 @@ pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
 /// Water on surfaces.
 pub const WK_EFFECT_SURFACE: wk_effect = 9;
+/// Water on the windscreen: its steps (after the sky's tables) and the lens.
+pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 
 /// What one effect of a frame cost; plain values of a list.
 #[repr(C)]

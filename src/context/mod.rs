@@ -380,6 +380,11 @@ impl Context {
         Ok(())
     }
 
+    /// The weather at a time; before what the timeline knows, that of its first moment.
+    pub(crate) fn known_weather(&self, time_s: f64) -> Conditions {
+        self.timeline.at(time_s)
+    }
+
     fn weather_at(&self, time_s: f64) -> Result<Conditions> {
         self.check_time(time_s)?;
         Ok(self.timeline.at(time_s))

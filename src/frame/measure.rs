@@ -33,11 +33,13 @@ pub enum Effect {
     Particles = 8,
     /// Water on surfaces.
     Surface = 9,
+    /// Water on the windscreen: its steps and the lens.
+    Windscreen = 10,
 }
 
 impl Effect {
     /// All of them, in order.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::SkyTables,
         Self::SkyView,
         Self::Background,
@@ -48,6 +50,7 @@ impl Effect {
         Self::HandOver,
         Self::Particles,
         Self::Surface,
+        Self::Windscreen,
     ];
 
     /// Its name, for people.
@@ -63,6 +66,7 @@ impl Effect {
             Self::HandOver => c"hand-over",
             Self::Particles => c"particles",
             Self::Surface => c"surfaces",
+            Self::Windscreen => c"windscreen",
         }
     }
 }

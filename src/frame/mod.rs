@@ -5,6 +5,7 @@
 
 mod composite;
 mod froxels;
+mod lens;
 mod measure;
 mod planned;
 mod rain;

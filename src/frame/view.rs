@@ -22,6 +22,7 @@ use crate::{
     context::{Context, Scene},
     error::{Error, Result, Status},
     fog::{FogKind, FogUniform, FogVariant},
+    glass::Glass,
     gpu::Device,
     ground::GroundUniform,
     plan::{Planner, Present, Situation},
@@ -42,12 +43,13 @@ struct Bound {
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
     pub(super) device: Arc<Device>,
-    shared: Arc<Shared>,
+    pub(super) shared: Arc<Shared>,
     uniform: wgpu::Buffer,
     fog: wgpu::Buffer,
     ground: wgpu::Buffer,
-    copy: Option<wgpu::Texture>,
+    pub(super) copy: Option<wgpu::Texture>,
     bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
+    pub(super) glass: Option<Box<Glass>>,
     pub(super) sky: SkyVolume,
     froxels: Option<Froxels>,
     rain: Rain,
@@ -92,6 +94,7 @@ impl View {
             ground,
             copy: None,
             bound: None,
+            glass: None,
             sky,
             froxels: None,
             rain,
@@ -205,20 +208,37 @@ impl View {
         let asked = stages;
         let stages = if rain::falls(&scene) { stages } else { stages.without(Stages::PARTICLES) };
         let stages = if surface::is_wet(frame, &scene) { stages } else { stages.without(Stages::SURFACE) };
-        let drawn = stages.without(Stages::PREPARE.with(Stages::LENS)) != Stages(0);
+        let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
+        let drawn = stages.without(Stages::PREPARE) != Stages(0);
         let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };
+        self.check_lens(frame, stages)?;
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
         }
         if self.recorded == Stages(0) {
             self.prepare(context, frame, &scene, to)?;
+            self.prepare_lens(context, frame, &scene, to)?;
         }
         if let Some(rays) = rays {
-            let apart = to.is_measured() && can_be_apart(frame, stages);
-            let draws = if apart { stages.each() } else { [stages, Stages(0), Stages(0), Stages(0), Stages(0)] };
-            for stages in draws.into_iter().filter(|s| s.0 != 0) {
-                self.draw(context, frame, stages, &scene, &rays, to)?;
+            // The glass lies before the tone curve, where the target can hold the picture between them.
+            let mut lens = self.shows_lens(stages);
+            let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
+            let apart = can_be_apart(frame, stages);
+            let draws = match apart {
+                true if to.is_measured() => stages.each(),
+                true if lens => two([stages.without(Stages::TONE), Stages(stages.0 & Stages::TONE.0)]),
+                _ => two([stages, Stages(0)]),
+            };
+            for part in draws.into_iter().filter(|s| s.0 != 0) {
+                if lens && part == Stages::TONE {
+                    self.draw_lens(frame, false, to)?;
+                    lens = false;
+                }
+                self.draw(context, frame, part, &scene, &rays, to)?;
+            }
+            if lens {
+                self.draw_lens(frame, stages.has(Stages::TONE), to)?;
             }
         }
         self.recorded = self.recorded.with(asked);
@@ -386,6 +406,30 @@ impl View {
         Ok(())
     }
 
+    /// Bytes of GPU memory the view holds for itself.
+    pub(super) fn bytes(&self) -> u64 {
+        let copy = self.copy.as_ref().map_or(0, |c| {
+            let texel = u64::from(c.format().block_copy_size(None).unwrap_or(4));
+            texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
+        });
+        copy + self.froxels.as_ref().map_or(0, Froxels::bytes)
+            + self.rain.bytes()
+            + self.glass.as_ref().map_or(0, |g| g.bytes())
+    }
+
+    /// Makes the colour copy anew if it is not like the host's colour.
+    pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) {
+        let fits = self.copy.as_ref().is_some_and(|c| {
+            c.size() == color.size() && c.format() == color.format() && c.sample_count() == color.sample_count()
+        });
+        if !fits {
+            // The old one is bound there.
+            self.bound = None;
+            self.copy = Some(color_copy(&self.device.device, color));
+            self.report.bytes = self.bytes();
+        }
+    }
+
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
     fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, drops: Option<wgpu::TextureView>) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
@@ -394,15 +438,7 @@ impl View {
         if same {
             return Ok(());
         }
-        let fits = self.copy.as_ref().is_some_and(|c| {
-            c.size() == color.size() && c.format() == color.format() && c.sample_count() == color.sample_count()
-        });
-        if !fits {
-            self.copy = Some(color_copy(&self.device.device, color));
-            let texel = u64::from(color.format().block_copy_size(None).unwrap_or(4));
-            let pixels = u64::from(color.width()) * u64::from(color.height()) * u64::from(color.sample_count());
-            self.report.bytes = texel * pixels + self.froxels.as_ref().map_or(0, Froxels::bytes) + self.rain.bytes();
-        }
+        self.hold_copy(color);
         let Some(copy) = &self.copy else { return Ok(()) };
         let blocks = [&self.uniform, &self.fog, &self.ground];
         let group = self.shared.composite()?.bind(&self.device, blocks, copy, frame, drops.as_ref());
@@ -426,7 +462,7 @@ fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     !tone || frame.color.is_some_and(|c| is_float(c.format()))
 }
 
-fn is_float(format: wgpu::TextureFormat) -> bool {
+pub(super) fn is_float(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
 }

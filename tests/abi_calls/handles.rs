@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, plan::*, query::*, rain::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -122,6 +122,10 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_get_plan", "view", false, |h| unsafe { wk_view_get_plan(h.cast(), null_mut()) }),
         case("wk_view_get_part_plan", "view", false, |h| unsafe {
             wk_view_get_part_plan(h.cast(), WK_PART_AIR, null_mut())
+        }),
+        case("wk_view_set_windscreen", "view", false, |h| unsafe { wk_view_set_windscreen(h.cast(), null()) }),
+        case("wk_view_get_windscreen_report", "view", false, |h| unsafe {
+            wk_view_get_windscreen_report(h.cast(), null_mut())
         }),
         case("wk_view_get_report", "view", false, |h| unsafe { wk_view_get_report(h.cast(), null_mut()) }),
         case("wk_view_record", "frame.target.color", true, move |h| record(view, |t| t.color = h.cast())),

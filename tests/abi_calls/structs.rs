@@ -9,6 +9,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, opengl::*, plan::*, query::*, rain::*,
     report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*,
+    windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -132,6 +133,14 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_plan", "out_plan", false, move |p| unsafe { wk_view_get_plan(view, p.cast()) }),
         case("wk_part_plan", "out_part", false, move |p| unsafe { wk_view_get_part_plan(view, WK_PART_FOG, p.cast()) }),
         case("wk_report", "out_report", false, move |p| unsafe { wk_view_get_report(view, p.cast()) }),
+        case("wk_windscreen", "windscreen", true, move |p| unsafe { wk_view_set_windscreen(view, p.cast()) }),
+        case("wk_wiper_arm", "windscreen.arms[0]", true, move |p| {
+            let screen = wk_windscreen { arm_count: 1, arms: p.cast(), arm_stride: 2 << 20, ..init("wk_windscreen") };
+            unsafe { wk_view_set_windscreen(view, &screen) }
+        }),
+        case("wk_windscreen_report", "out_report", false, move |p| unsafe {
+            wk_view_get_windscreen_report(view, p.cast())
+        }),
         case("wk_caps", "out_caps", false, move |p| unsafe { wk_device_get_caps(device, p.cast()) }),
         case("wk_window", "window", false, |p| unsafe {
             wk_device_create_for_window(null(), p.cast(), &mut null_mut())

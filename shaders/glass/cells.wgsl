@@ -1,0 +1,109 @@
+// Beads on glass, one a cell at most, in integers: the same bits on every driver. The twin is src/glass/reference.rs, the
+// numbers of a step come from src/glass/step.rs.
+//!include "common/fullscreen.wgsl"
+
+struct Step {
+    // Key of (seed, step), key of the seed, columns, rows.
+    key: vec4u,
+    // A cell gets at least 1, 2, 3 drops where its 32 random bits are below these; chance in 65536 that a fine bead dries.
+    arrive: vec4u,
+    // Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
+    declared: vec4u,
+    // The largest volume of a cell; unused.
+    limits: vec4u,
+    // Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is there).
+    arms: array<vec4i, 6>,
+    // Volumes of drops, from common to rare.
+    drops: array<vec4u, 64>,
+    // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
+    beads: array<vec4i, 96>,
+}
+
+@group(0) @binding(0) var<uniform> step: Step;
+// (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
+@group(0) @binding(1) var cells: texture_2d<u32>;
+// (volume that moves, its new place, speed + 65536 shape, 256 x volume left + 32 ran + 16 wiped + where to).
+@group(0) @binding(2) var moves: texture_2d<u32>;
+
+const MOST_HITS: u32 = 4095u;
+const FULL_FILM: u32 = 65535u;
+// Film on which a bead glides as if it ran.
+const WET_FILM: u32 = 2048u;
+const WIPED: u32 = 16u;
+const RAN: u32 = 32u;
+const LIFE_STEPS: u32 = 2048u;
+
+// PCG of 32 bits (Jarzynski & Olano 2020).
+fn pcg(v: u32) -> u32 {
+    let state = v * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+fn cell_hash(cell: vec2i, key: u32) -> u32 {
+    return pcg(u32(cell.x) + pcg(u32(cell.y) + key));
+}
+
+// Place of the highest set bit; 0 for 0 and 1.
+fn octave(v: u32) -> u32 {
+    var x = v;
+    var n = 0u;
+    if x >= 65536u { x >>= 16u; n += 16u; }
+    if x >= 256u { x >>= 8u; n += 8u; }
+    if x >= 16u { x >>= 4u; n += 4u; }
+    if x >= 4u { x >>= 2u; n += 2u; }
+    if x >= 2u { n += 1u; }
+    return n;
+}
+
+fn bead(volume: u32) -> vec4i {
+    let k = octave(volume);
+    return step.beads[min(4u * k + (((volume << 2u) >> k) & 3u), 95u)];
+}
+
+fn drop_volume(random: u32) -> u32 {
+    let k = 31u - octave(random | 1u);
+    let part = 15u - ((random >> (27u - min(k, 27u))) & 15u);
+    let i = select(16u * k + part, 255u, k > 15u);
+    return step.drops[i / 4u][i % 4u];
+}
+
+fn inside(cell: vec2i) -> bool {
+    return cell.x >= 0 && cell.y >= 0 && cell.x < i32(step.key.z) && cell.y < i32(step.key.w);
+}
+
+fn place(packed: u32) -> vec2i {
+    return vec2i(i32(packed & 0xffffu), i32(packed >> 16u));
+}
+
+fn packed(at: vec2i) -> u32 {
+    return u32(at.x) | (u32(at.y) << 16u);
+}
+
+fn perp_dot(a: vec2i, b: vec2i) -> i32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// Whether a blade has passed over a point, in 1/16 cell, during the step, or lies on it.
+fn swept(at: vec2i) -> bool {
+    for (var i = 0u; i < 6u; i += 3u) {
+        let reach = step.arms[i];
+        let before = step.arms[i + 1u];
+        let now = step.arms[i + 2u];
+        let d = at - reach.xy;
+        if now.w == 0 || abs(d.x) > reach.w || abs(d.y) > reach.w {
+            continue;
+        }
+        let far = d.x * d.x + d.y * d.y;
+        if far < reach.z * reach.z || far > reach.w * reach.w {
+            continue;
+        }
+        let ahead = d.x * before.z + d.y * before.w > 0;
+        let between = perp_dot(before.xy, d) >= 0 && perp_dot(d, now.xy) >= 0;
+        let beside = min(abs(perp_dot(now.xy, d)), abs(perp_dot(before.xy, d))) <= now.z * 4096;
+        if ahead && (between || beside) {
+            return true;
+        }
+    }
+    return false;
+}

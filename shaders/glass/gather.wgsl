@@ -1,0 +1,92 @@
+// Second half of a step: what comes into a cell, what dries, what is wiped, and the drops that land.
+//!include "glass/cells.wgsl"
+
+struct Cell {
+    volume: u32,
+    largest: u32,
+    place: u32,
+    motion: u32,
+}
+
+// The larger of two keeps its place and shape.
+fn join(to: Cell, volume: u32, at: u32, motion: u32) -> Cell {
+    var c = to;
+    c.volume += volume;
+    if volume > c.largest {
+        c.largest = volume;
+        c.place = at;
+        c.motion = motion;
+    }
+    return c;
+}
+
+@fragment
+fn gather(in: FullscreenVarying) -> @location(0) vec4u {
+    let cell = vec2i(in.position.xy);
+    let before = textureLoad(cells, cell, 0);
+    let own = textureLoad(moves, cell, 0);
+    var c = Cell(0u, 0u, 0u, 0u);
+    var ran = (own.w & RAN) != 0u;
+    if (own.w >> 8u) > 0u {
+        c = join(c, own.w >> 8u, before.y, pcg(before.z) & 0xffff0000u);
+    }
+    for (var y = -1; y <= 1; y++) {
+        for (var x = -1; x <= 1; x++) {
+            let near = cell + vec2i(x, y);
+            if !inside(near) {
+                continue;
+            }
+            let m = textureLoad(moves, near, 0);
+            if m.x > 0u && (m.w & 15u) == u32((1 - y) * 3 + 1 - x) {
+                c = join(c, m.x, m.y, m.z);
+                ran = ran || (m.w & RAN) != 0u;
+            }
+        }
+    }
+    let wiped = (own.w & WIPED) != 0u;
+    return landed(cell, dried(cell, c), cleared(cell, before.w, ran, wiped));
+}
+
+// What the air takes of a bead, chance deciding on the fraction of a unit.
+fn dried(cell: vec2i, bead_there: Cell) -> Cell {
+    var c = bead_there;
+    if c.volume > 0u {
+        let loss = u32(bead(c.volume).x) >> 10u;
+        let random = cell_hash(cell, step.key.x + 1u) & 4095u;
+        c.volume -= min(c.volume, (loss >> 12u) + select(0u, 1u, random < (loss & 4095u)));
+        c.largest = c.volume;
+    }
+    return c;
+}
+
+// Hits, clearings and film after what ran or was wiped, and after the air.
+fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
+    var hits = packed_state & MOST_HITS;
+    var clearings = (packed_state >> 12u) & 15u;
+    var film = packed_state >> 16u;
+    film -= min(film, (film >> 4u) + 64u);
+    if hits > 0u && (cell_hash(cell, step.key.x + 2u) >> 16u) < step.arrive.w {
+        hits -= 1u;
+    }
+    if ran || wiped {
+        clearings = (clearings + select(0u, 1u, hits > 0u)) & 15u;
+        hits = 0u;
+        film = FULL_FILM;
+    }
+    return hits | (clearings << 12u) | (film << 16u);
+}
+
+fn landed(cell: vec2i, bead_there: Cell, state: u32) -> vec4u {
+    var c = bead_there;
+    var random = cell_hash(cell, step.key.x + 3u);
+    let count = select(0u, 1u, random < step.arrive.x) + select(0u, 1u, random < step.arrive.y)
+        + select(0u, 1u, random < step.arrive.z);
+    for (var i = 0u; i < count; i++) {
+        random = pcg(random + 1u);
+        let at = pcg(random + 2u);
+        c = join(c, drop_volume(random), at, at << 16u);
+    }
+    let hits = min((state & MOST_HITS) + count, MOST_HITS);
+    c.volume = min(c.volume, step.limits.x);
+    return vec4u(c.volume, c.place, c.motion, (state & 0xfffff000u) | hits);
+}

@@ -1,0 +1,290 @@
+// What the glass does to the finished picture: each bead is a lens that shows the scene behind it upside down and small,
+// with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and whitens it.
+// Axes: right and up along the glass, outwards from it; metres, the eye behind the glass.
+//!include "common/fullscreen.wgsl"
+//!include "frame/tone.wgsl"
+
+struct Lens {
+    // Ray direction in the picture's middle and its change per unit of clip x and y.
+    ray: vec3f,
+    // Cells a metre.
+    per_m: f32,
+    ray_dx: vec3f,
+    // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
+    y_sign: f32,
+    ray_dy: vec3f,
+    // Contact radius in cells over the cube root of the volume.
+    radius: f32,
+    eye: vec3f,
+    // A pixel on the glass, cells.
+    pixel: f32,
+    // Columns: from a direction to clip space.
+    clip_x: vec3f,
+    // Mist on the inside, and how far it is cleared.
+    fogging: f32,
+    clip_y: vec3f,
+    demist: f32,
+    clip_z: vec3f,
+    // Height of the glass, m.
+    height: f32,
+    // Inside of the pane: a u + b v + c >= 0.
+    edges: array<vec4f, 4>,
+    // Where large beads run to, unit or 0; the first wiper's pivot, cells.
+    flow: vec2f,
+    pivot: vec2f,
+    // Columns and rows; key of the seed.
+    size: vec2i,
+    key: u32,
+    // Bits: 1 water, 2 film in arcs about the pivot.
+    shows: u32,
+}
+
+@group(0) @binding(0) var<uniform> lens: Lens;
+@group(0) @binding(1) var cells: texture_2d<u32>;
+@group(0) @binding(2) var picture: texture_2d<f32>;
+// The picture's means over 8 x 8 and 32 x 32 texels.
+@group(0) @binding(3) var smaller: texture_2d<f32>;
+@group(0) @binding(4) var smallest: texture_2d<f32>;
+@group(0) @binding(5) var linear_sampler: sampler;
+@group(0) @binding(6) var host_mask: texture_2d<f32>;
+
+override ENCODED: bool = false;
+override HAS_MASK: bool = false;
+
+const WATER_INDEX: f32 = 1.333;
+// Sine and cotangent of the contact angle of 50 degrees (src/glass/laws.rs).
+const CONTACT_SINE: f32 = 0.7660444;
+const CONTACT_COTANGENT: f32 = 0.8390996;
+
+fn pcg(v: u32) -> u32 {
+    let state = v * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+fn hash(p: vec2i, key: u32) -> u32 {
+    return pcg(u32(p.x) + pcg(u32(p.y) + key));
+}
+
+// Water at a point of the glass: slope of its surface, and how much of the pixel it covers.
+struct Water {
+    slope: vec2f,
+    cover: f32,
+    // Contact radius, cells.
+    radius: f32,
+    height: f32,
+}
+
+// A cap at rho of its contact radius, in the direction `to` from its middle.
+fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
+    let r = min(rho, 0.995);
+    let root = sqrt(1.0 - r * r * CONTACT_SINE * CONTACT_SINE);
+    let slope = r * CONTACT_SINE / root;
+    let height = radius * (root / CONTACT_SINE - CONTACT_COTANGENT);
+    let cover = clamp((1.0 - rho) * radius / pixel + 0.5, 0.0, 1.0);
+    return Water(to * slope, cover, radius, height);
+}
+
+// The bead of a cell as seen from `q`, cells from its middle: uneven in outline, hanging, drawn out while it runs.
+fn bead(cell: vec4u, q: vec2f) -> Water {
+    let radius = lens.radius * pow(f32(cell.x), 0.33333333);
+    let shape = f32(cell.z >> 16u) * (6.2831853 / 65536.0);
+    let runs = min(f32(cell.z & 0xffffu) / 8192.0, 1.0);
+    let along = dot(q, lens.flow);
+    let tail = select(1.0, 1.0 + 0.12 * min(radius * 3.0, 1.0) + 1.1 * runs, along < 0.0);
+    let p = q + lens.flow * along * (1.0 / tail - 1.0);
+    let far = max(length(p), 1e-6);
+    let d = p / far;
+    let two = vec2f(d.x * d.x - d.y * d.y, 2.0 * d.x * d.y);
+    let three = vec2f(d.x * two.x - d.y * two.y, d.x * two.y + d.y * two.x);
+    let turn = vec2f(cos(shape), sin(shape));
+    let uneven = 1.0 + (1.0 - runs) * (0.10 * dot(two, turn) + 0.05 * dot(three, turn.yx));
+    return cap(d, far / (radius * uneven), radius, lens.pixel);
+}
+
+// Small beads that sit in squares of their own, `per_cell` along a cell's edge: more of them the more drops have hit.
+fn fine(c: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
+    let square = floor(c * per_cell);
+    let h = hash(vec2i(square), key);
+    let due = f32(h & 255u) * (patience / 255.0);
+    let grown = clamp((hits - due) * 0.5, 0.0, 1.0);
+    let chance = f32((h >> 8u) & 255u) / 255.0;
+    let radius = (0.10 + 0.34 * chance * chance) * sqrt(grown);
+    if radius <= 0.02 {
+        return Water(vec2f(0.0), 0.0, 0.0, 0.0);
+    }
+    let at = vec2f(f32((h >> 16u) & 255u), f32(h >> 24u)) / 255.0;
+    let q = c * per_cell - square - mix(vec2f(radius), vec2f(1.0 - radius), at);
+    let far = max(length(q), 1e-6);
+    let in_cells = radius / per_cell;
+    var w = cap(q / far, far / radius, in_cells, lens.pixel);
+    // A bead below a pixel covers its share of it.
+    w.cover *= min(in_cells / lens.pixel * 2.0, 1.0);
+    return w;
+}
+
+// Film and hits, blended between the four cells about a point.
+fn blended(c: vec2f) -> vec2f {
+    let p = c - 0.5;
+    let base = vec2i(floor(p));
+    let f = p - floor(p);
+    var sum = vec2f(0.0);
+    for (var i = 0; i < 4; i++) {
+        let o = vec2i(i & 1, i >> 1u);
+        let at = clamp(base + o, vec2i(0), lens.size - 1);
+        let state = textureLoad(cells, at, 0).w;
+        let w = select(1.0 - f, f, o == vec2i(1));
+        sum += w.x * w.y * vec2f(f32(state >> 16u) / 65535.0, f32(state & 4095u));
+    }
+    return sum;
+}
+
+fn texel(at: vec2i) -> vec3f {
+    let c = textureLoad(picture, clamp(at, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb;
+    return select(c, srgb_decode(c), ENCODED);
+}
+
+// The scene at a place of the picture, over about 2^detail pixels.
+fn scene(uv: vec2f, detail: f32) -> vec3f {
+    let place = clamp(uv, vec2f(0.0), vec2f(1.0));
+    let coarse = textureSampleLevel(smallest, linear_sampler, place, 0.0).rgb;
+    let middle = textureSampleLevel(smaller, linear_sampler, place, 0.0).rgb;
+    let soft = mix(middle, coarse, clamp((detail - 3.0) * 0.5, 0.0, 1.0));
+    if detail >= 3.0 {
+        return soft;
+    }
+    let p = place * vec2f(textureDimensions(picture)) - 0.5;
+    let base = vec2i(floor(p));
+    let f = p - floor(p);
+    let sharp = mix(mix(texel(base), texel(base + vec2i(1, 0)), f.x),
+        mix(texel(base + vec2i(0, 1)), texel(base + vec2i(1, 1)), f.x), f.y);
+    return mix(sharp, soft, clamp(detail / 3.0, 0.0, 1.0));
+}
+
+// Where a direction lies in the picture, (0, 0) in its first row.
+fn picture_at(d: vec3f) -> vec2f {
+    let clip = lens.clip_x * d.x + lens.clip_y * d.y + lens.clip_z * d.z;
+    let ndc = clip.xy / max(clip.z, 1e-3 * length(clip) + 1e-20);
+    return vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y * lens.y_sign);
+}
+
+// Light through water of this slope, towards the eye along -d: in at the outer surface, out through the glass.
+fn through(d: vec3f, w: Water, uv: vec2f) -> vec3f {
+    let normal = normalize(vec3f(w.slope, 1.0));
+    let inner = refract(d, vec3f(0.0, 0.0, -1.0), 1.0 / WATER_INDEX);
+    let outer = refract(inner, -normal, WATER_INDEX);
+    // What is thrown back inside comes from the dim cab and from the glass beside.
+    let dark = scene(uv, 5.0) * 0.08;
+    let cosine_in = dot(inner, normal);
+    let cosine_out = dot(outer, normal);
+    if cosine_in <= 0.0 || cosine_out <= 1e-4 {
+        return dark;
+    }
+    // Fresnel's equations, unpolarised.
+    let s = (WATER_INDEX * cosine_in - cosine_out) / (WATER_INDEX * cosine_in + cosine_out);
+    let p = (cosine_in - WATER_INDEX * cosine_out) / (cosine_in + WATER_INDEX * cosine_out);
+    let thrown_back = 0.5 * (s * s + p * p);
+    // A bead shows some 50 degrees: how many pixels of the picture lie in one of the drop's.
+    let spread = 0.4 * abs(lens.eye.z) * lens.per_m / max(w.radius, 0.02);
+    return mix(scene(picture_at(outer), log2(max(spread, 1.0))), dark, thrown_back);
+}
+
+// The water over a point of the glass, in cells: the highest of what overlaps there.
+fn water_over(c: vec2f, hits: f32) -> Water {
+    var best = Water(vec2f(0.0), 0.0, 0.0, -1.0);
+    let base = vec2i(floor(c));
+    for (var y = -1; y <= 1; y++) {
+        for (var x = -1; x <= 1; x++) {
+            let at = base + vec2i(x, y);
+            if any(at < vec2i(0)) || any(at >= lens.size) {
+                continue;
+            }
+            let cell = textureLoad(cells, at, 0);
+            if cell.x == 0u {
+                continue;
+            }
+            let middle = vec2f(at) + vec2f(f32(cell.y & 0xffffu), f32(cell.y >> 16u)) / 65536.0;
+            let w = bead(cell, c - middle);
+            if w.cover > 0.0 && w.height > best.height {
+                best = w;
+            }
+        }
+    }
+    if best.cover <= 0.0 && hits > 0.0 {
+        let key = lens.key + ((textureLoad(cells, clamp(base, vec2i(0), lens.size - 1), 0).w >> 12u) & 15u);
+        best = fine(c, 2.0, key + 32u, hits, 24.0);
+        if best.cover <= 0.0 {
+            best = fine(c, 4.0, key + 64u, hits, 12.0);
+        }
+    }
+    return best;
+}
+
+// Streaks of a film: fine ridges along the blade's way, or along the flow.
+fn streaks(c: vec2f) -> f32 {
+    let arc = length(c - lens.pivot) * 2.7;
+    let across = dot(c, vec2f(lens.flow.y, -lens.flow.x)) * 2.7;
+    let at = select(across, arc, (lens.shows & 2u) != 0u);
+    let f = fract(at);
+    let i = i32(floor(at));
+    let a = f32(hash(vec2i(i, 11), lens.key) & 255u) / 127.5 - 1.0;
+    let b = f32(hash(vec2i(i + 1, 11), lens.key) & 255u) / 127.5 - 1.0;
+    return mix(a, b, f * f * (3.0 - 2.0 * f));
+}
+
+fn mist_at(v: f32) -> f32 {
+    let height = v / lens.height;
+    let cleared = 1.3 * lens.demist;
+    return lens.fogging * smoothstep(cleared - 0.3, cleared, height);
+}
+
+@fragment
+fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
+    let pixel = vec2i(in.position.xy);
+    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * lens.y_sign);
+    let ray = lens.ray + ndc.x * lens.ray_dx + ndc.y * lens.ray_dy;
+    let p = lens.eye.xy + ray.xy * (-lens.eye.z / max(ray.z, 1e-9));
+    var outside = ray.z <= 1e-6;
+    for (var i = 0; i < 4; i++) {
+        outside = outside || dot(lens.edges[i].xyz, vec3f(p, 1.0)) < 0.0;
+    }
+    if outside {
+        discard;
+    }
+    var keep = 0.0;
+    if HAS_MASK {
+        keep = textureLoad(host_mask, pixel, 0).r;
+    }
+    let mist = mist_at(p.y);
+    let c = p * lens.per_m;
+    var film = 0.0;
+    var water = Water(vec2f(0.0), 0.0, 0.0, 0.0);
+    if (lens.shows & 1u) != 0u {
+        let state = blended(c);
+        film = state.x * state.x;
+        water = water_over(c, state.y);
+    }
+    if keep >= 1.0 || (mist <= 0.0 && film < 1e-3 && water.cover <= 0.0) {
+        discard;
+    }
+    let host = textureLoad(picture, pixel, 0);
+    let uv = in.uv;
+    var seen = select(host.rgb, srgb_decode(host.rgb), ENCODED);
+    let d = normalize(ray);
+    if film >= 1e-3 {
+        let ridge = streaks(c) * film;
+        let across = normalize(select(vec2f(lens.flow.y, -lens.flow.x), c - lens.pivot, (lens.shows & 2u) != 0u) + 1e-6);
+        let bent = picture_at(normalize(d + vec3f(across * ridge * 0.03, 0.0)));
+        seen = mix(seen, scene(bent, 2.0 * film * abs(ridge) + film), min(film * 1.5, 1.0));
+    }
+    if water.cover > 0.0 {
+        seen = mix(seen, through(d, water, uv), water.cover);
+    }
+    if mist > 0.0 {
+        seen = mix(seen, scene(uv, 3.0 + 2.0 * mist), mist);
+        let glow = scene(vec2f(0.5), 5.0) + scene(vec2f(0.2, 0.3), 5.0) + scene(vec2f(0.8, 0.3), 5.0);
+        seen = mix(seen, vec3f(dot(glow, vec3f(0.2126, 0.7152, 0.0722) / 3.0)), 0.4 * mist);
+    }
+    let written = select(seen, srgb_encode(seen), ENCODED);
+    return vec4f(mix(written, host.rgb, keep), host.a);
+}

@@ -1,0 +1,24 @@
+// A picture's means over squares of texels, display values made linear: what a drop shows is that much smaller.
+//!include "common/fullscreen.wgsl"
+//!include "frame/tone.wgsl"
+
+@group(0) @binding(0) var picture: texture_2d<f32>;
+
+// Texels of the picture along an edge of one of ours.
+override FACTOR: i32 = 8;
+override ENCODED: bool = false;
+
+@fragment
+fn shrink(in: FullscreenVarying) -> @location(0) vec4f {
+    let corner = vec2i(in.position.xy) * FACTOR;
+    let last = vec2i(textureDimensions(picture)) - 1;
+    var sum = vec3f(0.0);
+    for (var y = 0; y < FACTOR; y++) {
+        for (var x = 0; x < FACTOR; x++) {
+            let texel = textureLoad(picture, min(corner + vec2i(x, y), last), 0).rgb;
+            sum += select(texel, srgb_decode(texel), ENCODED);
+        }
+    }
+    // The largest of rgba16float; a sun's disc may be brighter.
+    return vec4f(clamp(sum / f32(FACTOR * FACTOR), vec3f(0.0), vec3f(65504.0)), 1.0);
+}

@@ -1,0 +1,261 @@
+//! Water on the windscreen
+//!
+//! A view may look through a window: rain lands on it at the rate and speed at which the window meets it, beads merge, run
+//! down by gravity or up by the air, are wiped, and bend the picture behind them; mist on the inside blurs it. The stage
+//! LENS draws that over all that was drawn so far, within the window only; pixels of the mask stay. In a call with TONE the
+//! glass lies before the tone curve where the target is a float one, else after it.
+//!
+//! The water is part of the view and moves on a grid of 1/60 s from simulation time 0, with the frame that records
+//! WK_STAGE_PREPARE or first comes after: the frame rate changes nothing, views of one seed and history agree bit for bit.
+//! At the first frame, after WK_FRAME_CUT, and where a frame comes more than half a second after the one before, it takes the
+//! declared state of that moment, a pure function of (seed, time, rain); with WK_FRAME_NO_HISTORY it always has that state.
+//! Without a windscreen, or where it is dry and clear, LENS costs nothing.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    boundary::guard,
+    input,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    view::{ViewObject, wk_view},
+};
+use crate::{
+    error::{Result, Status},
+    glass::{MAX_ARMS, Pane, Windscreen, WiperArm},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_windscreen.rs"));
+
+/// Where the glass is.
+pub type wk_windscreen_pane = u32;
+/// A flat window of four corners.
+pub const WK_WINDSCREEN_PANE_QUAD: wk_windscreen_pane = 0;
+/// Glass across the whole view.
+pub const WK_WINDSCREEN_PANE_WHOLE_VIEW: wk_windscreen_pane = 1;
+
+/// A wiper: a blade on an arm that turns about a pivot in the glass's plane.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_wiper_arm {
+    /// sizeof(wk_wiper_arm) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WIPER_ARM.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12] each.
+    /// Default 0, 0.
+    pub pivot_m: [f64; 2],
+    /// From the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
+    pub length_m: f64,
+    /// From the pivot to the blade's inner end, m. Range [0, length_m), default 0.1.
+    pub inner_radius_m: f64,
+    /// Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
+    /// default 0.
+    pub parked_deg: f64,
+    /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
+    pub far_deg: f64,
+    /// Where the blade is in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+    pub position: f64,
+    /// Width of the rubber on the glass, m. Range [0, 0.1], default 0.006.
+    pub blade_width_m: f64,
+}
+
+impl wk_wiper_arm {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WIPER_ARM,
+        next: null(),
+        pivot_m: [0.0, 0.0],
+        length_m: 0.6,
+        inner_radius_m: 0.1,
+        parked_deg: 0.0,
+        far_deg: 90.0,
+        position: 0.0,
+        blade_width_m: 0.006,
+    };
+}
+
+/// The window that a view looks through.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_windscreen {
+    /// sizeof(wk_windscreen) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WINDSCREEN.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Default WK_WINDSCREEN_PANE_QUAD.
+    pub pane: wk_windscreen_pane,
+    /// Number of wipers in `arms`, at most 2. Default 0.
+    pub arm_count: u32,
+    /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower left,
+    /// lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex, edges in
+    /// [0.05, 8] m, within 20 m. Its slope against gravity follows from the frame's view matrix. Default 1 m x 0.6 m across
+    /// the view, 0.7 m away.
+    pub corners_m: [f64; 12],
+    /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
+    pub distance_m: f64,
+    /// Velocity of the glass against the air (the vehicle's less the wind's) in the camera's axes, m/s: decides how many
+    /// drops it meets. Range [-400, 400] each, default 0, 0, 0.
+    pub velocity_m_s: [f64; 3],
+    /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
+    /// on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+    pub airflow_m_s: f64,
+    /// Share of the weather's rain that reaches the glass: 0 in a tunnel. Range [0, 1], default 1.
+    pub exposed: f64,
+    /// Mist on the inside. Range [0, 1], default 0.
+    pub fogging: f64,
+    /// How far the blower has cleared the mist, from the lower edge upwards. Range [0, 1], default 0.
+    pub demist: f64,
+    /// The wipers; may be NULL if there are none. Read during the call only.
+    pub arms: *const wk_wiper_arm,
+    /// sizeof(wk_wiper_arm) of your header. Default that of this header.
+    pub arm_stride: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_windscreen {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WINDSCREEN,
+        next: null(),
+        pane: WK_WINDSCREEN_PANE_QUAD,
+        arm_count: 0,
+        corners_m: [-0.5, -0.3, -0.7, 0.5, -0.3, -0.7, 0.5, 0.3, -0.7, -0.5, 0.3, -0.7],
+        distance_m: 0.6,
+        velocity_m_s: [0.0, 0.0, 0.0],
+        airflow_m_s: 0.0,
+        exposed: 1.0,
+        fogging: 0.0,
+        demist: 0.0,
+        arms: null(),
+        arm_stride: struct_size::<wk_wiper_arm>(),
+        reserved0: 0,
+    };
+}
+
+/// Water on a windscreen.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_windscreen_report {
+    /// sizeof(wk_windscreen_report) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_WINDSCREEN_REPORT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Drops that hit the pane in a second (rain from 0.1 mm of diameter).
+    pub drops_per_s: f64,
+    /// Water that hits it, mm/h of its area.
+    pub water_mm_h: f64,
+    /// Share of the pane under water, 0 to 1.
+    pub covered: f64,
+    /// Water on it, kg.
+    pub water_kg: f64,
+    /// Simulation time of the state, s.
+    pub state_time_s: f64,
+}
+
+impl wk_windscreen_report {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_WINDSCREEN_REPORT,
+        next: null(),
+        drops_per_s: 0.0,
+        water_mm_h: 0.0,
+        covered: 0.0,
+        water_kg: 0.0,
+        state_time_s: 0.0,
+    };
+}
+
+/// # Safety
+/// `p` is a `wk_windscreen` with the arms it names.
+unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&"windscreen", p)? };
+    // SAFETY: as above.
+    unsafe { layout::check_chain(&"windscreen", c.next, &[])? };
+    let mut arms = [None; MAX_ARMS];
+    let (count, stride) = (c.arm_count as usize, c.arm_stride as usize);
+    // SAFETY: the caller's promise.
+    unsafe {
+        input::each("windscreen.arms", c.arms, count, stride, MAX_ARMS, &mut |i, a: wk_wiper_arm| {
+            arms[i] = Some(WiperArm {
+                pivot_m: a.pivot_m,
+                length_m: a.length_m,
+                inner_radius_m: a.inner_radius_m,
+                parked_deg: a.parked_deg,
+                far_deg: a.far_deg,
+                position: a.position,
+                blade_width_m: a.blade_width_m,
+            });
+            Ok(())
+        })?;
+    }
+    let corner = |i: usize| DVec3::from_slice(&c.corners_m[3 * i..3 * i + 3]);
+    let screen = Windscreen {
+        pane: match c.pane {
+            WK_WINDSCREEN_PANE_WHOLE_VIEW => Pane::WholeView(c.distance_m),
+            _ => Pane::Quad(std::array::from_fn(corner)),
+        },
+        velocity_m_s: DVec3::from_array(c.velocity_m_s),
+        airflow_m_s: c.airflow_m_s,
+        exposed: c.exposed,
+        fogging: c.fogging,
+        demist: c.demist,
+        arms,
+    };
+    screen.validate()?;
+    Ok(screen)
+}
+
+/// Sets the window that the view looks through; NULL takes it away. A host that drives, wipes or turns its head sets it anew
+/// before each frame: the water stays on the glass as long as its size does. Unchanged after an error.
+/// The stage LENS then answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_set_windscreen(view: *mut wk_view, windscreen: *const wk_windscreen) -> wk_status {
+    guard("wk_view_set_windscreen", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `windscreen`.
+        let screen = if windscreen.is_null() { None } else { Some(unsafe { self::windscreen(windscreen)? }) };
+        object.cell.drain();
+        object.lock().set_windscreen(screen.as_ref())?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Says how much water is on the view's windscreen as of its last frame, and what it meets. Reads the state back and waits
+/// for the GPU: for a figure now and then, not for every frame. All 0 without a windscreen or before its first frame.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_DEVICE_LOST.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_get_windscreen_report(
+    view: *mut wk_view,
+    out_report: *mut wk_windscreen_report,
+) -> wk_status {
+    guard("wk_view_get_windscreen_report", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        // SAFETY: the caller's promise about `out_report`.
+        let place = unsafe { layout::out_struct(&"out_report", out_report)? };
+        object.cell.drain();
+        let report = object.lock().windscreen_report()?.filter(|r| r.state_time_s.is_finite()).unwrap_or_default();
+        place.set(&wk_windscreen_report {
+            drops_per_s: report.drops_per_s,
+            water_mm_h: report.water_mm_h,
+            covered: report.covered,
+            water_kg: report.water_m3 * crate::glass::laws::WATER,
+            state_time_s: report.state_time_s,
+            ..wk_windscreen_report::INIT
+        });
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,119 @@
+//! The stage LENS: the view's windscreen.
+
+use std::sync::Arc;
+
+use super::{
+    Frame, FrameFlags, View,
+    measure::{Effect, Recording},
+    target::{ColorSpace, Stages},
+    view::is_float,
+};
+use crate::{
+    context::{Context, Scene},
+    error::{Error, Result},
+    glass::{Glass, GlassReport, LensFrame, Moment, Windscreen, reference::Cells},
+};
+
+impl View {
+    /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes sets it
+    /// anew before each frame: the water stays on the glass while its size does. Unchanged after an error.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range.
+    pub fn set_windscreen(&mut self, screen: Option<&Windscreen>) -> Result<()> {
+        let Some(screen) = screen else {
+            let device = self.device.clone();
+            let _entered = device.enter()?;
+            self.glass = None;
+            return Ok(());
+        };
+        screen.validate()?;
+        match &mut self.glass {
+            Some(glass) => glass.set(*screen),
+            None => self.glass = Some(Box::new(Glass::new(*screen))),
+        }
+        Ok(())
+    }
+
+    /// Water on the windscreen as of the last frame, or `None` without one. Reads it back and waits for the GPU: not for
+    /// every frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn windscreen_report(&self) -> Result<Option<GlassReport>> {
+        let _entered = self.device.enter()?;
+        self.glass.as_ref().map(|g| g.report(&self.device)).transpose()
+    }
+
+    /// The cells of the windscreen's water, or `None` where it is dry; for tests and tools. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`View::windscreen_report`].
+    pub fn windscreen_cells(&self) -> Result<Option<Cells>> {
+        let _entered = self.device.enter()?;
+        self.glass.as_ref().map_or(Ok(None), |g| g.cells(&self.device))
+    }
+
+    /// Refuses a frame whose LENS cannot be drawn.
+    pub(super) fn check_lens(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        let several = frame.color.is_some_and(|c| c.sample_count() > 1);
+        if several && stages.has(Stages::LENS) && self.glass.is_some() {
+            return Err(Error::unsupported(
+                "color.samples above 1 in the stage LENS with a windscreen: resolve first, then record LENS",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Brings the water on the glass to the frame's time.
+    pub(super) fn prepare_lens(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        scene: &Scene,
+        to: &mut Recording<'_>,
+    ) -> Result<()> {
+        let Some(glass) = &mut self.glass else { return Ok(()) };
+        let moment = Moment {
+            time_s: context.time_s(),
+            seed: context.seed(),
+            camera: &frame.camera,
+            up: scene.world_to_enu.transpose().z_axis,
+            altitude_m: scene.place.altitude_m,
+            weather: &|t| context.known_weather(t),
+            cut: frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0)),
+        };
+        let (device, encoder) = (&self.device, &mut *to.encoder);
+        let passes = self.shared.with_glass(device, |kit| glass.advance(device, kit, encoder, &moment))?;
+        self.report.passes += passes;
+        to.ends(Effect::Windscreen, passes > 0)
+    }
+
+    /// Whether LENS is among the stages and has anything to show.
+    pub(super) fn shows_lens(&self, stages: Stages) -> bool {
+        stages.has(Stages::LENS) && self.glass.as_ref().is_some_and(|g| g.shows())
+    }
+
+    /// Draws the glass over what the target holds; `toned` says that TONE has been over it in this call.
+    pub(super) fn draw_lens(&mut self, frame: &Frame<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
+        let Some(color) = frame.color else { return Ok(()) };
+        self.hold_copy(color);
+        let (Some(glass), Some(copy)) = (&mut self.glass, &self.copy) else { return Ok(()) };
+        to.encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
+        let plain = !is_float(color.format()) && !color.format().is_srgb();
+        let toned = toned && frame.color_space == ColorSpace::SceneLinear;
+        let lens = LensFrame {
+            camera: &frame.camera,
+            picture: copy,
+            mask: frame.mask,
+            target: color,
+            encoded: plain && (toned || frame.color_space == ColorSpace::DisplaySrgb),
+            bottom_left: frame.origin_bottom_left,
+        };
+        let (device, encoder): (&Arc<_>, _) = (&self.device, &mut *to.encoder);
+        let passes = self.shared.with_glass(device, |kit| glass.draw(device, kit, encoder, &lens))?;
+        self.report.passes += passes;
+        self.report.bytes = self.bytes();
+        to.ends(Effect::Windscreen, passes > 0)
+    }
+}

@@ -1,0 +1,189 @@
+//! Where the glass lies: its plane in the camera's axes, and the lattice on it.
+
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+
+use super::{CELL_M, MAX_CELLS, Pane};
+use crate::error::{Error, Result};
+
+/// A pane as a plane with axes: u along the lower edge, v up the glass, both from the lower left of the pane's bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Lower left of the bounds, m in the camera's axes.
+    pub origin: DVec3,
+    /// Unit vector along the lower edge, to the right.
+    pub u: DVec3,
+    /// Unit vector up the glass.
+    pub v: DVec3,
+    /// Unit vector outwards, away from the camera.
+    pub out: DVec3,
+    /// Width and height of the bounds, m.
+    pub size_m: DVec2,
+    /// The corners in (u, v), m, anticlockwise as seen from the camera.
+    pub corners: [DVec2; 4],
+}
+
+impl Plane {
+    /// The plane of four corners: lower left, lower right, upper right, upper left as seen from the camera, at the origin.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if they are out of range, not in one plane, not convex or not in that order.
+    pub fn of(corners: &[DVec3; 4]) -> Result<Self> {
+        const NAME: &str = "windscreen.corners_m";
+        let listed = || format!("{corners:?}");
+        if !corners.iter().all(|c| c.is_finite() && c.abs().max_element() <= 20.0) {
+            return Err(Error::range(NAME, "finite and within 20 m of the camera", listed()));
+        }
+        let edge = |i: usize| corners[(i + 1) % 4] - corners[i];
+        if !(0..4).all(|i| (0.05..=8.0).contains(&edge(i).length())) {
+            return Err(Error::range(NAME, "four corners with edges in [0.05, 8] m", listed()));
+        }
+        let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
+        let Some(towards) = normal.try_normalize() else {
+            return Err(Error::range(NAME, "the corners of an area", listed()));
+        };
+        let (u, distance) = (edge(0).normalize(), -towards.dot(corners[0]));
+        if distance < 1e-3 {
+            let accepted = "lower left, lower right, upper right, upper left as seen from a camera at least 1 mm away";
+            return Err(Error::range(NAME, accepted, listed()));
+        }
+        // The lower edge lies in the plane but for what its corners are off.
+        let v = towards.cross(u).normalize();
+        let (out, flat) = (v.cross(u), |c: DVec3| DVec2::new(u.dot(c - corners[0]), v.dot(c - corners[0])));
+        let off = corners.map(|c| out.dot(c - corners[0]).abs()).into_iter().fold(0.0, f64::max);
+        if off > 0.02 * (corners[2] - corners[0]).length() {
+            return Err(Error::range(NAME, "in one plane within 2 % of the diagonal", listed()));
+        }
+        let flat = corners.map(flat);
+        let turn = |i: usize| {
+            let (a, b, c) = (flat[i], flat[(i + 1) % 4], flat[(i + 2) % 4]);
+            (b - a).perp_dot(c - b)
+        };
+        if !(0..4).all(|i| turn(i) > 0.0) {
+            return Err(Error::range(NAME, "the corners of a convex area, in order", listed()));
+        }
+        let low = flat.into_iter().fold(DVec2::INFINITY, DVec2::min);
+        let high = flat.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let origin = corners[0] + u * low.x + v * low.y;
+        Ok(Self { origin, u, v, out, size_m: high - low, corners: flat.map(|c| c - low) })
+    }
+
+    /// The plane of a pane in a picture with this projection.
+    ///
+    /// # Errors
+    /// As [`Plane::of`].
+    pub fn of_pane(pane: &Pane, projection: &DMat4) -> Result<Self> {
+        match pane {
+            Pane::Quad(corners) => Self::of(corners),
+            Pane::WholeView(distance_m) => {
+                let rays = Rays::of(projection)?;
+                // A little more than the picture, so that its edge is glass.
+                let at = |x: f64, y: f64| {
+                    let d = rays.direction + 1.02 * (x * rays.dx + y * rays.dy);
+                    d * (distance_m / -d.z)
+                };
+                Self::of(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]).map_err(|e| {
+                    Error::unsupported(format!("windscreen over the whole view with this projection: {}", e.message))
+                })
+            }
+        }
+    }
+
+    /// Edge of a cell, m, and the lattice's columns and rows.
+    pub fn lattice(&self) -> (f64, [u32; 2]) {
+        let cell = CELL_M.max(self.size_m.max_element() / f64::from(MAX_CELLS));
+        (cell, self.size_m.to_array().map(|m| ((m / cell).round() as u32).clamp(4, MAX_CELLS)))
+    }
+
+    /// Area of the pane, m^2.
+    pub fn area_m2(&self) -> f64 {
+        let c = &self.corners;
+        0.5 * (c[2] - c[0]).perp_dot(c[3] - c[1])
+    }
+}
+
+/// A perspective picture's rays: direction = `direction` + x `dx` + y `dy` over clip x and y, camera's axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rays {
+    pub direction: DVec3,
+    pub dx: DVec3,
+    pub dy: DVec3,
+}
+
+impl Rays {
+    /// # Errors
+    /// [`crate::Status::Unsupported`] for parallel rays: there is no eye behind the glass.
+    pub fn of(projection: &DMat4) -> Result<Self> {
+        // p = (x, y, z, 1) lies on the ray of (x', y') where (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0; of two planes
+        // through the eye the cross product of their normals is the ray's direction, affine in x' and y' as r_w x r_w = 0.
+        let row = |i: usize| {
+            let r: DVec4 = projection.row(i);
+            r.truncate()
+        };
+        let (rx, ry, rw) = (row(0), row(1), row(3));
+        if rw.length_squared() == 0.0 {
+            return Err(Error::unsupported(
+                "a windscreen with a projection of parallel rays: it needs a perspective one",
+            ));
+        }
+        let (direction, dx, dy) = (rx.cross(ry), ry.cross(rw), rw.cross(rx));
+        let sign = rw.dot(direction).signum();
+        Ok(Self { direction: direction * sign, dx: dx * sign, dy: dy * sign })
+    }
+
+    /// From a direction to (x, y, 1) in clip space times a factor that is positive before the camera.
+    pub fn to_clip(self) -> DMat3 {
+        DMat3::from_cols(self.dx, self.dy, self.direction).inverse()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Camera;
+
+    fn quad() -> [DVec3; 4] {
+        // A car's: 1.2 m wide, leaning back.
+        [(-0.7, -0.2, -0.9), (0.7, -0.2, -0.9), (0.5, 0.3, -0.4), (-0.5, 0.3, -0.4)].map(DVec3::from)
+    }
+
+    #[test]
+    fn axes_are_those_of_the_glass() {
+        let p = Plane::of(&quad()).unwrap();
+        assert!((p.u - DVec3::X).length() < 1e-12 && p.v.y > 0.0 && p.v.z > 0.0 && p.out.z < 0.0 && p.out.y > 0.0);
+        assert!((p.size_m.y - 0.5f64.hypot(0.5)).abs() < 1e-12 && (p.size_m.x - 1.4).abs() < 1e-12);
+        assert!((p.area_m2() - 1.2 * p.size_m.y).abs() < 1e-12);
+        assert_eq!(p.lattice(), (0.004, [350, 177]));
+        for (c, flat) in quad().iter().zip(p.corners) {
+            assert!((p.origin + p.u * flat.x + p.v * flat.y - *c).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_no_window_is_refused_by_name() {
+        let [a, b, c, d] = quad();
+        let lifted = c + DVec3::Z * 0.4;
+        let lost = DVec3::new(f64::NAN, 0.0, 0.0);
+        let flat = [a, a + DVec3::X, a + DVec3::X * 2.0, a + DVec3::X * 3.0];
+        for bad in [[a, d, c, b], [a, b, lifted, d], [lost, b, c, d], [a, a, c, d], flat, [a, b, d, c]] {
+            let e = Plane::of(&bad).unwrap_err();
+            assert!(e.message.contains("windscreen.corners_m"), "{e}");
+        }
+        assert!(Plane::of(&[a, b, c, d].map(|p| p * 30.0)).is_err());
+    }
+
+    #[test]
+    fn rays_invert_any_perspective() {
+        let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.8, 1.6, 0.1);
+        let shifted = DMat4::from_translation(DVec3::new(0.3, -0.2, 0.0)) * camera.projection;
+        for projection in [camera.projection, shifted] {
+            let rays = Rays::of(&projection).unwrap();
+            let d = rays.direction + 0.4 * rays.dx - 0.7 * rays.dy;
+            let clip = projection * d.extend(0.0);
+            assert!(clip.w > 0.0 && (clip.x / clip.w - 0.4).abs() < 1e-12 && (clip.y / clip.w + 0.7).abs() < 1e-12);
+            let back = rays.to_clip() * d;
+            assert!(back.z > 0.0 && (back.x / back.z - 0.4).abs() < 1e-12);
+        }
+        let parallel = DMat4::from_scale(DVec3::new(0.1, 0.1, 0.01));
+        assert_eq!(Rays::of(&parallel).unwrap_err().status, crate::Status::Unsupported);
+    }
+}

@@ -1,0 +1,122 @@
+//! The numbers of the lens pass: from pixels to the glass, and from directions back to the picture.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
+use crate::{error::Result, scene::Camera};
+
+/// What the frame knows of its target.
+#[derive(Clone, Copy)]
+pub(crate) struct LensFrame<'a> {
+    pub camera: &'a Camera,
+    /// The finished picture, to read; as large as the target.
+    pub picture: &'a wgpu::Texture,
+    pub mask: Option<&'a wgpu::Texture>,
+    pub target: &'a wgpu::Texture,
+    /// Its values follow the sRGB curve.
+    pub encoded: bool,
+    pub bottom_left: bool,
+}
+
+/// As `Lens` of `shaders/glass/lens.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct LensUniform {
+    pub ray: [f32; 3],
+    pub per_m: f32,
+    pub ray_dx: [f32; 3],
+    pub y_sign: f32,
+    pub ray_dy: [f32; 3],
+    pub radius: f32,
+    pub eye: [f32; 3],
+    pub pixel: f32,
+    pub clip_x: [f32; 3],
+    pub fogging: f32,
+    pub clip_y: [f32; 3],
+    pub demist: f32,
+    pub clip_z: [f32; 3],
+    pub height: f32,
+    pub edges: [[f32; 4]; 4],
+    pub flow: [f32; 2],
+    pub pivot: [f32; 2],
+    pub size: [i32; 2],
+    pub key: u32,
+    pub shows: u32,
+}
+
+/// The lattice that the lens shows.
+#[derive(Clone, Copy)]
+pub(super) struct Shown {
+    pub cell_m: f64,
+    pub size: [u32; 2],
+    /// Whether there is water on it.
+    pub wet: bool,
+    /// Where large beads run to, (u, v); any length.
+    pub flow: DVec2,
+    pub key: u32,
+}
+
+impl LensUniform {
+    pub fn of(screen: &Windscreen, plane: &Plane, frame: &LensFrame<'_>, shown: &Shown) -> Result<Self> {
+        let rays = Rays::of(&frame.camera.projection)?;
+        let to_glass = DMat3::from_cols(plane.u, plane.v, plane.out).transpose();
+        let clip = rays.to_clip() * to_glass.transpose();
+        let eye = to_glass * -plane.origin;
+        let f3 = |v: DVec3| v.as_vec3().to_array();
+        // A pixel's size where the view's middle meets the glass, or would if it were across.
+        let ray = rays.direction.normalize();
+        let distance = eye.z.abs() / (to_glass * ray).z.abs().max(0.2);
+        let angle = 2.0 * rays.dy.length() / rays.direction.length() / f64::from(frame.picture.height());
+        let edges = std::array::from_fn(|i| {
+            let (a, b) = (plane.corners[i], plane.corners[(i + 1) % 4]);
+            let inwards = (b - a).normalize().perp();
+            [inwards.x as f32, inwards.y as f32, -inwards.dot(a) as f32, 0.0]
+        });
+        let pivot = screen.arms.iter().flatten().next().map(|a| a.pivot_m);
+        Ok(Self {
+            ray: f3(to_glass * rays.direction),
+            per_m: (1.0 / shown.cell_m) as f32,
+            ray_dx: f3(to_glass * rays.dx),
+            y_sign: if frame.bottom_left { -1.0 } else { 1.0 },
+            ray_dy: f3(to_glass * rays.dy),
+            radius: (laws::radius_m(VOLUME_UNIT_M3) / shown.cell_m) as f32,
+            eye: f3(eye),
+            pixel: (angle * distance / shown.cell_m) as f32,
+            clip_x: f3(clip.x_axis),
+            fogging: screen.fogging as f32,
+            clip_y: f3(clip.y_axis),
+            demist: screen.demist as f32,
+            clip_z: f3(clip.z_axis),
+            height: plane.size_m.y as f32,
+            edges,
+            flow: shown.flow.normalize_or_zero().as_vec2().to_array(),
+            pivot: pivot.unwrap_or_default().map(|m| (m / shown.cell_m) as f32),
+            size: shown.size.map(|n| n as i32),
+            key: shown.key,
+            shows: u32::from(shown.wet) + 2 * u32::from(pivot.is_some()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_agree_with_the_shader() {
+        let text = shader::assemble("glass/lens.wgsl").unwrap();
+        let (size, members) = shader::struct_layout(&text, "Lens").unwrap();
+        assert_eq!(size as usize, size_of::<LensUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(members.contains(&(stringify!($field).into(), offset_of!(LensUniform, $field) as u32)));)*
+            };
+        }
+        same!(ray, per_m, ray_dx, y_sign, ray_dy, radius, eye, pixel, clip_x, fogging, clip_y, demist, clip_z, height);
+        same!(edges, flow, pivot, size, key, shows);
+    }
+}

@@ -1,0 +1,170 @@
+//! Water on the windscreen: drops land on the glass that a host looks through, merge, run, are wiped, and bend the
+//! picture behind them.
+//!
+//! **State.** The glass is a lattice of cells of 4 mm, at most one bead of water in each: its volume, its place inside
+//! the cell, whether it runs; beside it how many drops have hit the cell since it was last cleared (the fine beads are
+//! drawn from that number) and a thin film. Everything is an integer, and a step uses integer arithmetic only
+//! (`shaders/glass/cells.wgsl`; the twin is [`reference`]): the same seed and times give the same bits on every driver.
+//! What needs physics in floating point, speeds, rates, retention, becomes tables of integers on the CPU once a step
+//! ([`step`], from the laws in [`laws`]).
+//!
+//! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a cut,
+//! at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that moment,
+//! a pure function of (seed, time, rain): beads below the size at which they run. `NO_HISTORY` shows that state always.
+//!
+//! **Cost.** Two passes over the lattice a step, two small copies of the picture and one pass over it a frame; nothing
+//! without a windscreen or on dry glass. **Left out**: the splash of an impact, water pushed ahead of a blade, drops
+//! farther apart than a cell seeing each other.
+
+mod geometry;
+pub mod laws;
+mod lens;
+mod passes;
+pub mod reference;
+mod state;
+pub mod step;
+
+pub(crate) use lens::LensFrame;
+pub(crate) use passes::GlassKit;
+pub use state::GlassReport;
+pub(crate) use state::{Glass, Moment};
+
+use glam::DVec3;
+
+pub use geometry::Plane;
+
+use crate::error::{Error, Result, check_range};
+
+/// Edge of a cell, m, on glass up to 4 m across; larger glass has larger cells.
+pub const CELL_M: f64 = 0.004;
+/// Cells along the longer edge at most.
+pub const MAX_CELLS: u32 = 1024;
+/// Steps a second.
+pub const STEPS_PER_S: f64 = 60.0;
+/// Steps that one frame may be behind; beyond, the glass takes its declared state.
+pub const MAX_STEPS: i64 = 30;
+/// Wiper arms at most.
+pub const MAX_ARMS: usize = 2;
+
+/// Where the glass is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pane {
+    /// A flat window, its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left, lower
+    /// right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
+    Quad([DVec3; 4]),
+    /// The whole picture: glass across the view at this distance, m, [0.1, 3].
+    WholeView(f64),
+}
+
+/// A wiper: a blade on an arm that turns about a pivot in the glass's plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WiperArm {
+    /// Pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
+    pub pivot_m: [f64; 2],
+    /// From the pivot to the blade's outer end, m, (0, 3].
+    pub length_m: f64,
+    /// From the pivot to the blade's inner end, m, [0, `length_m`).
+    pub inner_radius_m: f64,
+    /// Angle of the parked blade, degrees anticlockwise from the glass's right, as seen from the camera, [-360, 360].
+    pub parked_deg: f64,
+    /// Angle at the far end of the stroke, degrees, within 350 of `parked_deg`.
+    pub far_deg: f64,
+    /// Where the blade is now: 0 parked, 1 at the far end.
+    pub position: f64,
+    /// Width of the rubber on the glass, m, [0, 0.1].
+    pub blade_width_m: f64,
+}
+
+impl Default for WiperArm {
+    fn default() -> Self {
+        Self {
+            pivot_m: [0.0, 0.0],
+            length_m: 0.6,
+            inner_radius_m: 0.1,
+            parked_deg: 0.0,
+            far_deg: 90.0,
+            position: 0.0,
+            blade_width_m: 0.006,
+        }
+    }
+}
+
+/// The window that a view looks through, and what acts on it. A host that drives sets it anew before each frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Windscreen {
+    /// Where the glass is.
+    pub pane: Pane,
+    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each within 400:
+    /// decides how many drops it meets.
+    pub velocity_m_s: DVec3,
+    /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
+    pub airflow_m_s: f64,
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel.
+    pub exposed: f64,
+    /// Mist on the inside, [0, 1].
+    pub fogging: f64,
+    /// How far the blower has cleared it, from the lower edge upwards, [0, 1].
+    pub demist: f64,
+    /// The wipers; 0 to 2.
+    pub arms: [Option<WiperArm>; MAX_ARMS],
+}
+
+impl Default for Windscreen {
+    fn default() -> Self {
+        Self {
+            pane: Pane::WholeView(0.6),
+            velocity_m_s: DVec3::ZERO,
+            airflow_m_s: 0.0,
+            exposed: 1.0,
+            fogging: 0.0,
+            demist: 0.0,
+            arms: [None; MAX_ARMS],
+        }
+    }
+}
+
+impl WiperArm {
+    fn validate(&self, name: &str) -> Result<()> {
+        let range = |field: &str, v, lo, hi, unit| check_range(&format!("{name}.{field}"), v, lo, hi, unit);
+        range("pivot_m[0]", self.pivot_m[0], -4.0, 12.0, "m")?;
+        range("pivot_m[1]", self.pivot_m[1], -4.0, 12.0, "m")?;
+        range("length_m", self.length_m, 0.01, 3.0, "m")?;
+        range("inner_radius_m", self.inner_radius_m, 0.0, 3.0, "m")?;
+        if self.inner_radius_m >= self.length_m {
+            let accepted = format!("below length_m, {}", self.length_m);
+            return Err(Error::range(&format!("{name}.inner_radius_m"), &accepted, self.inner_radius_m));
+        }
+        range("parked_deg", self.parked_deg, -360.0, 360.0, "deg")?;
+        range("far_deg", self.far_deg, self.parked_deg - 350.0, self.parked_deg + 350.0, "deg")?;
+        range("position", self.position, 0.0, 1.0, "")?;
+        range("blade_width_m", self.blade_width_m, 0.0, 0.1, "m")
+    }
+
+    /// The blade's angle at a place of the stroke, rad.
+    fn angle(&self, position: f64) -> f64 {
+        (self.parked_deg + (self.far_deg - self.parked_deg) * position).to_radians()
+    }
+}
+
+impl Windscreen {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match &self.pane {
+            Pane::Quad(corners) => {
+                Plane::of(corners)?;
+            }
+            Pane::WholeView(distance) => check_range("windscreen.distance_m", *distance, 0.1, 3.0, "m")?,
+        }
+        for (i, v) in self.velocity_m_s.to_array().into_iter().enumerate() {
+            check_range(&format!("windscreen.velocity_m_s[{i}]"), v, -400.0, 400.0, "m/s")?;
+        }
+        check_range("windscreen.airflow_m_s", self.airflow_m_s, -100.0, 100.0, "m/s")?;
+        check_range("windscreen.exposed", self.exposed, 0.0, 1.0, "")?;
+        check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
+        check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
+        self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate(&format!("windscreen.arms[{i}]")))
+    }
+}

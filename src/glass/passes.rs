@@ -1,0 +1,383 @@
+//! GPU resources of the glass: pipelines that all views share, a view's lattice, and the lens over a picture.
+
+use std::{collections::HashMap, sync::Arc};
+
+use super::{LensFrame, lens::LensUniform, step::StepUniform};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+};
+
+const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Texels of the picture in one of its smaller copies, along an edge.
+const SMALLER: u32 = 8;
+const SMALLEST: u32 = 4;
+
+/// What tells one lens pipeline from another.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct LensVariant {
+    pub format: wgpu::TextureFormat,
+    pub encoded: bool,
+    pub has_mask: bool,
+}
+
+/// Pipelines and layouts, one set a device.
+pub(crate) struct GlassKit {
+    step_layout: wgpu::BindGroupLayout,
+    decide: wgpu::RenderPipeline,
+    gather: wgpu::RenderPipeline,
+    declare: wgpu::RenderPipeline,
+    shrink_layout: wgpu::BindGroupLayout,
+    shrink: [wgpu::RenderPipeline; 3],
+    lens_layout: wgpu::BindGroupLayout,
+    lenses: HashMap<LensVariant, wgpu::RenderPipeline>,
+    sampler: wgpu::Sampler,
+    no_mask: wgpu::TextureView,
+    no_cells: wgpu::TextureView,
+}
+
+fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn uniform_entry(has_dynamic_offset: bool, size: usize) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    }
+}
+
+fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
+    device.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&Default::default())
+}
+
+/// A bind group of `resources`, numbered from 0.
+fn bind(device: &Device, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+    let numbered = resources.iter().enumerate();
+    let entries: Vec<_> =
+        numbered.map(|(i, r)| wgpu::BindGroupEntry { binding: i as u32, resource: r.clone() }).collect();
+    device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("glass"), layout, entries: &entries })
+}
+
+fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(view)
+}
+
+impl GlassKit {
+    /// Compiles what every lattice needs.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn new(device: &Arc<Device>) -> Result<Self> {
+        let (uint, float) = (wgpu::TextureSampleType::Uint, |filterable| wgpu::TextureSampleType::Float { filterable });
+        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            let desc = wgpu::BindGroupLayoutDescriptor { label: Some("glass"), entries };
+            device.device.create_bind_group_layout(&desc)
+        };
+        let step_layout =
+            layout(&[uniform_entry(true, size_of::<StepUniform>()), texture_entry(1, uint), texture_entry(2, uint)]);
+        let shrink_layout = layout(&[texture_entry(0, float(false))]);
+        let lens_layout = layout(&[
+            uniform_entry(false, size_of::<LensUniform>()),
+            texture_entry(1, uint),
+            texture_entry(2, float(false)),
+            texture_entry(3, float(true)),
+            texture_entry(4, float(true)),
+            wgpu::BindGroupLayoutEntry {
+                binding: 5,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                count: None,
+            },
+            texture_entry(6, float(false)),
+        ]);
+        let pipeline = |shader, entry, layout: &wgpu::BindGroupLayout, format: wgpu::TextureFormat, constants: &[_]| {
+            let targets = &[format.into()];
+            let desc = FullscreenDesc { shader, entry, layouts: &[layout], targets, constants, samples: 1 };
+            pass::fullscreen(device, &desc)
+        };
+        let cells = |shader, entry| pipeline(shader, entry, &step_layout, CELLS, &[]);
+        let shrink = |factor: u32, encoded: f64| {
+            let constants = [("FACTOR", f64::from(factor)), ("ENCODED", encoded)];
+            pipeline("glass/shrink.wgsl", "shrink", &shrink_layout, SMALL, &constants)
+        };
+        Ok(Self {
+            decide: cells("glass/decide.wgsl", "decide")?,
+            gather: cells("glass/gather.wgsl", "gather")?,
+            declare: cells("glass/declare.wgsl", "declare")?,
+            shrink: [shrink(SMALLER, 0.0)?, shrink(SMALLER, 1.0)?, shrink(SMALLEST, 0.0)?],
+            lenses: HashMap::new(),
+            sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("glass"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            no_mask: view(&texture(device, "no mask", wgpu::TextureFormat::Rgba8Unorm, [1, 1])),
+            no_cells: view(&texture(device, "no cells", CELLS, [1, 1])),
+            step_layout,
+            shrink_layout,
+            lens_layout,
+        })
+    }
+
+    fn lens(&mut self, device: &Arc<Device>, variant: LensVariant) -> Result<&wgpu::RenderPipeline> {
+        if !self.lenses.contains_key(&variant) {
+            let yes = |b: bool| f64::from(u8::from(b));
+            let desc = FullscreenDesc {
+                shader: "glass/lens.wgsl",
+                entry: "look_through",
+                layouts: &[&self.lens_layout],
+                targets: &[variant.format.into()],
+                constants: &[("ENCODED", yes(variant.encoded)), ("HAS_MASK", yes(variant.has_mask))],
+                samples: 1,
+            };
+            self.lenses.insert(variant, pass::fullscreen(device, &desc)?);
+        }
+        Ok(&self.lenses[&variant])
+    }
+}
+
+/// What a step does to the lattice.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Work {
+    /// Takes the declared state of the moment.
+    Declare,
+    /// Moves on by one step.
+    Move,
+}
+
+/// A view's cells on the GPU.
+pub(super) struct Lattice {
+    pub size: [u32; 2],
+    cells: [wgpu::Texture; 2],
+    views: [wgpu::TextureView; 2],
+    moves: wgpu::TextureView,
+    /// Which of the two is the present state.
+    now: usize,
+    /// Reading state i and, in place of the moves, the other state; reading state i and the moves.
+    groups: [[wgpu::BindGroup; 2]; 2],
+    steps: wgpu::Buffer,
+    stride: usize,
+    slots: Vec<u8>,
+    due: Vec<Work>,
+}
+
+impl Lattice {
+    pub fn new(device: &Device, kit: &GlassKit, size: [u32; 2], most_steps: usize) -> Self {
+        let cells = ["glass 0", "glass 1"].map(|label| texture(device, label, CELLS, size));
+        let views = [view(&cells[0]), view(&cells[1])];
+        let moves = view(&texture(device, "glass moves", CELLS, size));
+        let alignment = device.device.limits().min_uniform_buffer_offset_alignment as usize;
+        let stride = size_of::<StepUniform>().next_multiple_of(alignment.max(16));
+        let steps = buffer(device, "glass steps", (stride * most_steps) as u64);
+        let group = |state: usize, moves: &wgpu::TextureView| {
+            let numbers = wgpu::BufferBinding {
+                buffer: &steps,
+                offset: 0,
+                size: wgpu::BufferSize::new(size_of::<StepUniform>() as u64),
+            };
+            let resources = [wgpu::BindingResource::Buffer(numbers), tex(&views[state]), tex(moves)];
+            bind(device, &kit.step_layout, &resources)
+        };
+        let groups = [0, 1].map(|i| [group(i, &views[1 - i]), group(i, &moves)]);
+        let (slots, due) = (Vec::with_capacity(stride * most_steps), Vec::with_capacity(most_steps));
+        Self { size, cells, views, moves, now: 0, groups, steps, stride, slots, due }
+    }
+
+    /// The present state.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.cells[self.now]
+    }
+
+    /// Bytes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        3 * 16 * u64::from(self.size[0]) * u64::from(self.size[1]) + self.steps.size()
+    }
+
+    /// Adds work to what [`Lattice::record`] will do; a declared state makes what was due before it needless.
+    pub fn add(&mut self, numbers: &StepUniform, work: Work) {
+        if work == Work::Declare {
+            self.slots.clear();
+            self.due.clear();
+        }
+        self.slots.extend_from_slice(bytemuck::bytes_of(numbers));
+        self.slots.resize(self.stride * (self.due.len() + 1), 0);
+        self.due.push(work);
+    }
+
+    /// Records the work that was added; says how many passes that took.
+    pub fn record(&mut self, device: &Device, kit: &GlassKit, encoder: &mut wgpu::CommandEncoder) -> u32 {
+        if self.due.is_empty() {
+            return 0;
+        }
+        device.queue.write_buffer(&self.steps, 0, &self.slots);
+        let mut passes = 0;
+        for (i, work) in self.due.iter().enumerate() {
+            let offset = (i * self.stride) as u32;
+            let (now, next) = (self.now, 1 - self.now);
+            if *work == Work::Move {
+                draw(encoder, &kit.decide, (&self.groups[now][0], offset), &self.moves);
+                draw(encoder, &kit.gather, (&self.groups[now][1], offset), &self.views[next]);
+                passes += 2;
+            } else {
+                draw(encoder, &kit.declare, (&self.groups[now][1], offset), &self.views[next]);
+                passes += 1;
+            }
+            self.now = next;
+        }
+        self.slots.clear();
+        self.due.clear();
+        passes
+    }
+}
+
+/// As [`pass::draw`], every texel anew, with one group whose numbers begin at an offset.
+fn draw(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::RenderPipeline,
+    (group, offset): (&wgpu::BindGroup, u32),
+    target: &wgpu::TextureView,
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("glass"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[offset]);
+    pass.draw(0..3, 0..1);
+}
+
+/// The lens over one picture: its smaller copies and bind groups, made anew when the host hands over other textures.
+pub(super) struct LensPass {
+    picture: wgpu::Texture,
+    target: (wgpu::Texture, wgpu::TextureView),
+    mask: Option<wgpu::Texture>,
+    smaller: [wgpu::TextureView; 2],
+    shrinks: [wgpu::BindGroup; 2],
+    uniform: wgpu::Buffer,
+    /// Over either state of the lattice, or none.
+    groups: [wgpu::BindGroup; 2],
+    lattice: Option<[u32; 2]>,
+    bytes: u64,
+}
+
+impl LensPass {
+    pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> Self {
+        let (picture, mask) = (frame.picture, frame.mask);
+        let target = (frame.target.clone(), view(frame.target));
+        let size = [picture.width().div_ceil(SMALLER), picture.height().div_ceil(SMALLER)];
+        let smallest = size.map(|n| n.div_ceil(SMALLEST));
+        let smaller =
+            [view(&texture(device, "smaller", SMALL, size)), view(&texture(device, "smallest", SMALL, smallest))];
+        let source = view(picture);
+        let shrinks = [&source, &smaller[0]].map(|v| bind(device, &kit.shrink_layout, &[tex(v)]));
+        let uniform = buffer(device, "lens", size_of::<LensUniform>() as u64);
+        let mask_view = mask.map_or_else(|| kit.no_mask.clone(), view);
+        let groups = [0, 1].map(|i| {
+            let resources = [
+                uniform.as_entire_binding(),
+                tex(lattice.map_or(&kit.no_cells, |l| &l.views[i])),
+                tex(&source),
+                tex(&smaller[0]),
+                tex(&smaller[1]),
+                wgpu::BindingResource::Sampler(&kit.sampler),
+                tex(&mask_view),
+            ];
+            bind(device, &kit.lens_layout, &resources)
+        });
+        let bytes = 8 * u64::from(size[0] * size[1] + smallest[0] * smallest[1]);
+        let lattice = lattice.map(|l| l.size);
+        Self {
+            picture: picture.clone(),
+            target,
+            mask: mask.cloned(),
+            smaller,
+            shrinks,
+            uniform,
+            groups,
+            lattice,
+            bytes,
+        }
+    }
+
+    /// Whether it was made for these.
+    pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> bool {
+        self.picture == *frame.picture
+            && self.target.0 == *frame.target
+            && self.mask.as_ref() == frame.mask
+            && self.lattice == lattice.map(|l| l.size)
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Draws; `picture` holds the finished picture already.
+    pub fn draw(
+        &self,
+        device: &Arc<Device>,
+        kit: &mut GlassKit,
+        encoder: &mut wgpu::CommandEncoder,
+        (uniform, variant): (&LensUniform, LensVariant),
+        lattice: Option<&Lattice>,
+    ) -> Result<u32> {
+        device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+        let first = &kit.shrink[usize::from(variant.encoded)];
+        pass::draw(encoder, "smaller", first, &[&self.shrinks[0]], &self.smaller[0]);
+        pass::draw(encoder, "smallest", &kit.shrink[2], &[&self.shrinks[1]], &self.smaller[1]);
+        let group = &self.groups[lattice.map_or(0, |l| l.now)];
+        let pipeline = kit.lens(device, variant)?;
+        pass::draw(encoder, "lens", pipeline, &[group], &self.target.1);
+        Ok(3)
+    }
+}

@@ -1,0 +1,303 @@
+//! A view's glass: which steps are due, what acts during them, and when there is nothing to do.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    LensFrame, MAX_STEPS, Plane, STEPS_PER_S, Windscreen,
+    lens::{LensUniform, Shown},
+    passes::{GlassKit, Lattice, LensPass, LensVariant, Work},
+    reference::Cells,
+    step::{Acting, Tables, seed_key},
+};
+use crate::{
+    error::Result,
+    gpu::{Device, readback},
+    rain::{drops::factor_in, sizes::DropSizes},
+    scene::Camera,
+    weather::Conditions,
+};
+
+/// What the weather and the frame say of a moment.
+pub(crate) struct Moment<'a> {
+    pub time_s: f64,
+    pub seed: u64,
+    pub camera: &'a Camera,
+    /// Up in the world's axes, unit.
+    pub up: DVec3,
+    /// Of the camera above sea level, m.
+    pub altitude_m: f64,
+    /// The weather at a time.
+    pub weather: &'a dyn Fn(f64) -> Conditions,
+    /// Nothing of earlier frames may show.
+    pub cut: bool,
+}
+
+/// Water on a windscreen.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct GlassReport {
+    /// Drops that hit the pane in a second.
+    pub drops_per_s: f64,
+    /// Water that hits it, mm/h of its area.
+    pub water_mm_h: f64,
+    /// Share of the pane under water.
+    pub covered: f64,
+    /// Water on it, m^3.
+    pub water_m3: f64,
+    /// Simulation time of the state, s; NaN before the first frame.
+    pub state_time_s: f64,
+}
+
+/// A view's windscreen with what it keeps between frames.
+pub(crate) struct Glass {
+    screen: Windscreen,
+    /// Simulation time of the last frame, and the windscreen then.
+    last: Option<(f64, Windscreen)>,
+    plane: Option<Plane>,
+    acting: Option<Acting>,
+    lattice: Option<Lattice>,
+    lens: Option<LensPass>,
+    tables: Box<Tables>,
+    /// The last step that was done.
+    step: Option<i64>,
+    /// 1 after rain, 0 when the last bead has dried.
+    moisture: f64,
+    /// Of what stays where it is on the glass.
+    key: u32,
+}
+
+/// The number of the last step at or before a time: what a host calls n / 60 s is step n.
+fn step_at(time_s: f64) -> i64 {
+    (time_s * STEPS_PER_S + 1e-6).floor() as i64
+}
+
+fn acting(screen: &Windscreen, plane: &Plane, moment: &Moment<'_>, weather: &Conditions) -> Acting {
+    let up = moment.camera.rotation() * moment.up;
+    // Steps of 50 m: a road's ups and downs must not cost new tables.
+    let level = (moment.altitude_m / 50.0).round() * 50.0;
+    Acting {
+        cell_m: plane.lattice().0,
+        rain: DropSizes::new(&weather.precipitation, factor_in(&weather.air, level)),
+        exposed: screen.exposed,
+        up: plane.out.dot(up),
+        approach_m_s: plane.out.dot(screen.velocity_m_s),
+        airflow_m_s: screen.airflow_m_s,
+        down: DVec2::new(-plane.u.dot(up), -plane.v.dot(up)),
+        relative_humidity: weather.air.relative_humidity,
+        temperature_c: weather.air.temperature_c,
+    }
+}
+
+impl Glass {
+    pub fn new(screen: Windscreen) -> Self {
+        Self {
+            screen,
+            last: None,
+            plane: None,
+            acting: None,
+            lattice: None,
+            lens: None,
+            tables: Box::default(),
+            step: None,
+            moisture: 0.0,
+            key: 0,
+        }
+    }
+
+    /// Sets the windscreen anew; the water stays on it.
+    pub fn set(&mut self, screen: Windscreen) {
+        self.screen = screen;
+    }
+
+    /// Whether the lens has anything to show.
+    pub fn shows(&self) -> bool {
+        self.moisture > 0.0 || self.screen.fogging * (1.0 - self.screen.demist) > 0.0
+    }
+
+    /// Bytes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.lattice.as_ref().map_or(0, Lattice::bytes) + self.lens.as_ref().map_or(0, LensPass::bytes)
+    }
+
+    /// Brings the glass to a moment; says how many passes that took.
+    ///
+    /// # Errors
+    /// [`Status::Unsupported`] for a projection of parallel rays.
+    pub fn advance(
+        &mut self,
+        device: &Device,
+        kit: &GlassKit,
+        encoder: &mut wgpu::CommandEncoder,
+        moment: &Moment<'_>,
+    ) -> Result<u32> {
+        let plane = Plane::of_pane(&self.screen.pane, &moment.camera.projection)?;
+        let (cell_m, size) = plane.lattice();
+        // What a moving head makes of the same window in f64 must not cost the water on it.
+        let same = |old: [u32; 2]| (0..2).all(|i| old[i].abs_diff(size[i]) <= 1 + size[i] / 50);
+        let fits = self.lattice.as_ref().is_some_and(|l| same(l.size));
+        if self.lattice.is_some() && !fits {
+            (self.lattice, self.lens, self.step) = (None, None, None);
+        }
+        self.plane = Some(plane);
+        self.key = seed_key(moment.seed);
+        let now = step_at(moment.time_s);
+        let before = self.last.filter(|_| !moment.cut);
+        let from = self.step.filter(|s| !moment.cut && *s <= now && now - s <= MAX_STEPS);
+        let present = acting(&self.screen, &plane, moment, &(moment.weather)(moment.time_s));
+        self.acting = Some(present);
+        let Some(from) = from else {
+            self.begin(device, kit, moment, &present, (now, size));
+            self.last = Some((moment.time_s, self.screen));
+            return Ok(self.lattice.as_mut().map_or(0, |l| l.record(device, kit, encoder)));
+        };
+        for step in from + 1..=now {
+            let time_s = step as f64 / STEPS_PER_S;
+            let screen = self.between(before, moment.time_s, time_s);
+            let mut acts = acting(&screen, &plane, moment, &(moment.weather)(time_s));
+            acts.cell_m = cell_m;
+            self.one(device, kit, (&acts, &screen), moment.seed, (step, size), before, moment.time_s);
+        }
+        self.step = Some(now);
+        self.last = Some((moment.time_s, self.screen));
+        Ok(self.lattice.as_mut().map_or(0, |l| l.record(device, kit, encoder)))
+    }
+
+    /// The declared state of a moment.
+    fn begin(
+        &mut self,
+        device: &Device,
+        kit: &GlassKit,
+        moment: &Moment<'_>,
+        acts: &Acting,
+        (now, size): (i64, [u32; 2]),
+    ) {
+        self.step = Some(now);
+        self.moisture = if self.tables.arrive(acts) { 1.0 } else { 0.0 };
+        if self.moisture > 0.0 {
+            let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
+            let numbers = self.tables.at(acts, moment.seed, now, lattice.size, &[None; 2]);
+            lattice.add(&numbers, Work::Declare);
+        }
+    }
+
+    /// One step.
+    #[allow(clippy::too_many_arguments, reason = "each is another's business")]
+    fn one(
+        &mut self,
+        device: &Device,
+        kit: &GlassKit,
+        (acts, screen): (&Acting, &Windscreen),
+        seed: u64,
+        (step, size): (i64, [u32; 2]),
+        before: Option<(f64, Windscreen)>,
+        until_s: f64,
+    ) {
+        let rains = self.tables.arrive(acts);
+        if !rains && self.moisture <= 0.0 {
+            return;
+        }
+        let was_dry = self.moisture <= 0.0;
+        self.moisture = if rains { 1.0 } else { self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s()) };
+        let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
+        if was_dry {
+            let dry = Acting { exposed: 0.0, ..*acts };
+            lattice.add(&self.tables.at(&dry, seed, step, lattice.size, &[None; 2]), Work::Declare);
+        }
+        let earlier = match before {
+            Some((from_s, old)) => blend(&old, &self.screen, share(from_s, until_s, (step - 1) as f64 / STEPS_PER_S)),
+            None => *screen,
+        };
+        let arms = std::array::from_fn(|i| {
+            let arm = screen.arms[i]?;
+            let start = earlier.arms[i].map_or(arm.position, |a| a.position);
+            Some((arm, [arm.angle(start), arm.angle(arm.position)]))
+        });
+        lattice.add(&self.tables.at(acts, seed, step, lattice.size, &arms), Work::Move);
+    }
+
+    /// The windscreen at a time since the last frame.
+    fn between(&self, before: Option<(f64, Windscreen)>, until_s: f64, time_s: f64) -> Windscreen {
+        before.map_or(self.screen, |(from_s, old)| blend(&old, &self.screen, share(from_s, until_s, time_s)))
+    }
+
+    /// Draws what the glass does to the finished picture; says how many passes that took.
+    ///
+    /// # Errors
+    /// As [`Glass::advance`].
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        kit: &mut GlassKit,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &LensFrame<'_>,
+    ) -> Result<u32> {
+        let (Some(plane), Some(acts)) = (self.plane, self.acting) else { return Ok(0) };
+        let wet = self.moisture > 0.0;
+        let lattice = self.lattice.as_ref().filter(|_| wet);
+        let serves = |l: &LensPass| l.serves(frame, lattice);
+        if !self.lens.as_ref().is_some_and(serves) {
+            self.lens = Some(LensPass::new(device, kit, frame, lattice));
+        }
+        let Some(lens) = &self.lens else { return Ok(0) };
+        // Large beads: as heavy as the largest that a cell holds.
+        let large = self.tables.flow();
+        let size = lattice.map_or(plane.lattice().1, |l| l.size);
+        let shown = Shown { cell_m: acts.cell_m, size, wet, flow: large, key: self.key };
+        let uniform = LensUniform::of(&self.screen, &plane, frame, &shown)?;
+        let variant =
+            LensVariant { format: frame.picture.format(), encoded: frame.encoded, has_mask: frame.mask.is_some() };
+        lens.draw(device, kit, encoder, (&uniform, variant), lattice)
+    }
+
+    /// Water on the pane. Reads the cells back: waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Status::DeviceLost`], or a GPU fault.
+    pub fn report(&self, device: &Device) -> Result<GlassReport> {
+        let (Some(plane), Some(acts)) = (self.plane, self.acting) else {
+            return Ok(GlassReport { state_time_s: f64::NAN, ..Default::default() });
+        };
+        let arrivals = acts.arrivals();
+        let mut report = GlassReport {
+            drops_per_s: arrivals.number_m2_s * plane.area_m2(),
+            water_mm_h: arrivals.water_m_s * 3.6e6,
+            state_time_s: self.step.map_or(f64::NAN, |s| s as f64 / STEPS_PER_S),
+            ..Default::default()
+        };
+        if let Some(cells) = self.cells(device)? {
+            (report.covered, report.water_m3) = cells.covered(&plane, acts.cell_m);
+        }
+        Ok(report)
+    }
+
+    /// The cells, if there is water. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`Glass::report`].
+    pub fn cells(&self, device: &Device) -> Result<Option<Cells>> {
+        let Some(lattice) = self.lattice.as_ref().filter(|_| self.moisture > 0.0) else { return Ok(None) };
+        let bytes = readback::bytes(device, lattice.texture(), 0)?;
+        let word = |b: &[u8], i: usize| u32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        let cells = bytes.chunks_exact(16).map(|b| [0, 4, 8, 12].map(|i| word(b, i)));
+        Ok(Some(Cells { size: lattice.size, cells: cells.collect() }))
+    }
+}
+
+fn share(from_s: f64, until_s: f64, time_s: f64) -> f64 {
+    if until_s <= from_s { 1.0 } else { ((time_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0) }
+}
+
+/// What moves steadily between two frames; the rest is as the later says.
+fn blend(a: &Windscreen, b: &Windscreen, share: f64) -> Windscreen {
+    let lerp = |a: f64, b: f64| if a == b { b } else { a + (b - a) * share };
+    let mut s = *b;
+    s.airflow_m_s = lerp(a.airflow_m_s, b.airflow_m_s);
+    s.velocity_m_s = DVec3::from_array(std::array::from_fn(|i| lerp(a.velocity_m_s[i], b.velocity_m_s[i])));
+    for (arm, old) in s.arms.iter_mut().zip(&a.arms) {
+        if let (Some(arm), Some(old)) = (arm, old) {
+            arm.position = lerp(old.position, arm.position);
+        }
+    }
+    s
+}

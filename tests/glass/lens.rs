@@ -1,0 +1,145 @@
+//! The lens: within the pane, the host's pixels elsewhere, the scene upside down in the drops.
+
+use glam::{DMat4, DVec3};
+use welkin::{
+    Status,
+    frame::{Effect, Frame, FrameFlags, Stages},
+    glass::{Pane, Windscreen, laws::radius_m, step::VOLUME_UNIT_M3},
+    scene::{Camera, DepthKind, DepthMapping},
+};
+
+use crate::host::{Host, camera, texture, upright};
+
+const SIZE: (u32, u32) = (320, 180);
+const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Where a point of the upright pane lies in the picture, pixels.
+fn pixel([x, y]: [f64; 2]) -> [f64; 2] {
+    let clip = camera().projection * DVec3::new(x - 0.2, y - 0.12, -0.3).extend(1.0);
+    [(0.5 + 0.5 * clip.x / clip.w) * f64::from(SIZE.0), (0.5 - 0.5 * clip.y / clip.w) * f64::from(SIZE.1)]
+}
+
+#[test]
+fn nothing_is_drawn_beside_the_pane_or_under_the_mask() {
+    let mut host = Host::new(PLAIN, SIZE, 40.0);
+    host.paint();
+    let painted = host.pixels();
+    // A pane over the left half of the picture, misted, so that every pixel of it changes.
+    let corners = [(-0.4, -0.3), (0.0, -0.3), (0.0, 0.3), (-0.4, 0.3)].map(|(x, y)| DVec3::new(x, y, -0.3));
+    let screen = Windscreen { pane: Pane::Quad(corners), fogging: 0.7, ..upright() };
+    host.view.set_windscreen(Some(&screen)).unwrap();
+    let mask = texture(&host.device, PLAIN, SIZE);
+    let rows: Vec<u8> = (0..SIZE.0 * SIZE.1).flat_map(|i| if i / SIZE.0 >= 120 { [255; 4] } else { [0; 4] }).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
+    host.device.queue.write_texture(mask.as_image_copy(), &rows, layout, mask.size());
+    host.context.update(9.0).unwrap();
+    let mut frame = Frame::new(1, camera(), &host.color, None);
+    frame.color_space = welkin::frame::ColorSpace::DisplaySrgb;
+    frame.mask = Some(&mask);
+    host.view.record(&host.context, &frame, Stages::LENS).unwrap();
+    let drawn = host.pixels();
+    for (i, (a, b)) in painted.iter().zip(&drawn).enumerate() {
+        let (x, y) = (i as u32 % SIZE.0, i as u32 / SIZE.0);
+        if x >= 160 || y >= 120 {
+            assert_eq!(a, b, "pixel {x} {y}");
+        }
+    }
+    let changed = (0..painted.len()).filter(|i| painted[*i] != drawn[*i]).count();
+    assert!(changed > 150 * 118, "{changed}");
+}
+
+#[test]
+fn a_drop_shows_the_scene_upside_down() {
+    let mut host = Host::new(PLAIN, SIZE, 60.0);
+    host.view.set_windscreen(Some(&upright())).unwrap();
+    host.at(40.0, Stages::PREPARE, FrameFlags(0)).unwrap();
+    // Bright above, dark below.
+    let bytes: Vec<u8> = (0..SIZE.0 * SIZE.1).flat_map(|i| if i / SIZE.0 < 90 { [230; 4] } else { [20; 4] }).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
+    host.device.queue.write_texture(host.color.as_image_copy(), &bytes, layout, host.color.size());
+    host.at(40.0, Stages::LENS, FrameFlags(0)).unwrap();
+    let (pixels, cells) = (host.pixels(), host.view.windscreen_cells().unwrap().unwrap());
+    let (mut upper, mut lower, mut count) = (0.0, 0.0, 0);
+    for (i, cell) in cells.cells.iter().enumerate() {
+        let (x, y) = (i as u32 % cells.size[0], i as u32 / cells.size[0]);
+        let at =
+            [(x, cell[1] & 0xffff), (y, cell[1] >> 16)].map(|(n, f)| (f64::from(n) + f64::from(f) / 65536.0) * 0.004);
+        let r = radius_m(f64::from(cell[0]) * VOLUME_UNIT_M3);
+        // Beads of some size, not far from the horizon.
+        if r < 0.0015 || (at[1] - 0.12).abs() > 0.05 {
+            continue;
+        }
+        let value = |dy: f64| {
+            let [px, py] = pixel([at[0], at[1] + dy * r]);
+            f64::from(pixels[(py as u32 * SIZE.0 + px as u32) as usize][1])
+        };
+        (upper, lower, count) = (upper + value(0.6), lower + value(-0.6), count + 1);
+    }
+    let [upper, lower] = [upper, lower].map(|v| v / f64::from(count));
+    assert!(count > 50 && lower > upper + 0.25, "{count} drops: {upper} above, {lower} below");
+}
+
+#[test]
+fn what_the_lens_cannot_draw_is_refused_by_name() {
+    let mut host = Host::new(PLAIN, SIZE, 10.0);
+    host.view.set_windscreen(Some(&upright())).unwrap();
+    let several = host.device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: host.color.size(),
+        mip_level_count: 1,
+        sample_count: 4,
+        dimension: wgpu::TextureDimension::D2,
+        format: PLAIN,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let frame = Frame::new(1, camera(), &several, None);
+    let e = host.view.record(&host.context, &frame, Stages::LENS).unwrap_err();
+    assert!(e.status == Status::Unsupported && e.message.contains("color.samples"), "{e}");
+    host.view.record(&host.context, &frame, Stages::BACKGROUND).unwrap();
+    let parallel = Camera { projection: DMat4::from_scale(DVec3::new(0.1, 0.1, -0.01)), ..camera() };
+    let mut frame = Frame::new(2, parallel, &host.color, None);
+    frame.depth_mapping = DepthMapping { kind: DepthKind::Orthographic, ..Default::default() };
+    let e = host.view.record(&host.context, &frame, Stages::LENS).unwrap_err();
+    assert!(e.status == Status::Unsupported && e.message.contains("parallel"), "{e}");
+    for (name, bad) in [
+        ("windscreen.exposed", Windscreen { exposed: 1.5, ..upright() }),
+        ("windscreen.fogging", Windscreen { fogging: f64::NAN, ..upright() }),
+        ("windscreen.demist", Windscreen { demist: -0.1, ..upright() }),
+        ("windscreen.airflow_m_s", Windscreen { airflow_m_s: 101.0, ..upright() }),
+        ("windscreen.velocity_m_s[2]", Windscreen { velocity_m_s: DVec3::Z * 500.0, ..upright() }),
+        ("windscreen.distance_m", Windscreen { pane: Pane::WholeView(0.0), ..upright() }),
+    ] {
+        let e = host.view.set_windscreen(Some(&bad)).unwrap_err();
+        assert!(e.status == Status::InvalidArgument && e.message.contains(name), "{e}");
+    }
+    let frame = Frame::new(3, camera(), &host.color, None);
+    host.view.record(&host.context, &frame, Stages::LENS).unwrap();
+    host.view.set_windscreen(None).unwrap();
+    assert!(host.view.windscreen_report().unwrap().is_none());
+}
+
+#[test]
+fn one_call_equals_the_stages_one_by_one_and_costs_are_told() {
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, SIZE, 30.0);
+    host.view.set_windscreen(Some(&Windscreen { pane: Pane::WholeView(0.4), ..upright() })).unwrap();
+    let mut record = |id: u64, stages: &[Stages], flags: FrameFlags| {
+        host.context.update(12.0).unwrap();
+        let frame = Frame { flags, ..Frame::new(id, camera(), &host.color, None) };
+        for stage in stages {
+            host.view.record(&host.context, &frame, *stage).unwrap();
+        }
+        (host.pixels(), host.view.report().costs)
+    };
+    let (whole, _) = record(1, &[Stages::ALL], FrameFlags(0));
+    let behind = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES);
+    let each = [Stages::PREPARE, behind, Stages::LENS, Stages::TONE];
+    let (apart, _) = record(2, &each, FrameFlags(0));
+    let (_, costs) = record(3, &[Stages::ALL], FrameFlags::MEASURE);
+    for (a, b) in whole.iter().zip(&apart) {
+        assert!((0..3).all(|c| (a[c] - b[c]).abs() < 2e-3), "{a:?} {b:?}");
+    }
+    assert!(costs.unwrap().ms(Effect::Windscreen) > 0.0);
+}

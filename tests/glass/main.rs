@@ -1,0 +1,6 @@
+//! Water on the windscreen: the cells against their twin and the flux, and what the lens makes of a picture. One binary.
+
+mod cells;
+mod host;
+mod lens;
+mod pictures;
