@@ -239,6 +239,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_WINDSCREEN_REPORT 35
 /** wk_light */
 #define WK_STRUCT_TYPE_LIGHT 36
+/** wk_simulation_desc */
+#define WK_STRUCT_TYPE_SIMULATION_DESC 37
+/** wk_ground */
+#define WK_STRUCT_TYPE_GROUND 38
 /** wk_wind */
 #define WK_STRUCT_TYPE_WIND 40
 /** wk_rainfall */
@@ -1874,7 +1878,7 @@ typedef struct wk_context_desc {
     uint32_t struct_size;
     /** WK_STRUCT_TYPE_CONTEXT_DESC. */
     wk_struct_type struct_type;
-    /** NULL (the default), or a wk_sky_settings. */
+    /** NULL (the default), or a chain of wk_sky_settings and wk_simulation_desc. */
     const void *next;
     /** Default WK_WORLD_FLAT. */
     wk_world_kind world_kind;
@@ -4077,6 +4081,115 @@ WK_API wk_status wk_windscreen_init(wk_windscreen *out, uint32_t struct_size);
 WK_API
 wk_status wk_windscreen_report_init(wk_windscreen_report *out,
                                     uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Wet ground
+ *
+ * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky, level
+ * ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
+ * colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, no objects.
+ *
+ * How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
+ * in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
+ * ====================================================================================================
+ */
+
+/** Water at a place of the ground. */
+typedef struct wk_ground {
+    /** sizeof(wk_ground) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_GROUND. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Depth of water there, mm: the film, and what stands in the hollow if there is one. For tyres. */
+    double water_mm;
+    /** Film on level ground outside of hollows, mm. */
+    double film_mm;
+    /** Of all the ground: 0 dry, 0.3 damp, 1 under a closed film. */
+    double wetness;
+    /** Share of all the ground under standing water. */
+    double puddles;
+    /** 1 where standing water covers the place, else 0. */
+    uint32_t in_puddle;
+    /** 0. */
+    uint32_t reserved0;
+} wk_ground;
+
+/** Every field of `wk_ground` at its default. */
+#define WK_GROUND_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_ground), \
+    /* struct_type */ WK_STRUCT_TYPE_GROUND, \
+    /* next */ NULL, \
+    /* water_mm */ 0.0, \
+    /* film_mm */ 0.0, \
+    /* wetness */ 0.0, \
+    /* puddles */ 0.0, \
+    /* in_puddle */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** Where the wetness of the ground comes from. */
+typedef uint32_t wk_ground_model;
+
+/**
+ * The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
+ */
+#define WK_GROUND_REPORTED 0
+/**
+ * A state from simulation time 0 on: rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
+ * (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
+ */
+#define WK_GROUND_SIMULATED 1
+
+/** What has state, and how. An extension: put it into wk_context_desc.next. */
+typedef struct wk_simulation_desc {
+    /** sizeof(wk_simulation_desc) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SIMULATION_DESC. */
+    wk_struct_type struct_type;
+    /** The next extension. Default NULL. */
+    const void *next;
+    /** Default WK_GROUND_REPORTED. */
+    wk_ground_model ground_model;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_simulation_desc;
+
+/** Every field of `wk_simulation_desc` at its default. */
+#define WK_SIMULATION_DESC_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_simulation_desc), \
+    /* struct_type */ WK_STRUCT_TYPE_SIMULATION_DESC, \
+    /* next */ NULL, \
+    /* ground_model */ WK_GROUND_REPORTED, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Water on level, open ground at a place of the host's world, now. Hollows are those that are drawn: a pattern fixed to the
+ * world by the context's seed.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place.
+ */
+WK_API
+wk_status wk_context_get_ground(const wk_context *context,
+                                const double (*position_m)[3],
+                                wk_ground *out_ground);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SIMULATION_DESC_INIT`. `struct_size` is `sizeof(wk_simulation_desc)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_simulation_desc_init(wk_simulation_desc *out,
+                                  uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_GROUND_INIT`. `struct_size` is `sizeof(wk_ground)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -19,6 +19,7 @@ use super::{
     boundary::guard,
     device::{DeviceObject, wk_device},
     device_cell::DeviceCell,
+    ground::wk_simulation_desc,
     handles::{self, Object},
     input::{self, out},
     layout::{self, init_struct, struct_size},
@@ -87,7 +88,7 @@ pub struct wk_context_desc {
     pub struct_size: u32,
     /// WK_STRUCT_TYPE_CONTEXT_DESC.
     pub struct_type: wk_struct_type,
-    /// NULL (the default), or a wk_sky_settings.
+    /// NULL (the default), or a chain of wk_sky_settings and wk_simulation_desc.
     pub next: *const c_void,
     /// Default WK_WORLD_FLAT.
     pub world_kind: wk_world_kind,
@@ -219,8 +220,11 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let sky = unsafe { layout::extension::<wk_sky_settings>(desc.next)? }.unwrap_or(wk_sky_settings::INIT).to_rust();
     sky.check().map_err(|e| e.within("wk_sky_settings."))?;
     // SAFETY: the caller's promise.
+    let simulation = unsafe { layout::extension::<wk_simulation_desc>(desc.next)? }.unwrap_or(wk_simulation_desc::INIT);
+    let ground = simulation.ground();
+    // SAFETY: the caller's promise.
     let cache_dir = unsafe { input::optional_text("desc.cache_dir", desc.cache_dir)? }.map(PathBuf::from);
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, cache_dir })
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, ground, cache_dir })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
@@ -239,7 +243,9 @@ pub unsafe extern "C" fn wk_context_create(
         // SAFETY: the caller's promise about `desc`.
         let desc = unsafe { layout::read_or_default(&"desc", desc)? };
         // SAFETY: as above.
-        unsafe { layout::check_chain(&"desc", desc.next, &[WK_STRUCT_TYPE_SKY_SETTINGS])? };
+        unsafe {
+            layout::check_chain(&"desc", desc.next, &[WK_STRUCT_TYPE_SKY_SETTINGS, WK_STRUCT_TYPE_SIMULATION_DESC])?
+        };
         // SAFETY: as above.
         let description = unsafe { description(&desc)? };
         let context = Context::new(object.cell.gpu().clone(), object.cell.shared()?, description)?;

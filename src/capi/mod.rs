@@ -55,6 +55,8 @@ pub mod light;
 
 pub mod windscreen;
 
+pub mod ground;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -122,6 +122,10 @@ pub const WK_STRUCT_TYPE_WIPER_ARM: wk_struct_type = 34;
 pub const WK_STRUCT_TYPE_WINDSCREEN_REPORT: wk_struct_type = 35;
 /// wk_light
 pub const WK_STRUCT_TYPE_LIGHT: wk_struct_type = 36;
+/// wk_simulation_desc
+pub const WK_STRUCT_TYPE_SIMULATION_DESC: wk_struct_type = 37;
+/// wk_ground
+pub const WK_STRUCT_TYPE_GROUND: wk_struct_type = 38;
 /// wk_wind
 pub const WK_STRUCT_TYPE_WIND: wk_struct_type = 40;
 /// wk_rainfall

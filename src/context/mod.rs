@@ -5,6 +5,7 @@
 
 mod air;
 mod fog;
+mod ground;
 mod lights;
 mod queries;
 mod rain;
@@ -20,6 +21,7 @@ use std::{
 
 use glam::DVec3;
 
+pub use ground::{GroundAt, GroundModel};
 pub use lights::Light;
 pub use queries::{Between, LightAt};
 pub use rain::{RainAt, RainOn, RainSurface};
@@ -60,6 +62,8 @@ pub struct ContextDesc {
     pub utc_at_zero: Utc,
     /// How the sky is drawn. Default the directional tables.
     pub sky: SkySettings,
+    /// Where the wetness of the ground comes from. Default the weather of the moment.
+    pub ground: GroundModel,
     /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet, settings
     /// and weather reads them. What goes wrong with its files is logged, never an error. Default none.
     pub cache_dir: Option<PathBuf>,
@@ -75,6 +79,7 @@ impl Default for ContextDesc {
             tone: ToneCurve::default(),
             utc_at_zero: Utc(1_782_036_000.0),
             sky: SkySettings::default(),
+            ground: GroundModel::default(),
             cache_dir: None,
         }
     }
@@ -125,6 +130,7 @@ pub struct Context {
     time_s: f64,
     ephemeris: Ephemeris,
     hollows: Hollows,
+    ground: Option<ground::GroundState>,
 }
 
 impl Context {
@@ -158,6 +164,7 @@ impl Context {
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             hollows,
+            ground: None,
         })
     }
 
@@ -339,9 +346,10 @@ impl Context {
             let now = self.time_s;
             return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
         }
+        let keep_s = self.step_ground(time_s)?;
         self.time_s = time_s;
-        self.drifted = self.drifted.kept(&self.wind, &self.timeline, time_s);
-        self.timeline.advance(time_s);
+        self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
+        self.timeline.advance_keeping(time_s, keep_s);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Context, GivenDirection};
+use super::{Context, GivenDirection, GroundModel, ground::GroundState};
 use crate::{
     error::{Error, Result, Status, check_range},
     sky::sun::Utc,
@@ -27,6 +27,8 @@ struct Saved {
     /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drifted: Option<[f64; 4]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ground: Option<GroundState>,
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten. States written before there was a drift begin there
@@ -58,6 +60,7 @@ impl Context {
                 let d = drifted.displacement_m;
                 [drifted.time_s, drifted.path_m, d.x, d.y]
             }),
+            ground: self.ground,
         };
         toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
     }
@@ -70,7 +73,7 @@ impl Context {
         Ok(self.saved()?.into_bytes())
     }
 
-    /// Takes up a state that [`Context::save`] wrote, on a context of the same planet and seed.
+    /// Takes up a state that [`Context::save`] wrote, on a context of the same planet, seed and ground model.
     ///
     /// # Errors
     /// [`Status::Parse`] for bytes that are no such state, cut short, or of another version;
@@ -98,9 +101,20 @@ impl Context {
         check_range("time_s", saved.time_s, -super::MAX_TIME_S, super::MAX_TIME_S, "s")?;
         crate::sky::sun::sun_position(Utc(saved.utc_at_zero), &self.desc.world.origin)?;
         let (sun, moon) = (given("sun", saved.sun)?, given("moon", saved.moon)?);
+        if saved.ground.is_some() && self.desc.ground == GroundModel::Reported {
+            return Err(Error::range(
+                "state",
+                "of a context whose ground is as reported",
+                "one whose ground is simulated",
+            ));
+        }
+        if saved.ground.is_some_and(|g| !g.is_valid()) {
+            return Err(parse(&"ground must have finite amounts of water from 0 on"));
+        }
         let timeline = Timeline::load(&saved.timeline)?;
         let drifted = drifted_from(saved.drifted, &timeline).map_err(|e| parse(&e))?;
         (self.timeline, self.drifted) = (timeline, drifted);
+        self.ground = saved.ground;
         (self.given_sun, self.given_moon) = (sun, moon);
         self.time_s = saved.time_s;
         self.desc.utc_at_zero = Utc(saved.utc_at_zero);

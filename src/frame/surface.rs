@@ -12,8 +12,8 @@ use crate::{
 const MOST_UNITS: f64 = 6e4;
 
 /// Whether there is any water to draw on surfaces.
-pub(super) fn is_wet(frame: &Frame<'_>, scene: &Scene) -> bool {
-    let cover = &scene.conditions.surface;
+pub(super) fn is_wet(frame: &Frame<'_>, context: &Context, scene: &Scene) -> bool {
+    let cover = context.ground_cover(scene.conditions.surface);
     frame.depth.is_some() && (cover.wetness > 0.0 || cover.puddles > 0.0)
 }
 
@@ -40,7 +40,7 @@ pub(super) fn uniform(
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
     let seen = Seen {
         scene,
-        cover: &scene.conditions.surface,
+        cover: &context.ground_cover(scene.conditions.surface),
         hollows: context.hollows(),
         position: frame.camera.position,
         time_s: context.time_s(),

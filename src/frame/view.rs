@@ -207,7 +207,7 @@ impl View {
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
         let stages = if rain::falls(&scene) { stages } else { stages.without(Stages::PARTICLES) };
-        let stages = if surface::is_wet(frame, &scene) { stages } else { stages.without(Stages::SURFACE) };
+        let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
         let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
         let drawn = stages.without(Stages::PREPARE) != Stages(0);
         let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };

@@ -83,7 +83,7 @@ fn uniform(state: &mut u64) -> f64 {
 
 /// Axes of the pattern in the host's world: the two of its three axes that lie flattest on the ground. In an Earth-centred
 /// world these are others on each of six sides of the planet.
-pub(super) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
+pub(crate) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
     let up = (world_to_enu.transpose() * DVec3::Z).abs();
     if up.z >= up.x && up.z >= up.y {
         [DVec3::X, DVec3::Y]

@@ -17,5 +17,6 @@ mod uniform;
 pub mod water;
 
 pub use hollows::Hollows;
+pub(crate) use hollows::pattern_axes;
 pub(crate) use uniform::{GroundUniform, Seen};
 pub use water::GroundWater;

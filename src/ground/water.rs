@@ -67,12 +67,12 @@ impl Forcing {
 pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     let (t, humidity) = (c.air.temperature_c, c.air.relative_humidity);
     let saturated = 0.1 * saturation_pressure_hpa(t);
-    let slope = saturated * 17.62 * 243.12 / (243.12 + t).powi(2);
+    let slope = saturated * 17.62 * 243.12 / ((243.12 + t) * (243.12 + t));
     let psychrometric = 0.665e-3 * 0.1 * c.air.station_pressure_hpa;
     let vapour_mm_hg = humidity * saturated / 0.133_322;
-    let kelvin = t + 273.15;
+    let kelvin2 = (t + 273.15) * (t + 273.15);
     let clear = 1.0 - c.cloud_cover();
-    let long_wave = 5.67e-8 * kelvin.powi(4) * (0.56 - 0.092 * vapour_mm_hg.sqrt()).max(0.0) * (0.1 + 0.9 * clear);
+    let long_wave = 5.67e-8 * kelvin2 * kelvin2 * (0.56 - 0.092 * vapour_mm_hg.sqrt()).max(0.0) * (0.1 + 0.9 * clear);
     // MJ a square metre and day.
     let net = (0.92 * sunlight_w_m2 - long_wave) * 0.0864;
     let wind = 6.43 * (1.0 + 0.536 * c.wind.speed_at_height_m_s(2.0));

@@ -119,8 +119,13 @@ impl Timeline {
 
     /// Moves the present to `now_s` and forgets what has ended before it. Earlier times do nothing.
     pub fn advance(&mut self, now_s: f64) {
+        self.advance_keeping(now_s, now_s);
+    }
+
+    /// As [`Timeline::advance`], but what happened from `keep_s` on is kept for those who lag behind.
+    pub fn advance_keeping(&mut self, now_s: f64, keep_s: f64) {
         self.now_s = self.now_s.max(now_s);
-        if let Some(ended) = self.last_ended(now_s) {
+        if let Some(ended) = self.last_ended(now_s.min(keep_s)) {
             let change = &self.changes[ended];
             self.base = change.to;
             self.known_from_s = change.end_s();

@@ -5,8 +5,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, plan::*, query::*, rain::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, plan::*, query::*, rain::*,
+    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -63,6 +63,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
         case("wk_context_set_lights", "context", false, |h| unsafe { wk_context_set_lights(h.cast(), null(), 0, 0) }),
+        case("wk_context_get_ground", "context", false, |h| unsafe {
+            wk_context_get_ground(h.cast(), null(), null_mut())
+        }),
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),

@@ -305,3 +305,28 @@ fn costs_are_there_where_they_were_asked_for() {
         assert!(sum <= 1.001 * report.ms, "{sum} of {}", report.ms);
     }
 }
+
+#[test]
+fn simulated_ground_is_asked_for_its_water() {
+    use welkin::capi::ground::*;
+    let world = World::new();
+    let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
+    let desc = wk_context_desc { next: (&raw const simulation).cast(), ..init("wk_context_desc") };
+    let (mut context, mut ground) = (null_mut(), init::<wk_ground>("wk_ground"));
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_create(world.device, &desc, &mut context), WK_OK, "{}", message());
+        let weather = wk_weather {
+            precipitation_kind: WK_PRECIPITATION_RAIN,
+            precipitation_rate_mm_h: 5.0,
+            ..init("wk_weather")
+        };
+        assert_eq!(wk_context_set_weather(context, &weather, 0.0, 0.0), WK_OK, "{}", message());
+        assert_eq!(wk_context_update(context, 600.0), WK_OK, "{}", message());
+        assert_eq!(wk_context_get_ground(context, &[1.0, 2.0, 0.0], &mut ground), WK_OK, "{}", message());
+        assert!(ground.film_mm > 0.2 && ground.water_mm >= ground.film_mm && ground.wetness > 0.8);
+        assert_eq!(ground.in_puddle == 1, ground.water_mm > ground.film_mm);
+        refused(wk_context_get_ground(context, &[f64::NAN, 0.0, 0.0], &mut ground), "position_m[0] must be finite");
+        assert_eq!(wk_context_destroy(context), WK_OK);
+    }
+}

@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, light::*, opengl::*, plan::*, query::*, rain::*,
-    report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*,
-    windscreen::*,
+    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, opengl::*, plan::*, query::*,
+    rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    wind::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -115,6 +115,15 @@ fn cases(world: &World) -> Vec<Case> {
             unsafe { wk_context_destroy(out) };
             status
         }),
+        case("wk_simulation_desc", "wk_simulation_desc", true, move |p| {
+            let desc = wk_context_desc { next: p, ..init("wk_context_desc") };
+            let mut out = null_mut();
+            let status = unsafe { wk_context_create(device, &desc, &mut out) };
+            kept(status, out);
+            unsafe { wk_context_destroy(out) };
+            status
+        }),
+        case("wk_ground", "out_ground", false, move |p| unsafe { wk_context_get_ground(context, &ORIGIN, p.cast()) }),
         case("wk_conditions", "out_conditions", false, move |p| unsafe {
             wk_context_get_conditions(context, &ORIGIN, 0.0, p.cast())
         }),

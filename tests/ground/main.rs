@@ -3,3 +3,4 @@
 mod drawn;
 mod host;
 mod mirrors;
+mod state;

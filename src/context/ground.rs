@@ -1,0 +1,168 @@
+//! The water on the ground: as the weather reports it, or simulated over the timeline if the host asked for that.
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::Context;
+use crate::{
+    error::Result,
+    ground::{
+        GroundWater,
+        water::{Forcing, STEP_S, depth_at_mm},
+    },
+    scene::WorldKind,
+    weather::SurfaceCover,
+};
+
+/// Where the wetness of the ground comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum GroundModel {
+    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends leaves
+    /// dry ground.
+    #[default]
+    Reported,
+    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It begins at
+    /// simulation time 0 as the weather of that moment reports the ground.
+    Simulated,
+}
+
+/// Water at a place of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundAt {
+    /// Depth of water, mm: the film, and what stands in the hollow if there is one. For tyres.
+    pub water_mm: f64,
+    /// Film on level ground outside of hollows, mm.
+    pub film_mm: f64,
+    /// Of all the ground: 0 dry, 0.3 damp, 1 under a closed film.
+    pub wetness: f64,
+    /// Share of all the ground under standing water.
+    pub puddles: f64,
+    /// Whether standing water covers the place.
+    pub in_puddle: bool,
+}
+
+/// Sunlight for evaporation is looked up this often, s: a multiple of the step.
+const SUN_EVERY_S: f64 = 300.0;
+/// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
+const LUX_PER_W_M2: f64 = 110.0;
+/// Of a longer leap in time only this much is simulated, s: no ground remembers longer.
+const LONGEST_S: f64 = 30.0 * 86_400.0;
+
+/// The simulated water and what its next step needs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GroundState {
+    time_s: f64,
+    film_mm: f64,
+    soaked_mm: f64,
+    hollows_mm: f64,
+    /// Sunlight on level ground since the last look at it.
+    sunlight_w_m2: f64,
+}
+
+impl GroundState {
+    fn water(&self) -> GroundWater {
+        GroundWater { film_mm: self.film_mm, soaked_mm: self.soaked_mm, hollows_mm: self.hollows_mm }
+    }
+
+    fn set(&mut self, water: GroundWater) {
+        (self.film_mm, self.soaked_mm, self.hollows_mm) = (water.film_mm, water.soaked_mm, water.hollows_mm);
+    }
+
+    /// Whether a saved one can be one of ours.
+    pub fn is_valid(&self) -> bool {
+        let amounts = [self.film_mm, self.soaked_mm, self.hollows_mm, self.sunlight_w_m2];
+        self.time_s.is_finite() && amounts.iter().all(|v| (0.0..1e4).contains(v))
+    }
+}
+
+impl Context {
+    /// Leads the simulated water to the last step that is over at `now_s`. Answers from when on the timeline must be kept.
+    pub(super) fn step_ground(&mut self, now_s: f64) -> Result<f64> {
+        if self.desc.ground == GroundModel::Reported {
+            return Ok(now_s);
+        }
+        let mut state = match self.ground {
+            Some(state) => state,
+            None => self.first_ground(self.time_s)?,
+        };
+        if now_s - state.time_s > LONGEST_S {
+            state = self.first_ground(now_s - LONGEST_S)?;
+        }
+        loop {
+            let end_s = ((state.time_s / STEP_S).floor() + 1.0) * STEP_S;
+            if end_s > now_s {
+                break;
+            }
+            if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
+                state.sunlight_w_m2 = self.sunlight_w_m2(state.time_s)?;
+            }
+            state.set(self.ground_after(&state, end_s));
+            state.time_s = end_s;
+        }
+        self.ground = Some(state);
+        Ok(state.time_s.min(now_s))
+    }
+
+    /// A state that begins at `time_s` as the weather reports the ground.
+    fn first_ground(&self, time_s: f64) -> Result<GroundState> {
+        let sunlight_w_m2 = self.sunlight_w_m2(time_s)?;
+        let mut state = GroundState { time_s, film_mm: 0.0, soaked_mm: 0.0, hollows_mm: 0.0, sunlight_w_m2 };
+        state.set(GroundWater::of_cover(&self.timeline.at(time_s).surface));
+        Ok(state)
+    }
+
+    /// The water at `time_s`, within a step of the state, by the weather half-way there.
+    fn ground_after(&self, state: &GroundState, time_s: f64) -> GroundWater {
+        let c = self.timeline.at(0.5 * (state.time_s + time_s));
+        state.water().after(&Forcing::of(&c, state.sunlight_w_m2), time_s - state.time_s)
+    }
+
+    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
+    /// that is only drawn must not change a state.
+    fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
+        let world = &self.desc.world;
+        let origin = if world.kind == WorldKind::Ecef { world.origin.to_ecef() } else { DVec3::ZERO };
+        Ok((self.scene_at(origin, time_s)?.ground.total_lux / LUX_PER_W_M2).round())
+    }
+
+    /// The simulated water on level, open ground now; `None` if it is not simulated ([`GroundModel::Reported`]).
+    pub fn ground_water(&self) -> Option<GroundWater> {
+        match (self.desc.ground, self.ground) {
+            (GroundModel::Reported, _) => None,
+            (GroundModel::Simulated, Some(state)) if self.time_s > state.time_s => {
+                Some(self.ground_after(&state, self.time_s))
+            }
+            (GroundModel::Simulated, Some(state)) => Some(state.water()),
+            (GroundModel::Simulated, None) => Some(GroundWater::of_cover(&self.timeline.at(self.time_s).surface)),
+        }
+    }
+
+    /// What weather has done to the ground up to now: `reported` with the simulated water in its place.
+    pub(crate) fn ground_cover(&self, reported: SurfaceCover) -> SurfaceCover {
+        match self.ground_water().map(|w| w.cover()) {
+            Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
+            None => reported,
+        }
+    }
+
+    /// Water on the ground at `position`, now: by the hollows that are drawn, wherever the host's own ground has its own.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
+        let frame = self.desc.world.frame_at(position);
+        frame.place.validate()?;
+        let cover = self.ground_cover(self.timeline.at(self.time_s).surface);
+        let water = self.ground_water().unwrap_or_else(|| GroundWater::of_cover(&cover));
+        let at = DVec2::from(crate::ground::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
+        let water_mm = depth_at_mm(&water, self.hollows.depth(at));
+        Ok(GroundAt {
+            water_mm,
+            film_mm: water.film_mm,
+            wetness: cover.wetness,
+            puddles: cover.puddles,
+            in_puddle: water_mm > water.film_mm,
+        })
+    }
+}
