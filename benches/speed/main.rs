@@ -1,8 +1,9 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, fog, parts, sky).
+//! (record, fog, parts, rain, sky).
 
 mod fog;
 mod parts;
+mod rain;
 mod record;
 mod sky;
 
@@ -17,6 +18,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("parts") {
         parts::run()?;
+    }
+    if wanted("rain") {
+        rain::run()?;
     }
     if wanted("sky") {
         sky::run()?;

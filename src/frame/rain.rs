@@ -10,7 +10,7 @@ use crate::{
     error::Result,
     gpu::Device,
     rain::{
-        Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shot, Splashes, drops,
+        Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shelter, Shot, Splashes, drops,
         lattice::{FADE, REACH_M, SHELLS},
     },
     scene::{LightUniform, ViewRays},
@@ -103,7 +103,10 @@ impl Rain {
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let eye = frame.camera.position;
         self.boxes.clear();
-        self.boxes.extend(context.shelters().iter().map(|s| s.rows(eye, scene.world_to_enu)));
+        let slowest = classes.flux[0].1;
+        let matters = |s: &&Shelter| s.matters(eye, scene.world_to_enu, air.velocity_m_s, slowest, REACH_M);
+        let near = context.shelters().iter().filter(matters);
+        self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
         self.lights.clear();
         self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
         let drawn = Drawn {

@@ -51,6 +51,21 @@ impl Shelter {
         Ok(())
     }
 
+    /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not need.
+    /// `wind` is the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. Errs towards yes.
+    pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
+        let center = to_enu * (self.center_m - eye);
+        let radius = self.half_size_m.length();
+        // A drop that comes from the box's height was upwind then, as seen from the box.
+        let rise = center.z + radius + reach_m;
+        if rise < 0.0 {
+            return false;
+        }
+        let drift = (to_enu * self.velocity_m_s - wind).truncate() * (rise / slowest_m_s);
+        let along = (center.truncate().dot(drift) / drift.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        (center.truncate() - drift * along).length() <= reach_m + radius
+    }
+
     /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east, north,
     /// up into the box's own space, where it reaches from -1 to 1, and its velocity.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
@@ -122,6 +137,30 @@ mod tests {
         assert!(sheltered(&truck, DVec3::new(0.0, -5.0, 1.0), rain), "behind it");
         assert!(!sheltered(&truck, DVec3::new(0.0, 5.0, 1.0), rain), "before it");
         assert!(sheltered(&truck, DVec3::new(0.5, 1.0, 1.0), rain), "in it");
+    }
+
+    #[test]
+    fn no_box_that_matters_is_left_out() {
+        let (mut left_out, mut kept) = (0, 0);
+        for i in 0..4000u32 {
+            let random = |k: u32| f64::from(super::super::lattice::random3([i, k, 7])[0]) / 4_294_967_296.0 - 0.5;
+            let at = |k: u32, size: f64| DVec3::new(random(k), random(k + 1), random(k + 2)) * size;
+            let b = Shelter {
+                center_m: at(0, 120.0),
+                half_size_m: at(3, 6.0).abs() + DVec3::splat(0.1),
+                velocity_m_s: at(6, 30.0) * DVec3::new(1.0, 1.0, 0.0),
+                ..roof()
+            };
+            let wind = at(9, 40.0) * DVec3::new(1.0, 1.0, 0.0);
+            let matters = b.matters(DVec3::ZERO, DMat3::IDENTITY, wind, 2.0, 16.0);
+            (left_out, kept) = (left_out + u32::from(!matters), kept + u32::from(matters));
+            for k in 0..40 {
+                let p = at(100 + 4 * k, 32.0).clamp_length_max(16.0);
+                let velocity = wind - DVec3::Z * (2.0 + 7.0 * (random(103 + 4 * k) + 0.5));
+                assert!(matters || !sheltered(&b, p, velocity), "{b:?} {p} {velocity}");
+            }
+        }
+        assert!(left_out > 500 && kept > 500, "{left_out} {kept}");
     }
 
     #[test]

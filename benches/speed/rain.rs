@@ -1,0 +1,141 @@
+//! Rain: cost against the number of drops, what boxes that keep it off and lamps add, and that dry weather costs nothing.
+
+use std::{sync::Arc, time::Instant};
+
+use glam::{DMat3, DVec3};
+use welkin::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions},
+    rain::{RainSettings, Shelter},
+    scene::{Camera, HostLight},
+    weather::{Precipitation, PrecipitationKind, Weather},
+};
+
+type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+
+const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+
+struct Bench {
+    device: Arc<Device>,
+    context: Context,
+    view: View,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+    frame_id: u64,
+}
+
+impl Bench {
+    fn new() -> Fallible<Self> {
+        let device = Device::headless(&DeviceOptions::default())?;
+        let shared = Arc::new(Shared::new(&device)?);
+        let mut context = Context::new(device.clone(), shared, ContextDesc::default())?;
+        context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 35.0 }))?;
+        let view = View::new(&context)?;
+        let texture = |format| {
+            use wgpu::TextureUsages as U;
+            device.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: SIZE,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+                view_formats: &[],
+            })
+        };
+        let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
+        Ok(Self { device, context, view, color, depth, frame_id: 0 })
+    }
+
+    fn weather(&mut self, rate_mm_h: f64, time_s: f64) -> Fallible<()> {
+        let precipitation = Precipitation::of(PrecipitationKind::Rain, rate_mm_h);
+        let weather = Weather { visibility_m: 3000.0, precipitation, ..Weather::default() };
+        self.context.set_weather(&weather, time_s, 0.0)?;
+        Ok(self.context.update(time_s)?)
+    }
+
+    /// Milliseconds of the stage of the drops, waited for.
+    fn frame(&mut self) -> Fallible<f64> {
+        self.frame_id += 1;
+        self.context.update(self.context.time_s() + 1.0 / 60.0)?;
+        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
+        let frame = Frame::new(self.frame_id, camera, &self.color, Some(&self.depth));
+        self.view.record(&self.context, &frame, Stages::PREPARE)?;
+        self.device.wait()?;
+        let start = Instant::now();
+        self.view.record(&self.context, &frame, Stages::PARTICLES)?;
+        self.device.wait()?;
+        Ok(start.elapsed().as_secs_f64() * 1e3)
+    }
+
+    fn drops(&mut self, most_drops: u32) -> Fallible<()> {
+        Ok(self.view.set_rain(RainSettings { most_drops: Some(most_drops), ..RainSettings::default() })?)
+    }
+
+    /// Medians of `n` frames of either, taken in turn.
+    fn compare(
+        &mut self,
+        n: usize,
+        mut first: impl FnMut(&mut Self) -> Fallible<()>,
+        mut second: impl FnMut(&mut Self) -> Fallible<()>,
+    ) -> Fallible<(f64, f64)> {
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        for _ in 0..=n {
+            first(self)?;
+            a.push(self.frame()?);
+            second(self)?;
+            b.push(self.frame()?);
+        }
+        Ok((median(&mut a[1..]), median(&mut b[1..])))
+    }
+}
+
+fn median(v: &mut [f64]) -> f64 {
+    v.sort_by(f64::total_cmp);
+    v[v.len() / 2]
+}
+
+pub fn run() -> Fallible<()> {
+    let mut bench = Bench::new()?;
+    println!("rain: {} at {} x {}", bench.device.caps().adapter_name, SIZE.width, SIZE.height);
+    bench.weather(100.0, 1.0)?;
+    let base = 100_000;
+    for drops in [50_000, 200_000, 400_000] {
+        let (a, b) = bench.compare(8, |s| s.drops(base), |s| s.drops(drops))?;
+        println!(
+            "  {drops} drops cost {:.2} times {base} (their number is {:.2} times)",
+            b / a,
+            f64::from(drops) / 1e5
+        );
+    }
+    bench.drops(base)?;
+    let boxes: Vec<Shelter> = (0..16)
+        .map(|i| Shelter {
+            center_m: DVec3::new(f64::from(i) * 20.0 - 20.0, 10.0, 4.0),
+            axes: DMat3::IDENTITY,
+            half_size_m: DVec3::splat(3.0),
+            velocity_m_s: DVec3::ZERO,
+        })
+        .collect();
+    let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
+    println!("  16 boxes that keep rain off, 3 of them near, add {:.0} %", 100.0 * (b / a - 1.0));
+    bench.context.set_shelters(&[])?;
+    let lamp = HostLight {
+        position_m: DVec3::new(0.0, 0.0, 3.0),
+        direction: DVec3::Y,
+        intensity_cd: [20_000.0; 3],
+        inner_deg: 10.0,
+        outer_deg: 30.0,
+    };
+    let lamps = [lamp; 4];
+    let (a, b) = bench.compare(12, |s| Ok(s.context.set_lights(&[])?), |s| Ok(s.context.set_lights(&lamps)?))?;
+    println!("  4 lamps add {:.0} %", 100.0 * (b / a - 1.0));
+    bench.context.set_lights(&[])?;
+    let wet = median(&mut (0..8).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);
+    bench.weather(0.0, bench.context.time_s() + 1.0)?;
+    let dry = median(&mut (0..8).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);
+    println!("  dry weather costs {:.4} of it", dry / wet);
+    Ok(())
+}
