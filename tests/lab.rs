@@ -41,6 +41,7 @@ use std::path::{Path, PathBuf};
 use picture::Picture;
 use stability::{Axis, Cell, Map, Panel, borders, numbers, particles, sky_maps};
 use store::{Journal, Table};
+use welkin::plan::{Effect, candidates};
 
 /// A directory of its own, removed afterwards.
 struct Scratch(PathBuf);
@@ -319,6 +320,43 @@ fn a_map_is_written_and_reported() {
     run(&["stability", "over-relaxation", "--quick", "--out", out]).unwrap();
     let table = Table::read(&dir.0.join("stability.csv")).unwrap().unwrap();
     assert!(table.row("drag/0").is_some() && table.row("over-relaxation/1").is_some());
+}
+
+/// What is committed was charted with today's candidates, and shows what it must.
+#[test]
+fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
+    let read = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab").join(name);
+        Table::read(&path).unwrap().unwrap_or_else(|| panic!("{name} is not committed"))
+    };
+    for (name, effect) in Effect::NAMES {
+        let table = read(&format!("{name}.csv"));
+        let charted: Vec<&str> = table.rows.iter().map(|r| r[0].as_str()).collect();
+        let offered = candidates(effect);
+        assert!(offered.iter().all(|c| charted.contains(&c.name)), "{name}: {charted:?}");
+        assert_eq!(charted.len(), offered.len(), "{name}: {charted:?}");
+        let points = chart::points(&table, "cost");
+        assert!(
+            points.iter().any(|p| p.default && p.front),
+            "{name}: something is cheaper and better than the default"
+        );
+    }
+    let sky = read("sky.csv");
+    let settings = |family: &str| sky.rows.iter().filter(|r| r[1] == family).count();
+    for (family, least) in [("directional", 4), ("isotropic", 4), ("table3d", 4), ("march", 4), ("elek", 2)] {
+        assert!(settings(family) >= least, "{family}: {}", settings(family));
+    }
+    // The rules of public code, at no more than the cost of the one that is taken.
+    let rules = read("quadrature.csv");
+    let number = |row: &[String], column: &str| rules.number(row, column).unwrap();
+    for taken in rules.rows.iter().filter(|r| r[2] == "true") {
+        let integral = taken[0].split('/').next().unwrap();
+        let usual = ["offset-0.3", "midpoint", "trapezoid", "gauss-4"];
+        let others = rules.rows.iter().filter(|r| r[0].starts_with(integral) && usual.contains(&r[1].as_str()));
+        for other in others.filter(|r| number(r, "cost") <= number(taken, "cost")) {
+            assert!(number(other, "p95") > number(taken, "p95"), "{} beats {}", other[0], taken[0]);
+        }
+    }
 }
 
 /// Fog's chart end to end on the software driver, the cheapest chart.

@@ -53,6 +53,7 @@ pub fn candidates() -> Vec<Candidate> {
     add("isotropic-half", half(IsotropicTables));
     add("isotropic", SkySettings::with_model(IsotropicTables));
     add("isotropic-double", double(IsotropicTables));
+    add("table3d-quarter", coarse(Table3d));
     add("table3d-half", half(Table3d));
     add("table3d", SkySettings::with_model(Table3d));
     add("table3d-double", double(Table3d));
@@ -260,7 +261,7 @@ mod tests {
             (SkyModel::Directional, 4),
             (SkyModel::IsotropicTables, 4),
             (SkyModel::BruteForce, 4),
-            (SkyModel::Table3d, 3),
+            (SkyModel::Table3d, 4),
         ] {
             let of = |c: &&Candidate| matches!(c.method, Method::Sky(s) if s.model == model);
             let ladder: Vec<_> = all.iter().filter(of).filter(|c| !c.name.contains("fine")).collect();
