@@ -1,7 +1,8 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, fog, parts, rain, sky).
+//! (record, fog, glass, parts, rain, sky).
 
 mod fog;
+mod glass;
 mod parts;
 mod rain;
 mod record;
@@ -24,6 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("sky") {
         sky::run()?;
+    }
+    if wanted("glass") {
+        glass::run()?;
     }
     Ok(())
 }

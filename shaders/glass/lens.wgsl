@@ -88,6 +88,11 @@ fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
 // The bead of a cell as seen from `q`, cells from its middle: uneven in outline, hanging, drawn out while it runs.
 fn bead(cell: vec4u, q: vec2f) -> Water {
     let radius = lens.radius * pow(f32(cell.x), 0.33333333);
+    // As far as the longest tail of the most uneven one reaches, and half a pixel.
+    let reach = 2.6 * radius + lens.pixel;
+    if dot(q, q) > reach * reach {
+        return Water(vec2f(0.0), 0.0, 0.0, 0.0);
+    }
     let shape = f32(cell.z >> 16u) * (6.2831853 / 65536.0);
     let runs = min(f32(cell.z & 0xffffu) / 8192.0, 1.0);
     let along = dot(q, lens.flow);
@@ -144,21 +149,37 @@ fn texel(at: vec2i) -> vec3f {
     return select(c, srgb_decode(c), ENCODED);
 }
 
+// The scene over some 2^detail >= 32 pixels. Beyond the smallest copy's texels, four of them: a lamp must not flash in one
+// drop's pixel and miss the next.
+fn wide_scene(place: vec2f, detail: f32) -> vec3f {
+    let apart = 0.25 * exp2(detail) / vec2f(textureDimensions(picture));
+    if detail <= 5.0 {
+        return textureSampleLevel(smallest, linear_sampler, place, 0.0).rgb;
+    }
+    var sum = vec3f(0.0);
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2f(f32(i & 1), f32(i >> 1u)) * 2.0 - 1.0;
+        sum += 0.25 * textureSampleLevel(smallest, linear_sampler, place + corner * apart, 0.0).rgb;
+    }
+    return sum;
+}
+
 // The scene at a place of the picture, over about 2^detail pixels.
 fn scene(uv: vec2f, detail: f32) -> vec3f {
     let place = clamp(uv, vec2f(0.0), vec2f(1.0));
-    let coarse = textureSampleLevel(smallest, linear_sampler, place, 0.0).rgb;
+    if detail >= 5.0 {
+        return wide_scene(place, detail);
+    }
     let middle = textureSampleLevel(smaller, linear_sampler, place, 0.0).rgb;
-    let soft = mix(middle, coarse, clamp((detail - 3.0) * 0.5, 0.0, 1.0));
     if detail >= 3.0 {
-        return soft;
+        return mix(middle, wide_scene(place, 5.0), (detail - 3.0) * 0.5);
     }
     let p = place * vec2f(textureDimensions(picture)) - 0.5;
     let base = vec2i(floor(p));
     let f = p - floor(p);
     let sharp = mix(mix(texel(base), texel(base + vec2i(1, 0)), f.x),
         mix(texel(base + vec2i(0, 1)), texel(base + vec2i(1, 1)), f.x), f.y);
-    return mix(sharp, soft, clamp(detail / 3.0, 0.0, 1.0));
+    return mix(sharp, middle, clamp(detail / 3.0, 0.0, 1.0));
 }
 
 // Where a direction lies in the picture, (0, 0) in its first row.
