@@ -41,11 +41,6 @@ impl Context {
         Ok(self.blowing(time_s)?.drift.displacement_m.extend(0.0))
     }
 
-    /// [`Context::wind_displacement`] without its 0 upwards, nothing for times that are not known.
-    pub fn wind_run_m(&self, time_s: f64) -> [f64; 2] {
-        self.wind_displacement(time_s).map_or([0.0; 2], |d| [d.x, d.y])
-    }
-
     /// Velocity that [`Context::wind_displacement`] is the integral of, m/s: the wind at 10 m with its gusts, which carries drops.
     ///
     /// # Errors

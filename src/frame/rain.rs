@@ -56,7 +56,8 @@ impl Rain {
 
     fn classes(&mut self, device: &Device, scene: &Scene) -> Classes {
         let most = self.settings.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 });
-        let factor = drops::altitude_factor(scene.conditions.air.station_altitude_m);
+        let station = &scene.conditions.air;
+        let factor = drops::factor_in(station, station.station_altitude_m);
         let falling = &scene.conditions.precipitation;
         match &self.counted {
             Some((f, x, m, classes)) if f == falling && *x == factor && *m == most => *classes,
@@ -91,10 +92,9 @@ impl Rain {
             exposure_s: self.settings.shutter_s,
         };
         let c = &scene.conditions;
-        let run = context.wind_run_m(context.time_s());
         let air = Air {
-            displacement_m: DVec3::new(run[0], run[1], 0.0),
-            velocity_m_s: DVec3::new(c.wind.east_m_s, c.wind.north_m_s, 0.0),
+            displacement_m: context.wind_displacement(context.time_s())?,
+            velocity_m_s: context.carrying_wind(context.time_s())?,
             time_s: context.time_s(),
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
