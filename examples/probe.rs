@@ -3,6 +3,8 @@
 //! ```text
 //! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
 //! probe fog --visibility METRES
+//! probe rain-speed
+//! probe rain
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
@@ -16,7 +18,9 @@ use welkin::sky::{Planet, SkyModel, SkySettings};
 use welkin::{Error, Result, Status};
 
 const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
-                     probe fog --visibility METRES < distances.csv";
+                     probe fog --visibility METRES < distances.csv\n       \
+                     probe rain-speed < diameters.csv\n       \
+                     probe rain < rates.csv";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -86,6 +90,8 @@ fn run() -> Result<String> {
         "aerial" => sky(Question::Aerial, arguments),
         "irradiance" => sky(Question::Irradiance, arguments),
         "fog" => fog(arguments),
+        "rain-speed" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::speed_csv(&read_input()?)),
+        "rain" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::rain_csv(&read_input()?)),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }
 }

@@ -8,6 +8,7 @@
 pub mod drops;
 pub mod lattice;
 mod passes;
+pub mod probe;
 mod settings;
 pub mod shelter;
 pub mod sizes;
