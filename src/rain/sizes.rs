@@ -280,7 +280,7 @@ pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::rain::drops::altitude_factor;
-    use crate::weather::hydrometeors::{drizzle_extinction_per_m, rain_extinction_per_m};
+    use crate::weather::hydrometeors::{drizzle_extinction_per_m, rain_extinction_per_m, shower_extinction_per_m};
 
     const RATES: [f64; 12] = [0.01, 0.1, 0.3, 1.0, 2.5, 5.0, 10.0, 25.0, 50.0, 100.0, 150.0, 500.0];
 
@@ -354,6 +354,8 @@ mod tests {
             let r = 0.01 * 40_000f64.powf(f64::from(i) / 60.0);
             let exact = DropSizes::of_rain(r, 1.0).extinction_per_m();
             assert!((rain_extinction_per_m(r) / exact - 1.0).abs() < 0.008, "{r} mm/h");
+            let exact = DropSizes::new(&falling(r, 0.0, 1.0), 1.0).extinction_per_m();
+            assert!((shower_extinction_per_m(r) / exact - 1.0).abs() < 0.008, "{r} mm/h of showers");
         }
         for r in [0.1, 0.2, 0.5, 1.0] {
             let exact = DropSizes::new(&falling(0.0, r, 0.0), 1.0).extinction_per_m();

@@ -10,16 +10,38 @@ use super::model::Precipitation;
 /// so that falling at Gunn and Kinzer's (1949) speeds the drops make the rate; a cubic in ln R fitted to that integral from
 /// 0.01 to 400 mm/h, within 0.7 % of it (tested). Below 0.01 mm/h the cubic's slope there goes on.
 pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
-    const C: [f64; 4] =
-        [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4];
+    fitted(
+        [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4],
+        rate_mm_h,
+    )
+}
+
+/// Extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0 R^-0.21 per mm, whose
+/// fewer and larger drops hide about 0.6 of what those of steady rain do; a quartic in ln R, within 0.7 % of the integral.
+pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
+    fitted(
+        [
+            -8.637_809_016_387_154,
+            0.642_493_622_313_508_3,
+            7.180_571_036_257_399e-3,
+            7.356_023_550_073_913e-4,
+            7.228_757_995_576_216e-5,
+        ],
+        rate_mm_h,
+    )
+}
+
+/// exp of a polynomial in the logarithm of the rate from 0.01 mm/h on; below, its slope there goes on.
+fn fitted<const N: usize>(c: [f64; N], rate_mm_h: f64) -> f64 {
     const LN_SMALLEST: f64 = -4.605_170_185_988_091;
     if rate_mm_h <= 0.0 {
         return 0.0;
     }
     let log_rate = libm::log(rate_mm_h);
     let x = log_rate.max(LN_SMALLEST);
-    let slope = C[1] + x * (2.0 * C[2] + x * 3.0 * C[3]);
-    libm::exp(C[0] + x * (C[1] + x * (C[2] + x * C[3])) + slope * (log_rate - x))
+    // Horner's scheme for the value and its slope together.
+    let (value, slope) = c.iter().rev().fold((0.0, 0.0), |(value, slope), c| (value * x + c, slope * x + value));
+    libm::exp(value + slope * (log_rate - x))
 }
 
 /// Rate of rain, mm/h, whose extinction is `extinction_per_m`: the inverse of [`rain_extinction_per_m`] by bisection, held to
@@ -99,7 +121,8 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
         thunder: flag(p.thunderstorm),
         extinction_per_m: 0.0,
     };
-    f.extinction_per_m = rain_extinction_per_m(f.rain_mm_h)
+    let rain = if f.showers > 0.0 { shower_extinction_per_m } else { rain_extinction_per_m };
+    f.extinction_per_m = rain(f.rain_mm_h)
         + drizzle_extinction_per_m(f.drizzle_mm_h)
         + snow_extinction_per_m(f.snow_mm_h)
         + ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
@@ -163,6 +186,18 @@ mod tests {
         assert!(rain_rate_mm_h(0.0) < 1e-12);
         assert_eq!(rain_extinction_per_m(0.0), 0.0);
         assert!(rain_extinction_per_m(1e-9) > 0.0 && rain_extinction_per_m(1e-9) < 1e-8);
+    }
+
+    #[test]
+    fn shower_fit_holds_to_the_integral() {
+        for i in 0..=60 {
+            let r = 0.01 * (400.0f64 / 0.01).powf(f64::from(i) / 60.0);
+            let (rate, ext) = integrals(1400.0, 3.0 * r.powf(-0.21));
+            let fit = shower_extinction_per_m(r);
+            assert!((fit * rate / (ext * r) - 1.0).abs() < 0.007, "{r} mm/h: {fit}");
+        }
+        let shower = falling(&Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 10.0) });
+        assert_eq!(shower.extinction_per_m, shower_extinction_per_m(10.0));
     }
 
     #[test]
