@@ -12,7 +12,7 @@ use welkin::{
     context::{Context, ContextDesc, Scene},
     frame::{Frame, Shared, Stages, View, tone},
     gpu::{Device, readback},
-    scene::Camera,
+    scene::{Camera, HostLight},
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
@@ -26,6 +26,7 @@ struct HostUniform {
     sun: [f32; 4],
     sun_light: [f32; 4],
     sky_light: [f32; 4],
+    lamps: [[[f32; 4]; 3]; 2],
 }
 
 /// Everything the host owns: Welkin knows nothing of it but `device` and the two targets.
@@ -134,13 +135,22 @@ impl Host {
     }
 
     /// Draws the host's own world, lit by what Welkin's query says of sun and sky.
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, camera: &Camera, scene: &Scene, world: Option<&wgpu::Buffer>) {
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        camera: &Camera,
+        scene: &Scene,
+        lamps: &[HostLight],
+        world: Option<&wgpu::Buffer>,
+    ) {
+        let eye = camera.position;
         let pad = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
         let block = HostUniform {
             view_projection: (camera.projection * camera.view).as_mat4(),
             sun: pad(scene.sun.direction.to_array()),
             sun_light: pad(scene.ground.sun_lux),
             sky_light: pad(scene.ground.sky_lux),
+            lamps: std::array::from_fn(|i| lamps.get(i).map_or([[0.0; 4]; 3], |l| lamp(l, eye))),
         };
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         let (color, depth) = (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
@@ -168,6 +178,16 @@ impl Host {
     }
 }
 
+/// A lamp as the host's shader reads it.
+fn lamp(l: &HostLight, eye: DVec3) -> [[f32; 4]; 3] {
+    let row = |v: DVec3, w: f64| [v.x as f32, v.y as f32, v.z as f32, w as f32];
+    [
+        row(l.position_m - eye, l.inner_deg.to_radians().cos()),
+        row(l.direction.normalize(), l.outer_deg.to_radians().cos()),
+        row(DVec3::from(l.intensity_cd), 0.0),
+    ]
+}
+
 /// One picture: the host's world with the weather drawn into it.
 fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
@@ -186,7 +206,8 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let mut view = View::new(&context)?;
     let vertices = shot.above_ground.then(|| host.vertices(eye));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
-    host.draw(&mut encoder, &camera, &context.scene_at(eye, context.time_s())?, vertices.as_ref());
+    let scene = context.scene_at(eye, context.time_s())?;
+    host.draw(&mut encoder, &camera, &scene, context.lights(), vertices.as_ref());
     let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;

@@ -1,7 +1,10 @@
 //! The pictures of the gallery: where, when and in what weather.
 
+use glam::DVec3;
 use welkin::{
     context::{Context, GivenDirection},
+    frame::Exposure,
+    scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
         SurfaceState, Weather,
@@ -137,6 +140,50 @@ pub fn shots() -> Vec<Shot> {
                 c.set_weather(&weather, 0.0, 0.0)
             },
             elevation_deg: 0.0,
+            ..GROUND
+        },
+        Shot {
+            name: "cloudburst",
+            caption: "Cloudburst, 60 mm/h, gale",
+            weather: |c, ground| {
+                sun(c, 70.0, 35.0)?;
+                let mut weather = Weather {
+                    visibility_m: 500.0,
+                    relative_humidity: 0.97,
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Cumulonimbus, 1.0, 600.0)],
+                    precipitation: Precipitation::of(PrecipitationKind::Rain, 60.0),
+                    ..Weather::default()
+                };
+                (weather.wind.speed_m_s, weather.wind.from_deg) = (9.0, 280.0);
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            elevation_deg: -6.0,
+            height_m: 1.8,
+            ..GROUND
+        },
+        Shot {
+            name: "work_lights",
+            caption: "Rain at night in work lights",
+            weather: |c, ground| {
+                sun(c, 300.0, -35.0)?;
+                c.set_exposure(Exposure::Ev100(4.5))?;
+                let weather = Weather {
+                    visibility_m: 4000.0,
+                    station_altitude_m: ground,
+                    precipitation: Precipitation::of(PrecipitationKind::Rain, 8.0),
+                    ..Weather::default()
+                };
+                let lamp = |x: f64, to: [f64; 3]| HostLight {
+                    position_m: DVec3::new(f64::from(GROUND.at[0]) + x, f64::from(GROUND.at[1]) + 1.0, ground + 4.5),
+                    direction: DVec3::from(to),
+                    intensity_cd: [40_000.0, 37_000.0, 30_000.0],
+                    inner_deg: 8.0,
+                    outer_deg: 24.0,
+                };
+                c.set_lights(&[lamp(-1.2, [-0.2, 1.0, -0.2]), lamp(1.2, [0.35, 1.0, -0.25])])?;
+                c.set_weather(&weather, 0.0, 0.0)
+            },
             ..GROUND
         },
         Shot {
