@@ -1,8 +1,9 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, fog, glass, parts, rain, sky).
+//! (record, fog, glass, ground, parts, rain, sky).
 
 mod fog;
 mod glass;
+mod ground;
 mod parts;
 mod rain;
 mod record;
@@ -28,6 +29,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("glass") {
         glass::run()?;
+    }
+    if wanted("ground") {
+        ground::run()?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use welkin::{
     scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
-        SurfaceState, Weather,
+        SurfaceState, Weather, Wind,
     },
 };
 
@@ -88,58 +88,15 @@ pub fn shots() -> Vec<Shot> {
         Shot {
             name: "wet_road",
             caption: "Wet road after a shower, low sun",
+            at: [2604.0, 138.8],
+            height_m: 1.8,
+            elevation_deg: -6.0,
             weather: |c, ground| {
-                sun(c, 20.0, 12.0)?;
-                let weather = Weather {
-                    station_altitude_m: ground,
-                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
-                    ..Weather::default()
-                };
-                c.set_weather(&weather, 0.0, 0.0)
+                sun(c, 14.0, 9.0)?;
+                let surface = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
+                let wind = Wind::of(2.0, 250.0);
+                c.set_weather(&Weather { surface, wind, station_altitude_m: ground, ..Weather::default() }, 0.0, 0.0)
             },
-            ..GROUND
-        },
-        Shot {
-            name: "wet_noon",
-            caption: "Wet road, noon",
-            weather: |c, ground| {
-                sun(c, 160.0, 55.0)?;
-                let weather = Weather {
-                    station_altitude_m: ground,
-                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
-                    ..Weather::default()
-                };
-                c.set_weather(&weather, 0.0, 0.0)
-            },
-            elevation_deg: -12.0,
-            ..GROUND
-        },
-        Shot {
-            name: "wet_rain",
-            caption: "Wet road, rain",
-            weather: |c, ground| {
-                sun(c, 160.0, 55.0)?;
-                let mut weather = Weather::preset("rain")?;
-                weather.station_altitude_m = ground;
-                c.set_weather(&weather, 0.0, 0.0)
-            },
-            elevation_deg: -12.0,
-            ..GROUND
-        },
-        Shot {
-            name: "wet_night",
-            caption: "Wet road by moonlight",
-            weather: |c, ground| {
-                sun(c, 300.0, -35.0)?;
-                c.set_moon(Some(GivenDirection { azimuth_deg: 12.0, elevation_deg: 18.0 }))?;
-                let weather = Weather {
-                    station_altitude_m: ground,
-                    surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },
-                    ..Weather::default()
-                };
-                c.set_weather(&weather, 0.0, 0.0)
-            },
-            elevation_deg: 0.0,
             ..GROUND
         },
         Shot {

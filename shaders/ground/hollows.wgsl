@@ -14,11 +14,12 @@ const RING_WAVE: f32 = 0.02;
 const RING_SLOPE: f32 = 0.35;
 
 // Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too small for the
-// pixel, whose sides on the ground are `across` and `along`.
-fn hollow_depth(u: GroundUniform, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
+// pixel, whose sides on the ground are `across` and `along`. `waves`: HOLLOW_WAVES, or 0 where nothing depends on it; a loop that is
+// not begun is what a software driver leaves out, which takes both ways of a branch.
+fn hollow_depth(u: GroundUniform, at: vec2f, across: vec2f, along: vec2f, waves: u32) -> vec2f {
     var depth = 0.0;
     var kept = 0.0;
-    for (var i = 0u; i < HOLLOW_WAVES; i++) {
+    for (var i = 0u; i < waves; i++) {
         let wave = u.waves[i];
         let x = vec2f(dot(wave.xy, across), dot(wave.xy, along));
         // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
@@ -85,10 +86,10 @@ fn ring_slope(u: GroundUniform, at: vec2f, layer: u32) -> vec2f {
     return from_middle / max(r, 1e-4) * (height * sin(x * 6.28318531));
 }
 
-// Slope of standing water by the rings of drops.
-fn ring_slopes(u: GroundUniform, at: vec2f) -> vec2f {
+// Slope of standing water by the rings of drops. `layers`: RING_LAYERS, or 0 for none.
+fn ring_slopes(u: GroundUniform, at: vec2f, layers: u32) -> vec2f {
     var slope = vec2f(0.0);
-    for (var layer = 0u; layer < RING_LAYERS; layer++) {
+    for (var layer = 0u; layer < layers; layer++) {
         slope += ring_slope(u, at, layer);
     }
     return slope;

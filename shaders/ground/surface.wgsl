@@ -92,14 +92,13 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
 
     let bare = facing.sure * (1.0 - plants(albedo));
-    let hollow = hollow_depth(ground, place, across, along * (side / cosine));
+    let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && min(ground.level, ground.film_level) < 100.0);
+    let hollow = hollow_depth(ground, place, across, along * (side / cosine), waves);
     let pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * bare;
-    var slopes = vec2f(0.0);
     // A pixel too long to see rings sees a rougher surface.
     let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
-    if pool > 0.0 && ground.ring_chance > 0.0 && seen > 0.0 {
-        slopes = ring_slopes(ground, place) * seen;
-    }
+    let rings = pool > 1e-3 && ground.ring_chance > 0.0 && seen > 0.0;
+    let slopes = ring_slopes(ground, place, select(0u, RING_LAYERS, rings)) * seen;
     let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
     let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
     // In the hollows the film is deeper and smoother.
