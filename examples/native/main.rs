@@ -204,6 +204,16 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let forward = DVec3::new(sa * ce, ca * ce, se);
     let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
     let mut view = View::new(&context)?;
+    if let Some(windscreen) = shot.windscreen {
+        // Rain has fallen on it for 20 s.
+        for i in 0..=400u32 {
+            let time_s = f64::from(i) / 20.0;
+            view.set_windscreen(Some(&windscreen(time_s)))?;
+            context.update(time_s)?;
+            let frame = Frame::new(u64::from(i) + 2, camera, &host.color, None);
+            view.record(&context, &frame, Stages::PREPARE)?;
+        }
+    }
     let vertices = shot.above_ground.then(|| host.vertices(eye));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
     let scene = context.scene_at(eye, context.time_s())?;

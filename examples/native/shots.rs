@@ -4,6 +4,7 @@ use glam::DVec3;
 use welkin::{
     context::{Context, GivenDirection},
     frame::Exposure,
+    glass::{Pane, Windscreen, WiperArm},
     scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
@@ -24,6 +25,44 @@ pub struct Shot {
     pub fov_y_deg: f64,
     /// Sets sun and weather; the second argument is the ground's altitude below the camera, m.
     pub weather: fn(&mut Context, f64) -> welkin::Result<()>,
+    /// The window that the camera looks through at a time, s.
+    pub windscreen: Option<fn(f64) -> Windscreen>,
+}
+
+/// A cab's upright window, 0.3 m away, met by rain at 8 m/s.
+fn cab(arm: Option<WiperArm>) -> Windscreen {
+    Windscreen {
+        pane: Pane::WholeView(0.3),
+        velocity_m_s: DVec3::new(0.0, 0.0, -8.0),
+        arms: [arm, None],
+        ..Windscreen::default()
+    }
+}
+
+/// A wiper that goes to and fro in 1.5 s.
+fn wiper(time_s: f64) -> WiperArm {
+    WiperArm {
+        pivot_m: [0.25, -0.03],
+        length_m: 0.3,
+        inner_radius_m: 0.07,
+        parked_deg: 15.0,
+        far_deg: 165.0,
+        position: 0.5 - 0.5 * (time_s * std::f64::consts::TAU / 1.5).cos(),
+        ..WiperArm::default()
+    }
+}
+
+fn steady_rain(context: &mut Context, ground: f64) -> welkin::Result<()> {
+    sun(context, 70.0, 35.0)?;
+    let weather = Weather {
+        visibility_m: 4000.0,
+        relative_humidity: 0.95,
+        station_altitude_m: ground,
+        clouds: vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 400.0)],
+        precipitation: Precipitation::of(PrecipitationKind::Rain, 6.0),
+        ..Weather::default()
+    };
+    context.set_weather(&weather, 0.0, 0.0)
 }
 
 fn sun(context: &mut Context, azimuth_deg: f64, elevation_deg: f64) -> welkin::Result<()> {
@@ -40,6 +79,7 @@ const GROUND: Shot = Shot {
     elevation_deg: 4.0,
     fov_y_deg: 50.0,
     weather: |_, _| Ok(()),
+    windscreen: None,
 };
 
 pub fn shots() -> Vec<Shot> {
@@ -141,6 +181,20 @@ pub fn shots() -> Vec<Shot> {
                 c.set_lights(&[lamp(-1.2, [-0.2, 1.0, -0.2]), lamp(1.2, [0.35, 1.0, -0.25])])?;
                 c.set_weather(&weather, 0.0, 0.0)
             },
+            ..GROUND
+        },
+        Shot {
+            name: "windscreen",
+            caption: "Through the windscreen, steady rain",
+            weather: steady_rain,
+            windscreen: Some(|_| cab(None)),
+            ..GROUND
+        },
+        Shot {
+            name: "wiped",
+            caption: "The same with the wiper going",
+            weather: steady_rain,
+            windscreen: Some(|time_s| cab(Some(wiper(time_s)))),
             ..GROUND
         },
         Shot {
