@@ -94,13 +94,13 @@ fn drops_arrive_as_the_flux_says() {
     for step in 0..240 {
         cells = cells.stepped(&tables.at(&acts, 3, step, size, &[None; 2]));
     }
-    let arrivals = acts.arrivals();
+    let flux = acts.rain.on_surface(DVec3::Y, DVec3::Y * -20.0);
     let area_s = 0.4 * 0.24 * 4.0;
     let hits: u64 = cells.cells.iter().map(|c| u64::from(c[3] & 4095)).sum();
-    let expected = arrivals.number_m2_s * area_s;
+    let expected = flux.drops_per_m2_s * area_s;
     assert!((hits as f64 - expected).abs() < 4.0 * expected.sqrt() + 0.002 * expected, "{hits} of {expected}");
     let water = cells.water() as f64 * VOLUME_UNIT_M3;
-    let due = arrivals.water_m_s * area_s;
+    let due = flux.rate_mm_h / 3.6e6 * area_s;
     // A drop's volume varies about 15 times as much as its mean.
     assert!((water / due - 1.0).abs() < 4.0 * 15.0 / expected.sqrt(), "{water} of {due} m^3, {hits} drops");
 }
