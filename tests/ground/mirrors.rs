@@ -73,6 +73,8 @@ fn the_sun_in_a_puddle_is_bright_and_finite() {
         let pixels = host.shoot(look(eye, 0.0, -elevation, 0.2), Stages::SURFACE, |d| ground(eye, d, [100.0; 3]));
         let brightest = pixels.iter().fold(0f32, |m, p| m.max(p[1]));
         assert!(pixels.iter().all(|p| p.iter().all(|v| v.is_finite() && *v >= 0.0)), "{elevation}");
+        // Some drivers turn what is too bright into the largest half float instead of an infinity.
+        assert!(brightest < 6.1e4, "{elevation}: {brightest}");
         assert!(brightest > 2e4, "the sun shines in the water at {elevation}: {brightest}");
     }
 }
