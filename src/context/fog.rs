@@ -96,17 +96,18 @@ pub(super) fn through_fog(
     let Some(layer) = fog_layer(c, 0, [0.0; 2]) else { return Ok(above.0) };
     let law = Law::Layer(FogLayer { patches: None, ..layer });
     let view = viewpoint(place, c, [0.0; 2], f64::INFINITY);
-    let under = |light: &Light, lux, sky| -> Result<[[f64; 3]; 2]> {
-        let light = FogLight { to_sun: light.direction, sun_irradiance: lux, sky_irradiance: sky, ground_albedo };
-        let model = FogModel::new(&law, &light, &view)?;
-        Ok(model.light_at(place.altitude_m).unwrap_or([lux, sky]))
+    let under = |light: &Light, sun_irradiance, sky_irradiance| -> Result<FogModel> {
+        FogModel::new(&law, &FogLight { to_sun: light.direction, sun_irradiance, sky_irradiance, ground_albedo }, &view)
     };
-    let [sun, sky] = under(sun, sun_lux, sky_lux)?;
-    if moon_lux == [0.0; 3] {
-        return Ok([sun, moon_lux, sky]);
+    let model = under(sun, sun_lux, sky_lux)?;
+    let [sun_under, mut sky_under] = model.light_at(place.altitude_m).unwrap_or([sun_lux, sky_lux]);
+    // By day nobody sees what fog makes of the moon's light.
+    if moon_lux[1] > 1e-4 * sky_lux[1] {
+        let [_, more] = under(moon, moon_lux, [0.0; 3])?.light_at(place.altitude_m).unwrap_or_default();
+        sky_under = [0, 1, 2].map(|i| sky_under[i] + more[i]);
     }
-    let [moon, more] = under(moon, moon_lux, [0.0; 3])?;
-    Ok([sun, moon, [0, 1, 2].map(|i| sky[i] + more[i])])
+    let share = model.beam_share(moon.direction.z, place.altitude_m);
+    Ok([sun_under, [0, 1, 2].map(|i| moon_lux[i] * share[i]), sky_under])
 }
 
 impl Scene {

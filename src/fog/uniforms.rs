@@ -152,6 +152,12 @@ impl FogModel {
         Some([[a.0, b.0, c.0], [a.1, b.1, c.1]])
     }
 
+    /// Share of a beam from a source at zenith cosine `mu0` that reaches an altitude, per channel, its aureole included.
+    pub fn beam_share(&self, mu0: f64, altitude_m: f64) -> [f64; 3] {
+        let depth = layer_depth_above(self, altitude_m).min(self.depth_total);
+        (self.scaling * (-depth / mu0.max(MIN_MU0))).to_array().map(f64::exp)
+    }
+
     /// Share at 550 nm of the light above the layer that reaches level ground at an altitude.
     fn share_at(&self, altitude_m: f64) -> f64 {
         let (Some(all), Some([sun, sky])) = (&self.solutions, self.light_at(altitude_m)) else { return 1.0 };

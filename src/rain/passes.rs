@@ -14,10 +14,9 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
-    uniform: wgpu::Buffer,
-    shelters: wgpu::Buffer,
-    splash: wgpu::Buffer,
-    lights: wgpu::Buffer,
+    /// All blocks one after the other, so that one upload brings them.
+    blocks: wgpu::Buffer,
+    staged: Vec<u8>,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     /// Of drops and of splashes, for each kind of depth.
@@ -76,22 +75,24 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
 /// Likewise.
 const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
+/// Where each block begins: rain, splashes, shelters, lights; and the end.
+const STARTS: [usize; 5] = {
+    let splash = size_of::<RainUniform>().next_multiple_of(256);
+    let shelters = splash + size_of::<SplashUniform>().next_multiple_of(256);
+    let lights = shelters + SHELTER_BYTES.next_multiple_of(256);
+    [0, splash, shelters, lights, lights + LIGHT_BYTES.next_multiple_of(256)]
+};
 
 impl RainLayer {
     pub fn new(device: &Device) -> Self {
-        let buffer = |label, size: usize| {
-            device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: size as u64,
+        Self {
+            blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("rain"),
+                size: STARTS[4] as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
-            })
-        };
-        Self {
-            uniform: buffer("rain", size_of::<RainUniform>()),
-            shelters: buffer("shelters", SHELTER_BYTES),
-            splash: buffer("splashes", size_of::<SplashUniform>()),
-            lights: buffer("lights", LIGHT_BYTES),
+            }),
+            staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             pipelines: [const { [None, None] }; 4],
             none: None,
@@ -178,20 +179,20 @@ impl RainLayer {
         Ok(())
     }
 
-    fn write(&self, device: &Device, drawn: &Drawn<'_>) {
-        let queue = &device.queue;
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(drawn.rain));
-        queue.write_buffer(&self.splash, 0, bytemuck::bytes_of(drawn.splash));
-        let list = |buffer, count: usize, bytes: &[u8]| {
-            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&[count as u32, 0, 0, 0]));
-            if count > 0 {
-                queue.write_buffer(buffer, 16, bytes);
-            }
-        };
+    fn write(&mut self, device: &Device, drawn: &Drawn<'_>) {
+        let staged = &mut self.staged;
+        let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
         let boxes = &drawn.shelters[..drawn.shelters.len().min(MAX_SHELTERS)];
-        list(&self.shelters, boxes.len(), bytemuck::cast_slice(boxes));
         let lights = &drawn.lights[..drawn.lights.len().min(MAX_LIGHTS)];
-        list(&self.lights, lights.len(), bytemuck::cast_slice(lights));
+        put(STARTS[0], bytemuck::bytes_of(drawn.rain));
+        put(STARTS[1], bytemuck::bytes_of(drawn.splash));
+        put(STARTS[2], &(boxes.len() as u32).to_ne_bytes());
+        put(STARTS[2] + 16, bytemuck::cast_slice(boxes));
+        put(STARTS[3], &(lights.len() as u32).to_ne_bytes());
+        put(STARTS[3] + 16, bytemuck::cast_slice(lights));
+        // What lies behind the last lamp is not read.
+        let end = STARTS[3] + 16 + size_of_val(lights);
+        device.queue.write_buffer(&self.blocks, 0, &self.staged[..end]);
     }
 
     fn bind(&mut self, device: &Device, depth: Option<&wgpu::Texture>, multi: bool) {
@@ -204,18 +205,26 @@ impl RainLayer {
             t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
         });
         let none = self.none.get_or_insert_with(|| nothing(&device.device));
+        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.blocks,
+                offset: offset as u64,
+                size: wgpu::BufferSize::new(size as u64),
+            }),
+        };
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("rain"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+                block(0, 0, size_of::<RainUniform>()),
                 wgpu::BindGroupEntry {
                     binding: 1,
                     resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(none)),
                 },
-                wgpu::BindGroupEntry { binding: 2, resource: self.shelters.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 3, resource: self.splash.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 4, resource: self.lights.as_entire_binding() },
+                block(2, STARTS[2], SHELTER_BYTES),
+                block(3, STARTS[1], size_of::<SplashUniform>()),
+                block(4, STARTS[3], LIGHT_BYTES),
             ],
         });
         self.bound = Some((depth.cloned(), multi, group));
