@@ -160,7 +160,7 @@ impl RustHost {
     /// The same wgpu calls without Welkin: uploads, a copy, a pass for the drops and one for the picture.
     fn bare(&self) {
         let device = &self.device.device;
-        for _ in 0..4 {
+        for _ in 0..5 {
             self.device.queue.write_buffer(&self.uniform, 0, &[0; 512]);
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
