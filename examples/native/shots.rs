@@ -181,6 +181,7 @@ pub fn shots() -> Vec<Shot> {
                 c.set_lights(&[lamp(-1.2, [-0.2, 1.0, -0.2]), lamp(1.2, [0.35, 1.0, -0.25])])?;
                 c.set_weather(&weather, 0.0, 0.0)
             },
+            elevation_deg: -9.0,
             ..GROUND
         },
         Shot {

@@ -42,7 +42,7 @@ pub struct Scene {
     pub world_to_enu: DMat3,
     /// Place on the map, m east and north of the world's origin.
     pub map_m: [f64; 2],
-    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]).
+    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]); 0 where no patch of fog shows it.
     pub drift_m: [f64; 2],
     /// The weather there.
     pub conditions: Conditions,
