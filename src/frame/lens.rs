@@ -6,7 +6,7 @@ use super::{
     Frame, FrameFlags, View,
     measure::{Effect, Recording},
     target::{ColorSpace, Stages},
-    view::is_float,
+    uniform::is_float,
 };
 use crate::{
     context::{Context, Scene},

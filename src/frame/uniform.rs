@@ -1,6 +1,10 @@
 //! The frame's uniform block, as `shaders/frame/uniform.wgsl` reads it.
 
-use crate::scene::DepthUniform;
+use super::{ColorSpace, Frame};
+use crate::{
+    context::{Context, Scene},
+    scene::{DepthUniform, ViewRays},
+};
 
 /// Everything a pixel of the composition needs beside the sky's and the fog's own blocks.
 #[repr(C)]
@@ -25,6 +29,55 @@ pub(crate) struct FrameUniform {
     pub drops: [f32; 2],
     /// How much of air, fog and clear sky is drawn.
     pub drawn: [f32; 4],
+}
+
+/// Whether a format holds light and not the steps of a display.
+pub(super) fn is_float(format: wgpu::TextureFormat) -> bool {
+    use wgpu::TextureFormat as F;
+    matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
+}
+
+/// The block of a frame.
+pub(super) fn uniform(
+    frame: &Frame<'_>,
+    scene: &Scene,
+    rays: &ViewRays,
+    color: &wgpu::Texture,
+    exposure: f64,
+    context: &Context,
+    (tone, drawn): (bool, [f32; 4]),
+) -> FrameUniform {
+    let format = color.format();
+    let display = tone || frame.color_space != ColorSpace::SceneLinear;
+    let plain_display = display && !is_float(format) && !format.is_srgb();
+    let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
+    // In an sRGB format the hardware encodes after us: a step there is not a step here, so only plain formats dither.
+    let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
+    FrameUniform {
+        depth: rays.uniform(),
+        color: scene.color.map(|c| [c[0] as f32, c[1] as f32, c[2] as f32, 0.0]),
+        night_floor: scene.night_floor_cd_m2.map(|v| v as f32),
+        exposure: exposure as f32,
+        deck: scene.deck_cd_m2.map(|v| v as f32),
+        deck_cover: scene.deck_cover as f32,
+        cd_m2_per_unit: frame.cd_m2_per_unit as f32,
+        color_space: match frame.color_space {
+            ColorSpace::SceneLinear => 0,
+            ColorSpace::DisplayLinear => 1,
+            ColorSpace::DisplaySrgb if format.is_srgb() => 1,
+            ColorSpace::DisplaySrgb => 2,
+        },
+        tone: context.tone_curve().shader_value(),
+        seed: frame.frame_id as u32,
+        y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
+        dither_step: if plain_display { step } else { 0.0 },
+        pixel_angle: rays.pixel_angle(color.height()) as f32,
+        medium_share: scene.medium_share as f32,
+        direct_share: scene.brighter().direct_share as f32,
+        encode: u32::from(encode),
+        drops: [0.0; 2],
+        drawn,
+    }
 }
 
 #[cfg(test)]
