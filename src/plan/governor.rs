@@ -144,7 +144,7 @@ impl Governor {
         let found = (rest * (more / less - 1.0) / theirs).clamp(0.5, 2.0);
         let factor = 1.0 + (found - 1.0) * theirs / (theirs + HALF_BELIEVED * rest);
         let before = all.without(to).weighed(&self.ratios);
-        for i in (0..3).filter(|i| parts & (1 << i) != 0) {
+        for i in (0..3).filter(|i| parts & (1 << i) != 0 && all.parts[*i] > 0.0) {
             self.ratios[i] = (self.ratios[i] * factor).clamp(1.0 / MOST_RATIO, MOST_RATIO);
         }
         let after = all.without(to).weighed(&self.ratios);
@@ -295,6 +295,15 @@ mod tests {
             governor.report(ms * choices[0].amount.total(), &choices[0].amount, 0);
             assert_eq!(governor.choose(&choices, None, Some(10.0), 0).0, 0);
         }
+    }
+
+    #[test]
+    fn a_part_that_is_not_there_learns_nothing_from_another_that_comes_with_it() {
+        let clear = Amount { pixels: 1.0, parts: [0.4, 0.0, 0.05], before_fog: 0.0 };
+        let mut governor = Governor::default();
+        (0..20).for_each(|_| governor.report(clear.without(0b011).total(), &clear, 0b011));
+        (0..20).for_each(|_| governor.report(1.5 * clear.total(), &clear, 0));
+        assert!(governor.ratios[0] > 1.1 && governor.ratios[1] == 1.0, "{:?}", governor.ratios);
     }
 
     /// Uniform in [0, 1): SplitMix64.

@@ -153,11 +153,13 @@ pub(crate) struct Present {
 }
 
 /// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
-/// air between and clear sky for one lamp and for each further one, fog as a layer. Fog has air before it, which costs that
-/// once more in every pixel.
+/// air between and clear sky for one lamp and for each further one, fog as a layer, and the air before the fog.
 const AIR: (f64, f64) = (0.4, 0.2);
 const SKY: (f64, f64) = (0.07, 0.05);
-const FOG: f64 = 0.27;
+const FOG: f64 = 0.26;
+const AIR_BEFORE_FOG: f64 = 0.3;
+/// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
+const AIR_UNDRAWN: f64 = 0.6;
 
 /// What a gauge was made of: a picture far from it needs another.
 #[derive(Clone, Copy, PartialEq)]
@@ -417,9 +419,10 @@ fn weigh(
     let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
     let lamps = f64::from(present.lamps.saturating_sub(1));
     let air = AIR.0 + AIR.1 * lamps;
-    let work = [objects * air, (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
+    let work =
+        [(objects + AIR_UNDRAWN * sky) * air, (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
     let both = present.parts[0] && present.parts[1];
-    let before_fog = if both { (objects + sky) * air * pixels } else { 0.0 };
+    let before_fog = if both { (objects + sky) * AIR_BEFORE_FOG / AIR.0 * air * pixels } else { 0.0 };
     let all = Amount { pixels, parts: [0, 1, 2].map(|i| if present.parts[i] { work[i] } else { 0.0 }), before_fog };
     for (set, choice) in choices.iter_mut().enumerate() {
         choice.error = estimator.estimate(samples, set);
