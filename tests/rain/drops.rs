@@ -14,24 +14,28 @@ use welkin::{
 use crate::scene::{Host, rain, upright};
 
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
-const WHITE: f64 = 3e4;
+pub const WHITE: f64 = 3e4;
 
 /// A host at night before a white wall at the horizon, so that each pixel says what the drops let through.
-fn white(size: (u32, u32)) -> Host {
-    let mut host = Host::new(size);
+pub fn white(size: (u32, u32)) -> Host {
+    night(Host::new(size))
+}
+
+/// See [`white`].
+pub fn night(mut host: Host) -> Host {
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
     host.boxes = vec![upright([0.0, 400.0, 0.0], [2000.0, 1.0, 2000.0])];
     host.look(DVec3::new(0.0, 0.0, 300.0), DVec3::Y);
     host
 }
 
-fn through(host: &mut Host) -> Vec<f64> {
+pub fn through(host: &mut Host) -> Vec<f64> {
     host.draw(|_, _| [WHITE; 3]);
     host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
     host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
 }
 
-fn mean(v: &[f64]) -> f64 {
+pub fn mean(v: &[f64]) -> f64 {
     v.iter().sum::<f64>() / v.len() as f64
 }
 
@@ -41,7 +45,7 @@ fn classes(weather: &Weather, most: u32) -> Classes {
 
 /// What the discs of the drawn drops hide up to `range_m`, as an optical depth: half of their extinction, the other half
 /// being diffraction.
-fn depth_to(classes: &Classes, range_m: f64) -> f64 {
+pub fn depth_to(classes: &Classes, range_m: f64) -> f64 {
     let n = 4000;
     let h = range_m / f64::from(n);
     let share: f64 =
@@ -182,21 +186,5 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
         assert!(through(&mut host).iter().any(|v| *v < 0.99), "it rains");
         host.context.set_shelters(&[upright([0.0, 0.0, 3.0], [400.0, 400.0, 0.1])]).unwrap();
         assert!(through(&mut host).iter().all(|v| *v == 1.0), "wind {wind}");
-    }
-}
-
-#[test]
-fn storms_far_places_and_fast_cameras_stay_finite() {
-    let mut host = Host::new((160, 90));
-    for (i, (rate, wind, at)) in
-        [(500.0, 80.0, 0.0), (0.01, 0.0, 1e7), (200.0, 40.0, 1e7), (500.0, 80.0, -1e7)].into_iter().enumerate()
-    {
-        let t = 1e6 * i as f64;
-        host.context.set_weather(&rain(rate, wind), t, 0.0).unwrap();
-        host.context.update(t + 0.5).unwrap();
-        host.look(DVec3::new(at, at, 2.0), DVec3::new(0.2, 1.0, -0.1));
-        host.draw(|_, _| [10.0; 3]);
-        host.record(Stages::ALL).unwrap();
-        assert!(host.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{rate} {wind} {at}");
     }
 }

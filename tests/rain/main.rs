@@ -2,4 +2,7 @@
 
 mod drops;
 mod pictures;
+mod processes;
 mod scene;
+mod stability;
+mod streaks;

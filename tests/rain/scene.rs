@@ -25,6 +25,8 @@ pub struct Host {
     pub color: wgpu::Texture,
     depth: wgpu::Texture,
     pub boxes: Vec<Shelter>,
+    /// Of the camera.
+    pub velocity_m_s: DVec3,
     frames: u64,
 }
 
@@ -51,6 +53,8 @@ pub fn rain(rate_mm_h: f64, wind_m_s: f64) -> Weather {
 
 fn texture(device: &Device, size: (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
+    // Not all drivers draw into single floats; the depth is only uploaded.
+    let drawn = if format == wgpu::TextureFormat::R32Float { U::empty() } else { U::RENDER_ATTACHMENT | U::COPY_SRC };
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
@@ -58,7 +62,7 @@ fn texture(device: &Device, size: (u32, u32), format: wgpu::TextureFormat) -> wg
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+        usage: drawn | U::TEXTURE_BINDING | U::COPY_DST,
         view_formats: &[],
     })
 }
@@ -90,7 +94,18 @@ impl Host {
         let depth = texture(&device, size, wgpu::TextureFormat::R32Float);
         let aspect = f64::from(size.0) / f64::from(size.1);
         let camera = Camera::look_to(DVec3::new(0.0, 0.0, 1.7), DVec3::Y, DVec3::Z, 0.9, aspect, NEAR_M);
-        Self { device, context, view, camera, size, color, depth, boxes: Vec::new(), frames: 0 }
+        Self {
+            device,
+            context,
+            view,
+            camera,
+            size,
+            color,
+            depth,
+            boxes: Vec::new(),
+            velocity_m_s: DVec3::ZERO,
+            frames: 0,
+        }
     }
 
     pub fn look(&mut self, position: DVec3, forward: DVec3) {
@@ -162,7 +177,10 @@ impl Host {
 
     pub fn record(&mut self, stages: Stages) -> welkin::Result<()> {
         self.frames += 1;
-        let frame = Frame::new(self.frames, self.camera, &self.color, Some(&self.depth));
+        let frame = Frame {
+            camera_velocity_m_s: self.velocity_m_s,
+            ..Frame::new(self.frames, self.camera, &self.color, Some(&self.depth))
+        };
         self.view.record(&self.context, &frame, stages)
     }
 
