@@ -3723,6 +3723,21 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
+/** With what a view draws rain; what falls is the same. */
+typedef uint32_t wk_rain_model;
+
+/** Welkin chooses; in this version always WK_RAIN_MODEL_DROPS. */
+#define WK_RAIN_MODEL_AUTOMATIC 0
+/** No drops: all rain is extinction in the air. */
+#define WK_RAIN_MODEL_VEIL 1
+/**
+ * Streaks on four nested cones about the camera: the cheapest that moves, at a cost that does not depend on the rate. No
+ * splashes.
+ */
+#define WK_RAIN_MODEL_CONES 2
+/** Each drop where seed and time put it. */
+#define WK_RAIN_MODEL_DROPS 3
+
 /** How a view draws rain; what falls does not depend on it. */
 typedef struct wk_rain {
     /** sizeof(wk_rain) of your header. */
@@ -3738,8 +3753,8 @@ typedef struct wk_rain {
      * 400 000, and 100 000 on a software driver.
      */
     uint32_t most_drops;
-    /** Must be 0. */
-    uint32_t reserved0;
+    /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
+    wk_rain_model model;
 } wk_rain;
 
 /** Every field of `wk_rain` at its default. */
@@ -3749,7 +3764,7 @@ typedef struct wk_rain {
     /* next */ NULL, \
     /* shutter_s */ 0.016666666666666666, \
     /* most_drops */ 0, \
-    /* reserved0 */ 0 \
+    /* model */ WK_RAIN_MODEL_AUTOMATIC \
 }
 
 /** A box that rain does not pass, in the host's world. */

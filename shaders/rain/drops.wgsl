@@ -90,7 +90,13 @@ fn drop_of(instance: u32) -> Drop {
     let size = rain.classes[k];
     let place = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
     let fallen = u32(size.y) * rain.cell[s].w;
-    let away = bitcast<vec3i>(place - vec3u(0u, 0u, fallen) - rain.cell[s].xyz);
+    return drop_at(s, k, place - vec3u(0u, 0u, fallen) - rain.cell[s].xyz);
+}
+
+// A drop of shell `s` and class `k`, `away_units` from the camera in 2^-32 of the cell's side.
+fn drop_at(s: u32, k: u32, away_units: vec3u) -> Drop {
+    let size = rain.classes[k];
+    let away = bitcast<vec3i>(away_units);
     let shell = rain.shell[s];
     let p = vec3f(away) * (shell.x / 4294967296.0);
     let d = length(p);
@@ -137,8 +143,12 @@ struct RainVarying {
 @vertex
 fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
     let drop = drop_of(instance);
+    return streak_of(drop, rain.wind - vec3f(0.0, 0.0, drop.speed), corner);
+}
+
+// A corner of the streak that a drop of a `velocity` draws.
+fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
     let d = max(length(drop.position), 1e-3);
-    let velocity = rain.wind - vec3f(0.0, 0.0, drop.speed);
     let half = (velocity - rain.camera) * (0.5 * rain.exposure);
     // Both ends of the streak, then its width across the picture.
     let along = select(-1.0, 1.0, (corner & 2u) != 0u);

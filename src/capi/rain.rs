@@ -22,10 +22,22 @@ use super::{
 };
 use crate::{
     error::{Error, Status},
-    rain::{MAX_SHELTERS, RainSettings, Shelter},
+    rain::{MAX_SHELTERS, RainModel, RainSettings, Shelter},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
+
+/// With what a view draws rain; what falls is the same.
+pub type wk_rain_model = u32;
+/// Welkin chooses; in this version always WK_RAIN_MODEL_DROPS.
+pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
+/// No drops: all rain is extinction in the air.
+pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
+/// Streaks on four nested cones about the camera: the cheapest that moves, at a cost that does not depend on the rate. No
+/// splashes.
+pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
+/// Each drop where seed and time put it.
+pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 
 /// How a view draws rain; what falls does not depend on it.
 #[repr(C)]
@@ -42,8 +54,8 @@ pub struct wk_rain {
     /// Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
     /// 400 000, and 100 000 on a software driver.
     pub most_drops: u32,
-    /// Must be 0.
-    pub reserved0: u32,
+    /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
+    pub model: wk_rain_model,
 }
 
 impl wk_rain {
@@ -53,7 +65,7 @@ impl wk_rain {
         next: null(),
         shutter_s: 0.016_666_666_666_666_666,
         most_drops: 0,
-        reserved0: 0,
+        model: WK_RAIN_MODEL_AUTOMATIC,
     };
 }
 
@@ -104,6 +116,12 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
             unsafe { layout::check_chain(&"rain", c.next, &[])? };
             settings.shutter_s = c.shutter_s;
             settings.most_drops = (c.most_drops != 0).then_some(c.most_drops);
+            settings.model = match c.model {
+                WK_RAIN_MODEL_VEIL => RainModel::Veil,
+                WK_RAIN_MODEL_CONES => RainModel::Cones,
+                WK_RAIN_MODEL_DROPS => RainModel::Drops,
+                _ => RainModel::Automatic,
+            };
         }
         object.lock().set_rain(settings)?;
         Ok(Status::Ok)

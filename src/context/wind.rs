@@ -49,6 +49,16 @@ impl Context {
         Ok(self.blowing(time_s)?.velocity_m_s().extend(0.0))
     }
 
+    /// How far the wind has carried the air between two moments, m: the difference of [`Context::wind_displacement`], and
+    /// before what the timeline knows the wind of its first moment.
+    pub(crate) fn carried(&self, from_s: f64, to_s: f64) -> DVec3 {
+        let at = |t: f64| self.wind.blowing(&self.timeline, self.drifted, t);
+        let known_s = from_s.max(self.timeline.known_from_s()).min(to_s);
+        let first = at(known_s);
+        let since = at(to_s).drift.displacement_m - first.drift.displacement_m;
+        (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
+    }
+
     pub(super) fn drifted(&self) -> Drift {
         self.drifted
     }

@@ -10,7 +10,8 @@ use crate::{
     error::Result,
     gpu::Device,
     rain::{
-        Air, Classes, Drawn, DropLight, RainLayer, RainSettings, RainUniform, Shelter, Shot, Splashes, drops,
+        Air, Classes, ConeUniform, Drawn, DropLight, RainLayer, RainModel, RainSettings, RainUniform, Shelter, Shot,
+        Splashes, drops,
         lattice::{FADE, REACH_M, SHELLS},
     },
     scene::{LightUniform, ViewRays},
@@ -27,15 +28,15 @@ pub(super) struct Rain {
     lights: Vec<LightUniform>,
 }
 
-/// Whether anything falls that is drawn as drops.
-pub(super) fn falls(scene: &Scene) -> bool {
-    let f = &scene.conditions.precipitation;
-    f.rain_mm_h + f.drizzle_mm_h > 0.0
-}
-
 impl Rain {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self { layer: RainLayer::new(device), settings, counted: None, boxes: Vec::new(), lights: Vec::new() }
+    }
+
+    /// Whether anything falls that is drawn before the picture.
+    pub fn shows(&self, scene: &Scene) -> bool {
+        let f = &scene.conditions.precipitation;
+        f.rain_mm_h + f.drizzle_mm_h > 0.0 && self.settings.model != RainModel::Veil
     }
 
     /// Bytes of GPU memory held.
@@ -48,8 +49,8 @@ impl Rain {
         self.layer.view(device, color.size())
     }
 
-    /// What the drops hide, as an extinction (their discs: half of theirs, the rest is diffraction), and the distance up to
-    /// which they do.
+    /// What drops or cones hide, as an extinction (their discs: half of theirs, the rest is diffraction), and the distance up
+    /// to which they do.
     pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
         [0.5 * self.classes(device, scene).extinction_per_m, 0.5 * (1.0 + FADE) * REACH_M].map(|v| v as f32)
     }
@@ -109,15 +110,19 @@ impl Rain {
         self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
         self.lights.clear();
         self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
+        let on_cones = self.settings.model == RainModel::Cones;
+        let cones = on_cones
+            .then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &|from, to| context.carried(from, to)));
         let drawn = Drawn {
             rain: &block,
+            cones: cones.as_ref(),
             shelters: &self.boxes,
             lights: &self.lights,
             splash: &splashes.uniform(shot.position_m, height_m, air.time_s),
             splashes: splashes.instances(),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        Ok(classes.per_shell * SHELLS as u32)
+        Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 })
     }
 }
 

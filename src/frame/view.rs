@@ -12,7 +12,7 @@ use super::{
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
-    rain::{self, Rain},
+    rain::Rain,
     shared::Shared,
     surface,
     target::{ColorSpace, Stages, check_color, check_depth, check_mask},
@@ -206,7 +206,7 @@ impl View {
         let scene = context.scene_at(frame.camera.position, context.time_s())?;
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
-        let stages = if rain::falls(&scene) { stages } else { stages.without(Stages::PARTICLES) };
+        let stages = if self.rain.shows(&scene) { stages } else { stages.without(Stages::PARTICLES) };
         let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
         let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
         let drawn = stages.without(Stages::PREPARE) != Stages(0);
@@ -335,7 +335,7 @@ impl View {
         if variant.stages == Stages(0) {
             return Ok(());
         }
-        let drops = rain::falls(scene).then(|| self.rain.layer(&self.device, color).clone());
+        let drops = self.rain.shows(scene).then(|| self.rain.layer(&self.device, color).clone());
         self.bind(frame, color, drops)?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
@@ -357,7 +357,7 @@ impl View {
         }
         let drawn = self.planner.drawn();
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
-        if rain::falls(scene) {
+        if self.rain.shows(scene) {
             block.drops = self.rain.hidden(&self.device, scene);
         }
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));

@@ -5,6 +5,8 @@
 //! small against the way it falls during the exposure; streaks make a layer of their own, which the composition puts before
 //! the picture. What is too small or too far for a drop is the fog's extinction.
 
+mod cone_pass;
+pub mod cones;
 pub mod drops;
 pub mod lattice;
 mod passes;
@@ -15,9 +17,10 @@ pub mod sizes;
 mod splash;
 mod uniforms;
 
-pub use settings::RainSettings;
+pub use settings::{RainModel, RainSettings};
 pub use shelter::{MAX_SHELTERS, Shelter};
 
+pub(crate) use cones::ConeUniform;
 pub(crate) use passes::{Drawn, RainLayer};
 pub(crate) use splash::Splashes;
 pub use uniforms::Classes;

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{lattice::SHELLS, shelter::MAX_SHELTERS, splash::SplashUniform, uniforms::RainUniform};
+use super::{
+    cone_pass::ConePass, cones::ConeUniform, lattice::SHELLS, shelter::MAX_SHELTERS, splash::SplashUniform,
+    uniforms::RainUniform,
+};
 use crate::{
     error::Result,
     gpu::Device,
@@ -10,7 +13,7 @@ use crate::{
 };
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
@@ -21,6 +24,7 @@ pub(crate) struct RainLayer {
     layouts: [wgpu::BindGroupLayout; 2],
     /// Of drops and of splashes, for each kind of depth.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 4],
+    cones: Option<ConePass>,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
     bound: Option<(Option<wgpu::Texture>, bool, wgpu::BindGroup)>,
@@ -29,6 +33,8 @@ pub(crate) struct RainLayer {
 /// What one frame draws.
 pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
+    /// Cones in place of drops and splashes.
+    pub cones: Option<&'a ConeUniform>,
     /// Rows and velocities of the boxes that keep rain off ([`super::Shelter`]).
     pub shelters: &'a [[[f32; 4]; 4]],
     /// The host's lamps.
@@ -95,6 +101,7 @@ impl RainLayer {
             staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             pipelines: [const { [None, None] }; 4],
+            cones: None,
             none: None,
             texture: None,
             bound: None,
@@ -103,7 +110,8 @@ impl RainLayer {
 
     /// Bytes of GPU memory that the layer holds.
     pub fn bytes(&self) -> u64 {
-        self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()))
+        let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
+        layer + self.cones.as_ref().map_or(0, ConePass::bytes)
     }
 
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
@@ -147,15 +155,34 @@ impl RainLayer {
         let multi = depth.is_some_and(|d| d.sample_count() > 1);
         self.bind(device, depth, multi);
         self.view(device, color.size());
+        let kind = (multi, depth.is_some());
         let key = usize::from(multi) * 2 + usize::from(depth.is_some());
         let layout = &self.layouts[usize::from(multi)];
+        if let Some(block) = drawn.cones {
+            self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, layout, kind)?;
+            self.draw_into(encoder, |pass, layer| layer.cones.iter().for_each(|c| c.draw(pass, kind)));
+            return Ok(());
+        }
         for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
             if slot.is_none() {
                 *slot = Some(pipeline(device, layout, vertex, multi, depth.is_some())?);
             }
         }
-        let [Some(falling), Some(splashing)] = &self.pipelines[key] else { return Ok(()) };
-        let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return Ok(()) };
+        self.draw_into(encoder, |pass, layer| {
+            let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
+            pass.set_pipeline(falling);
+            pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+            if depth.is_some() && drawn.splashes > 0 {
+                pass.set_pipeline(splashing);
+                pass.draw(0..4, 0..drawn.splashes);
+            }
+        });
+        Ok(())
+    }
+
+    /// Clears the layer and draws into it.
+    fn draw_into(&self, encoder: &mut wgpu::CommandEncoder, draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self)) {
+        let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("drops"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -170,13 +197,7 @@ impl RainLayer {
             ..Default::default()
         });
         pass.set_bind_group(0, group, &[]);
-        pass.set_pipeline(falling);
-        pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
-        if depth.is_some() && drawn.splashes > 0 {
-            pass.set_pipeline(splashing);
-            pass.draw(0..4, 0..drawn.splashes);
-        }
-        Ok(())
+        draw(&mut pass, self);
     }
 
     fn write(&mut self, device: &Device, drawn: &Drawn<'_>) {

@@ -2,6 +2,21 @@
 
 use crate::error::{Result, check_range};
 
+/// With what a view draws rain; what falls is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RainModel {
+    /// Welkin chooses; today always [`RainModel::Drops`].
+    #[default]
+    Automatic,
+    /// No drops: all rain is extinction. Costs nothing beyond the fog.
+    Veil,
+    /// Streaks on four nested cones about the camera ([`super::cones`]): the cost is a matter of the picture's size alone.
+    /// No splashes.
+    Cones,
+    /// Each drop where (seed, number, time) puts it, without a state ([`super::lattice`]).
+    Drops,
+}
+
 /// How a view draws rain. What falls, and where each drop is, does not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSettings {
@@ -10,11 +25,13 @@ pub struct RainSettings {
     /// Most drops that are drawn, [1000, 8 000 000]; further ones are stood for by those that are. `None`, the default:
     /// 400 000, or 100 000 on a software driver.
     pub most_drops: Option<u32>,
+    /// With what it is drawn.
+    pub model: RainModel,
 }
 
 impl Default for RainSettings {
     fn default() -> Self {
-        Self { shutter_s: 1.0 / 60.0, most_drops: None }
+        Self { shutter_s: 1.0 / 60.0, most_drops: None, model: RainModel::Automatic }
     }
 }
 

@@ -39,7 +39,7 @@ pub fn mean(v: &[f64]) -> f64 {
     v.iter().sum::<f64>() / v.len() as f64
 }
 
-fn classes(weather: &Weather, most: u32) -> Classes {
+pub fn classes(weather: &Weather, most: u32) -> Classes {
     Classes::new(&derive(weather).unwrap().precipitation, 1.0, most)
 }
 
@@ -112,7 +112,8 @@ fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
     let mut host = white((480, 270));
     let weather = rain(10.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
-    host.view.set_rain(welkin::rain::RainSettings { shutter_s: 1e-3, most_drops: Some(1000) }).unwrap();
+    let few = welkin::rain::RainSettings { shutter_s: 1e-3, most_drops: Some(1000), ..Default::default() };
+    host.view.set_rain(few).unwrap();
     let classes = classes(&weather, 1000);
     for (t, eye) in [(3.0, DVec3::new(0.0, 0.0, 300.0)), (123_456.7, DVec3::new(1.3, 0.4, 301.0))] {
         host.context.update(t).unwrap();

@@ -89,7 +89,9 @@ fn no_step_of_time_and_no_place_makes_a_burst_or_a_gap() {
 #[test]
 fn pictures_of_storms_far_places_and_fast_cameras_are_finite_and_as_dense_as_any() {
     let mut host = white((160, 90));
-    host.view.set_rain(RainSettings { shutter_s: 1.0 / 60.0, most_drops: Some(60_000) }).unwrap();
+    host.view
+        .set_rain(RainSettings { shutter_s: 1.0 / 60.0, most_drops: Some(60_000), ..RainSettings::default() })
+        .unwrap();
     let wall = host.boxes[0];
     let mut t = 0.0;
     for (i, (rate, wind)) in RATES.iter().flat_map(|r| WINDS.map(|w| (*r, w))).enumerate() {

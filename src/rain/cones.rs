@@ -1,0 +1,215 @@
+//! Rain on four nested cones about the camera (after Wang and Wade 2004): a texture of streaks, made once, moved as drops
+//! move.
+//!
+//! Each cone stands for the drops of a band of distances, each band twice as far and as wide as the last. Seen from the
+//! camera, a drop at distance r that moves with velocity V relative to it keeps its azimuth about V and goes along Mercator's latitude
+//! s = ln tan(theta / 2), theta counted from V, at the even speed |V| / r; its streak is |V| x exposure / r long there, at any
+//! theta. So the texture is laid over (azimuth, s) and goes along s: streaks converge on both ends of V as they should.
+//! Towards these ends the azimuth is divided into half as many tiles for each halving of sin theta, so streaks keep their width.
+//! The cone of the sources was narrowed to a tip, where every streak met in a point.
+//!
+//! The bands are those of the lattice's shells ([`super::lattice`]), and a cone shows as many streaks as its shell would show
+//! drops, each of which stands for the same number: the texture's four channels hold 1, 4, 16 and 64 parts of the streaks, of
+//! which as many are taken as are wanted; where more are wanted than there are, contrast goes down as that of drops would.
+//! What they hide on the mean is the optical depth of the band's drops.
+//!
+//! Nothing is carried from frame to frame. A cone is drawn twice, as two sets that grow and fade in turn, each with an offset by
+//! chance and moved by what the air, the fall and the camera have done since its birth, a few seconds ago: exact at any
+//! time, and the same on every channel.
+
+use glam::{DVec2, DVec3};
+use half::f16;
+
+use super::{
+    Classes,
+    lattice::{FADE, REACH_M, random3, side_m},
+    sizes::{DropSizes, Weight},
+    uniforms::{Air, Shot},
+};
+
+/// Cones.
+pub const CONES: usize = 4;
+/// Distances, m, between which the drops of each cone are: what the shells of the drops reach, to the middle of their fading.
+pub const BANDS_M: [f64; CONES + 1] = {
+    let reach = 0.5 * (1.0 + FADE) * REACH_M;
+    [0.1875, reach / 8.0, reach / 4.0, reach / 2.0, reach]
+};
+/// Texels along either side of the texture.
+pub(crate) const SIDE: u32 = 256;
+/// Streaks in each channel.
+pub(crate) const STREAKS: [u32; 4] = [48, 192, 768, 3072];
+/// Mean length of a streak, texels.
+const LENGTH: f64 = 5.0;
+/// Half of a streak's width, texels: its profile is a parabola.
+const HALF_WIDTH: f64 = 0.8;
+/// Time from birth to end of a set of the innermost cone, s; each further one twice as long.
+const LIFE_S: f64 = 0.4;
+
+/// `ConeUniform` of `shaders/rain/cones.wgsl`, which explains the fields.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct ConeUniform {
+    pub axis: [f32; 3],
+    pub fall: f32,
+    pub east: [f32; 3],
+    pub pad0: f32,
+    pub north: [f32; 3],
+    pub pad1: f32,
+    pub bands: [[f32; 4]; CONES],
+    pub shapes: [[f32; 4]; CONES],
+    pub sets: [[f32; 4]; 2 * CONES],
+}
+
+/// What all drops that are drawn have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mean {
+    /// By what they hide: diameter, m, and fall speed, m/s.
+    diameter_m: f64,
+    fall_m_s: f64,
+}
+
+impl Mean {
+    fn of(classes: &Classes) -> Self {
+        let mut m = Self { diameter_m: 0.0, fall_m_s: 0.0 };
+        let mut discs = 0.0;
+        for &(d, speed, flux) in classes.flux.iter().filter(|c| c.1 > 0.0) {
+            let disc = flux / speed * d * d;
+            discs += disc;
+            m.diameter_m += disc * d * 1e-3;
+            m.fall_m_s += disc * speed;
+        }
+        if discs > 0.0 {
+            m.diameter_m /= discs;
+            m.fall_m_s /= discs;
+        }
+        m
+    }
+}
+
+/// A frame (x, y, `axis`) that turns as little as possible from (east, north, down) on.
+fn frame(axis: DVec3) -> (DVec3, DVec3) {
+    let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Z, axis);
+    (turn * DVec3::X, turn * DVec3::Y)
+}
+
+/// What has carried a set since its birth: displacement of the air from the first moment (s) to the second, m.
+pub(crate) type Carried<'a> = &'a dyn Fn(f64, f64) -> DVec3;
+
+impl ConeUniform {
+    /// For a camera in the air; `carried` answers how far the wind has gone between two moments.
+    pub fn new(seed: u32, classes: &Classes, shot: &Shot<'_>, air: &Air, carried: Carried<'_>) -> Self {
+        let mean = Mean::of(classes);
+        let fall = DVec3::Z * mean.fall_m_s;
+        let relative = air.velocity_m_s - fall - shot.velocity_m_s;
+        let axis = relative.normalize_or(DVec3::NEG_Z);
+        let (east, north) = frame(axis);
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let pixel = shot.rays.pixel_angle(shot.height);
+        let mut c = Self { axis: v(axis), fall: mean.fall_m_s as f32, east: v(east), north: v(north), ..Self::zero() };
+        for j in 0..CONES {
+            let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
+            let middle = 0.5 * (near + far);
+            // A streak is a little wider than a pixel, or than a drop.
+            let texel = (1.1 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
+            let tiles = (std::f64::consts::TAU / (f64::from(SIDE) * texel)).round().max(1.0);
+            let length = (relative.length() * shot.exposure_s + mean.diameter_m) / middle;
+            let number = f64::from(classes.per_shell) / side_m(j).powi(3) * (far.powi(3) - near.powi(3)) / 3.0;
+            let depth = 0.5 * classes.extinction_per_m * (far - near);
+            c.bands[j] = [near, far, middle, depth].map(|x| x as f32);
+            c.shapes[j] = [tiles, length * f64::from(SIDE) / LENGTH, number, 1.5 * pixel * f64::from(SIDE) / LENGTH]
+                .map(|x| x as f32);
+            for p in 0..2 {
+                let life = LIFE_S * f64::from(1u32 << j);
+                let turns = air.time_s / life + 0.5 * f64::from(p);
+                let age = turns - turns.floor();
+                let since = age * life;
+                let moved = carried(air.time_s - since, air.time_s) - (fall + shot.velocity_m_s) * since;
+                let chance = random3([seed, (2 * j as u32) | p | 0x7000_0000, turns.floor() as i64 as u32]);
+                let share = 1.0 - (2.0 * age - 1.0).abs();
+                let [x, y] = [chance[0], chance[1]].map(|r| f64::from(r) / 4_294_967_296.0);
+                c.sets[2 * j + p as usize] = [moved.dot(axis) / middle, share, x, y].map(|x| x as f32);
+            }
+        }
+        c
+    }
+
+    fn zero() -> Self {
+        bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// A streak of the texture: place and half its length, texels, and what it hides.
+struct Streak {
+    middle: DVec2,
+    half_length: f64,
+    weight: f64,
+    channel: usize,
+}
+
+/// Streaks of drops of 0.5 mm on in rain of 10 mm/h, in a band whose far end is twice as far as its near one.
+fn streaks() -> Vec<Streak> {
+    let sizes = DropSizes::of_rain(10.0, 1.0);
+    let table = sizes.diameter_table(Weight::Number, 0.5);
+    let share = |r: u32| f64::from(r) / 4_294_967_296.0;
+    let mut all = Vec::new();
+    for (channel, count) in STREAKS.into_iter().enumerate() {
+        for i in 0..count {
+            let [a, b] = [0, 1].map(|k| random3([0x5712_ea45, k << 8 | channel as u32, i]).map(share));
+            let d = super::sizes::table_diameter_mm(&table, a[2]);
+            // Mean distance of a band: 1.55 times its near end.
+            let distance = libm::cbrt(1.0 + 7.0 * b[0]) / 1.55;
+            all.push(Streak {
+                middle: DVec2::new(a[0], a[1]) * f64::from(SIDE),
+                half_length: 0.5 * LENGTH * sizes.speed_m_s(d) / 6.0 / distance,
+                weight: d * d / (distance * distance),
+                channel,
+            });
+        }
+    }
+    all
+}
+
+/// The texture with all its mip levels: optical depth over the mean of all channels together. The mean of each channel is
+/// exactly its share of the streaks.
+pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
+    let n = SIDE as i64;
+    let mut level = vec![[0.0f64; 4]; (n * n) as usize];
+    for s in streaks() {
+        let reach = s.half_length + 0.5;
+        let (x0, y0) = ((s.middle.x - HALF_WIDTH).floor() as i64, (s.middle.y - reach).floor() as i64);
+        let mut texels = Vec::new();
+        for y in y0..=(s.middle.y + reach).ceil() as i64 {
+            for x in x0..=(s.middle.x + HALF_WIDTH).ceil() as i64 {
+                let across = (x as f64 + 0.5 - s.middle.x) / HALF_WIDTH;
+                let along = (reach - (y as f64 + 0.5 - s.middle.y).abs()).clamp(0.0, 1.0);
+                texels.push((x, y, (1.0 - across * across).max(0.0) * along));
+            }
+        }
+        let sum: f64 = texels.iter().map(|t| t.2).sum();
+        for (x, y, w) in texels.into_iter().filter(|_| sum > 0.0) {
+            level[(y.rem_euclid(n) * n + x.rem_euclid(n)) as usize][s.channel] += s.weight * w / sum;
+        }
+    }
+    let total = f64::from(STREAKS.iter().sum::<u32>());
+    for (k, count) in STREAKS.into_iter().enumerate() {
+        let mean = level.iter().map(|t| t[k]).sum::<f64>() / level.len() as f64;
+        level.iter_mut().for_each(|t| t[k] *= f64::from(count) / total / mean);
+    }
+    let mut levels = Vec::new();
+    let mut side = SIDE as usize;
+    loop {
+        levels.push(level.iter().map(|t| t.map(f16::from_f64)).collect());
+        if side == 1 {
+            return levels;
+        }
+        side /= 2;
+        let finer = |x: usize, y: usize| level[y * 2 * side + x];
+        level = (0..side * side)
+            .map(|i| {
+                let (x, y) = (2 * (i % side), 2 * (i / side));
+                let four = [finer(x, y), finer(x + 1, y), finer(x, y + 1), finer(x + 1, y + 1)];
+                std::array::from_fn(|k| 0.25 * four.iter().map(|t| t[k]).sum::<f64>())
+            })
+            .collect();
+    }
+}
