@@ -129,7 +129,7 @@ fn family(c: &Candidate) -> &'static str {
         (Effect::Fog, "exact" | "even") => "closed form",
         (Effect::Fog, "froxels") => "froxels",
         (Effect::Fog, _) => "older laws",
-        (Effect::Sky, known) => known,
+        (Effect::Sky | Effect::Rain, known) => known,
     }
 }
 

@@ -25,13 +25,14 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
     }
     let wanted = options.scene.as_deref().unwrap_or(match a.effect {
         Effect::Sky => "low-sun",
-        Effect::Fog => "fog",
+        Effect::Fog | Effect::Rain => "fog",
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
     let pictures = match a.effect {
         Effect::Sky => sky_pictures(&lab, [a, b], scene, options.quick)?,
         Effect::Fog => fog_pictures(&lab, [a, b], scene)?,
+        Effect::Rain => return Err(Error::range("A", "of sky or fog", a.name)),
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
     let stem = options.out.join(format!("compare-{}-{}-{wanted}", a.name, b.name));

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::fog::candidates::FogMethod;
+use crate::rain::{RainSettings, candidates::RainMethod};
 use crate::sky::candidates::ElekTable;
 use crate::sky::{SkyModel, SkySettings};
 
@@ -12,11 +13,13 @@ pub enum Effect {
     Sky,
     /// The low layer of fog or mist.
     Fog,
+    /// Rain and drizzle near the camera.
+    Rain,
 }
 
 impl Effect {
     /// All effects with the names that programs use for them.
-    pub const NAMES: [(&'static str, Effect); 2] = [("sky", Effect::Sky), ("fog", Effect::Fog)];
+    pub const NAMES: [(&'static str, Effect); 3] = [("sky", Effect::Sky), ("fog", Effect::Fog), ("rain", Effect::Rain)];
 
     /// The effect of that name.
     ///
@@ -43,6 +46,8 @@ pub enum Method {
     SkyElek(ElekTable),
     /// A way to draw fog.
     Fog(FogMethod),
+    /// A way to draw rain.
+    Rain(RainMethod),
 }
 
 /// One way to draw an effect.
@@ -66,6 +71,7 @@ impl Candidate {
         match self.method {
             Method::Sky(s) => s == SkySettings::default() && s.model == SkyModel::default(),
             Method::Fog(m) => m == FogMethod::default(),
+            Method::Rain(m) => m == RainMethod::Offered(RainSettings::default()),
             Method::SkyElek(_) => false,
         }
     }
@@ -76,6 +82,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
     match effect {
         Effect::Sky => crate::sky::candidates::candidates(),
         Effect::Fog => crate::fog::candidates::candidates(),
+        Effect::Rain => crate::rain::candidates::candidates(),
     }
 }
 
@@ -175,7 +182,7 @@ mod tests {
                 }
             }
         }
-        assert!(Effect::from_name("sea").unwrap_err().message.contains("sky, fog"));
+        assert!(Effect::from_name("sea").unwrap_err().message.contains("sky, fog, rain"));
         assert!(candidate(Effect::Fog, "best").unwrap_err().message.contains("exact"));
     }
 

@@ -5,6 +5,7 @@
 //! small against the way it falls during the exposure; streaks make a layer of their own, which the composition puts before
 //! the picture. What is too small or too far for a drop is the fog's extinction.
 
+pub mod candidates;
 mod cone_pass;
 pub mod cones;
 pub mod drops;
@@ -14,6 +15,7 @@ pub mod probe;
 mod settings;
 pub mod shelter;
 pub mod sizes;
+pub mod source;
 mod splash;
 mod uniforms;
 

@@ -1,0 +1,91 @@
+//! The ways to draw rain that are charted against each other, with what they cost.
+
+use super::{RainModel, RainSettings, source::SourceLod};
+use crate::plan::{Candidate, Effect, Method, Units, Work};
+
+/// A way to draw rain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RainMethod {
+    /// What the library offers, as a view is told ([`crate::frame::View::set_rain`]).
+    Offered(RainSettings),
+    /// Level of detail of an older system, drawn from its list ([`SourceLod::drops`]): compared with only.
+    Source(SourceLod),
+}
+
+/// Work of a drop, about a corner's hash, place, light and projection four times; few of them reach the picture.
+const DROP: Units = Units { samples: 5.0, texels: 0.5, bytes: 8.0 };
+/// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
+const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
+/// A pixel's light on four cones, and eight looks at the streaks, each from two sizes of their texture.
+const CONES: Units = Units { samples: 20.0, texels: 16.0, bytes: 0.0 };
+
+impl RainMethod {
+    fn work(self) -> Work {
+        let drops = |n: u32| Work {
+            // They move: every frame.
+            view: Units::default().plus(DROP, f64::from(n)),
+            pixel: LAYER,
+            ..Work::default()
+        };
+        match self {
+            Self::Offered(s) => match s.model {
+                // As much as the fog does anyway, and no layer.
+                RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
+                RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
+                RainModel::Automatic | RainModel::Drops => drops(s.most_drops.unwrap_or(400_000)),
+            },
+            Self::Source(lod) => drops(lod.drawn()),
+        }
+    }
+}
+
+/// All candidates.
+pub fn candidates() -> Vec<Candidate> {
+    let offered =
+        |model, most_drops| RainMethod::Offered(RainSettings { model, most_drops, ..RainSettings::default() });
+    let drops = |n| offered(RainModel::Drops, Some(n));
+    let source = |seeds, copies| RainMethod::Source(SourceLod { seeds, copies, ..SourceLod::default() });
+    let named = [
+        ("veil", offered(RainModel::Veil, None)),
+        ("cones", offered(RainModel::Cones, None)),
+        ("drops-12k", drops(12_000)),
+        ("drops-50k", drops(50_000)),
+        ("drops-100k", drops(100_000)),
+        ("drops-400k", drops(400_000)),
+        ("drops", offered(RainModel::Automatic, None)),
+        ("source-20k", source(20_000, 0)),
+        ("source-140k", source(140_000, 0)),
+        ("source-replicated-140k", source(20_000, 6)),
+    ];
+    let candidate = |(name, method): (&'static str, RainMethod)| Candidate {
+        effect: Effect::Rain,
+        name,
+        method: Method::Rain(method),
+        work: method.work(),
+        offered: matches!(method, RainMethod::Offered(_)),
+    };
+    named.into_iter().map(candidate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Price;
+
+    #[test]
+    fn cones_cost_no_more_for_more_rain_and_drops_cost_by_their_number() {
+        let all = candidates();
+        let cost = |name: &str| {
+            let c = all.iter().find(|c| c.name == name).unwrap();
+            c.work.frame(640 * 360, true).at(&Price::default())
+        };
+        assert!(cost("veil") < cost("cones"));
+        assert!(cost("drops-12k") < cost("drops-50k") && cost("drops-50k") < cost("drops-400k"));
+        assert_eq!(cost("source-140k"), cost("source-replicated-140k"));
+        for c in &all {
+            if let Method::Rain(RainMethod::Offered(s)) = c.method {
+                s.validate().unwrap();
+            }
+        }
+    }
+}
