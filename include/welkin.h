@@ -247,6 +247,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_WIND 40
 /** wk_rainfall */
 #define WK_STRUCT_TYPE_RAINFALL 41
+/** wk_rain_area */
+#define WK_STRUCT_TYPE_RAIN_AREA 42
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3826,6 +3828,124 @@ WK_API wk_status wk_rain_init(wk_rain *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_shelter_init(wk_shelter *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Rain areas
+ *
+ * Regions with rain of their own: a shower that passes, a squall line, a dry hole in steady rain. In a region the weather's
+ * rain and drizzle give way to the area's, smoothly over the rim inside of its border; where areas overlap, a later one of
+ * the list lies over the earlier ones. A camera inside sees the drops of the rate where each of them is; from outside the rain
+ * is a shaft with falling curtains, leaning as the drops fall behind their cloud. All queries of rain and visibility and
+ * the wetness of the ground that follows the weather of the moment know the areas. They are kept by wk_context_save.
+ * ====================================================================================================
+ */
+
+/** What falls in a rain area. */
+typedef uint32_t wk_area_rain;
+
+/** Steady rain. */
+#define WK_AREA_RAIN_STEADY 0
+/** Showers: fewer and larger drops. */
+#define WK_AREA_RAIN_SHOWERS 1
+/** Drizzle. */
+#define WK_AREA_RAIN_DRIZZLE 2
+
+/** What moves a rain area. */
+typedef uint32_t wk_area_motion;
+
+/** The wind at 10 m with its gusts, by its displacement. */
+#define WK_AREA_MOTION_WITH_WIND 0
+/** A velocity of its own. */
+#define WK_AREA_MOTION_OWN 1
+
+/** A region with rain of its own. */
+typedef struct wk_rain_area {
+    /** sizeof(wk_rain_area) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_RAIN_AREA. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height does not matter. Default
+     * 0, 0, 0.
+     */
+    double center_m[3];
+    /**
+     * Half the extent of an ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+     */
+    double semi_axes_m[2];
+    /**
+     * Corners of a polygon in place of the ellipse, one after the other either way round, two numbers each: to the right of the
+     * heading and along it from the centre, m, within 1e6. The region must be convex and larger than 1 m^2. Default 0.
+     */
+    double corners_m[16];
+    /** Corners of the polygon, [3, 8], or 0, the default, for the ellipse. */
+    uint32_t corner_count;
+    /** Default WK_AREA_RAIN_STEADY. */
+    wk_area_rain rain;
+    /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double heading_deg;
+    /**
+     * Width inside of the border over which the rain fades, m. Range [1, 1e6], of an ellipse at most the smaller half extent.
+     * Default 500.
+     */
+    double rim_m;
+    /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
+    double rate_mm_h;
+    /** Altitude above the sea of the cloud base that it falls from, m. Range [-1000, 20 000], default 1500. */
+    double top_m;
+    /** Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN. */
+    double velocity_m_s[2];
+    /**
+     * Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
+     * timeline knows. Default 0.
+     */
+    double at_s;
+    /** Default WK_AREA_MOTION_WITH_WIND. */
+    wk_area_motion motion;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_rain_area;
+
+/** Every field of `wk_rain_area` at its default. */
+#define WK_RAIN_AREA_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_rain_area), \
+    /* struct_type */ WK_STRUCT_TYPE_RAIN_AREA, \
+    /* next */ NULL, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* semi_axes_m */ { 2000.0, 2000.0 }, \
+    /* corners_m */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }, \
+    /* corner_count */ 0, \
+    /* rain */ WK_AREA_RAIN_STEADY, \
+    /* heading_deg */ 0.0, \
+    /* rim_m */ 500.0, \
+    /* rate_mm_h */ 10.0, \
+    /* top_m */ 1500.0, \
+    /* velocity_m_s */ { 0.0, 0.0 }, \
+    /* at_s */ 0.0, \
+    /* motion */ WK_AREA_MOTION_WITH_WIND, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Sets the regions with rain of their own, in place of those before. They go on moving by themselves: set them again only to
+ * change them. count 0 removes all. At most 16. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+ */
+WK_API
+wk_status wk_context_set_rain_areas(wk_context *context,
+                                    const wk_rain_area *areas,
+                                    uint32_t count,
+                                    uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_RAIN_AREA_INIT`. `struct_size` is `sizeof(wk_rain_area)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

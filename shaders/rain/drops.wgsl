@@ -4,6 +4,11 @@
 //!include "common/light.wgsl"
 //!include "rain/hash.wgsl"
 //!include "rain/shelter.wgsl"
+//!include "rain/phase.wgsl"
+//!include "rain/local.wgsl"
+
+// Whether the rim of a rain area is near.
+override AREAS: bool = false;
 
 // Classes of diameter; shells of the lattice.
 const CLASSES: u32 = 32u;
@@ -90,11 +95,11 @@ fn drop_of(instance: u32) -> Drop {
     let size = rain.classes[k];
     let place = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
     let fallen = u32(size.y) * rain.cell[s].w;
-    return drop_at(s, k, place - vec3u(0u, 0u, fallen) - rain.cell[s].xyz);
+    return drop_at(s, k, index - first, place - vec3u(0u, 0u, fallen) - rain.cell[s].xyz);
 }
 
-// A drop of shell `s` and class `k`, `away_units` from the camera in 2^-32 of the cell's side.
-fn drop_at(s: u32, k: u32, away_units: vec3u) -> Drop {
+// The drop `number` of shell `s` and class `k`, `away_units` from the camera in 2^-32 of the cell's side.
+fn drop_at(s: u32, k: u32, number: u32, away_units: vec3u) -> Drop {
     let size = rain.classes[k];
     let away = bitcast<vec3i>(away_units);
     let shell = rain.shell[s];
@@ -103,19 +108,12 @@ fn drop_at(s: u32, k: u32, away_units: vec3u) -> Drop {
     let last = s + 1u == SHELLS;
     let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
     let inner = select(smoothstep(shell.y, 0.25 * shell.x, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
-    return Drop(p, size.x, size.y * SPEED_UNIT, inner * outer, rain.weight * f32(1u << (3u * s)));
-}
-
-// Henyey-Greenstein, normalised to 4 pi.
-fn henyey(g: f32, c: f32) -> f32 {
-    let b = 1.0 + g * g - 2.0 * g * c;
-    return (1.0 - g * g) / (b * sqrt(b));
-}
-
-// What a drop scatters of light that comes from where `c` = 1 is straight behind it: rays through the sphere, and the
-// backward share that makes rainbows (geometric optics of water, asymmetry .88 of what is not diffracted).
-fn drop_phase(c: f32) -> f32 {
-    return 0.93 * henyey(0.9, c) + 0.07 * henyey(-0.35, c);
+    var here = vec2f(1e9, rain.weight);
+    if AREAS {
+        here = local_drops(k, p);
+    }
+    let share = select(0.0, inner * outer, f32(number) < here.x);
+    return Drop(p, size.x, size.y * SPEED_UNIT, share, here.y * f32(1u << (3u * s)));
 }
 
 // Radiance of a drop at `p` seen along `d`: it shows, small and upside down, most of the half space behind it, and what

@@ -55,7 +55,11 @@ fn landing_of(instance: u32) -> Landing {
     let value = vec3f(chance >> vec3u(8u)) / 16777216.0;
     let xy = (vec2f(cell - splash.cell) + value.xy) * splash.side - splash.place;
     let fade = 1.0 - smoothstep(0.6 * splash.reach, splash.reach, length(xy));
-    return Landing(xy, fract(time), select(0.0, fade, value.z < splash.share));
+    var share = splash.share;
+    if AREAS {
+        share *= local_splashes(vec3f(xy, splash.ground));
+    }
+    return Landing(xy, fract(time), select(0.0, fade, value.z < share));
 }
 
 // Where in the picture a camera-relative point is: ndc, and 1 if it is in it.

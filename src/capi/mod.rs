@@ -51,6 +51,8 @@ pub mod plan;
 
 pub mod rain;
 
+pub mod area;
+
 pub mod light;
 
 pub mod windscreen;

@@ -130,6 +130,8 @@ pub const WK_STRUCT_TYPE_GROUND: wk_struct_type = 38;
 pub const WK_STRUCT_TYPE_WIND: wk_struct_type = 40;
 /// wk_rainfall
 pub const WK_STRUCT_TYPE_RAINFALL: wk_struct_type = 41;
+/// wk_rain_area
+pub const WK_STRUCT_TYPE_RAIN_AREA: wk_struct_type = 42;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -146,6 +146,22 @@ impl Context {
         }
     }
 
+    /// As [`Context::ground_cover`] at a place: in a rain area no drier than its rain of the moment keeps the ground.
+    pub(crate) fn ground_cover_at(&self, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
+        let cover = self.ground_cover(reported);
+        let weather = self.timeline.at(self.time_s);
+        let here = self.with_areas(position, self.time_s, weather).precipitation;
+        if here == weather.precipitation {
+            return cover;
+        }
+        let kept = crate::weather::cover_under_rain(&here, weather.air.relative_humidity);
+        SurfaceCover {
+            wetness: cover.wetness.max(kept.0 * (1.0 - cover.ice)),
+            puddles: cover.puddles.max(kept.1 * (1.0 - cover.ice)),
+            ..cover
+        }
+    }
+
     /// Water on the ground at `position`, now: by the hollows that are drawn, wherever the host's own ground has its own.
     ///
     /// # Errors
@@ -153,8 +169,14 @@ impl Context {
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
         let frame = self.desc.world.frame_at(position);
         frame.place.validate()?;
-        let cover = self.ground_cover(self.timeline.at(self.time_s).surface);
-        let water = self.ground_water().unwrap_or_else(|| GroundWater::of_cover(&cover));
+        let reported = self.timeline.at(self.time_s).surface;
+        let cover = self.ground_cover_at(position, reported);
+        let kept = GroundWater::of_cover(&cover);
+        let water = match self.ground_water() {
+            Some(state) if cover == self.ground_cover(reported) => state,
+            Some(state) => state.max(&kept),
+            None => kept,
+        };
         let at = DVec2::from(crate::ground::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
         let water_mm = depth_at_mm(&water, self.hollows.depth(at));
         Ok(GroundAt {

@@ -4,6 +4,7 @@
 //! answer alike on every machine. The queries need no device and no frame.
 
 mod air;
+mod areas;
 mod fog;
 mod ground;
 mod lights;
@@ -126,6 +127,7 @@ pub struct Context {
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
     shelters: Vec<Shelter>,
+    areas: Vec<areas::KeptArea>,
     lights: Vec<HostLight>,
     time_s: f64,
     ephemeris: Ephemeris,
@@ -160,6 +162,7 @@ impl Context {
             given_moon: None,
             fog_law: None,
             shelters: Vec::new(),
+            areas: Vec::new(),
             lights: Vec::new(),
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
@@ -347,6 +350,7 @@ impl Context {
             return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
         }
         let keep_s = self.step_ground(time_s)?;
+        self.keep_carried(time_s)?;
         self.time_s = time_s;
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
         self.timeline.advance_keeping(time_s, keep_s);

@@ -46,7 +46,8 @@ impl Context {
         Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
     }
 
-    /// What air, fog, rain and snow between `from` and `to` leave of the light at simulation time `time_s`.
+    /// What air, fog, rain and snow between `from` and `to` leave of the light at simulation time `time_s`, rain areas on the mean
+    /// over their curtains.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
@@ -72,6 +73,8 @@ impl Context {
             let fog = transmittance_between(&layer, &view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
+        let areas = (-self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
+        through = through.map(|t| (t * areas).min(1.0));
         let mean = -through[1].max(f64::MIN_POSITIVE).ln() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }

@@ -2,13 +2,10 @@
 
 use glam::DVec3;
 
-use super::{Context, fog::falling_top_m};
+use super::Context;
 use crate::{
     error::{Error, Result, check_range},
-    rain::{
-        drops::factor_in,
-        sizes::{DropSizes, SMALLEST_MM, Weight},
-    },
+    rain::sizes::{DropSizes, SMALLEST_MM, Weight},
 };
 
 /// Rain and drizzle at a place.
@@ -70,17 +67,12 @@ impl RainSurface {
 
 impl Context {
     /// The drops in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the cloud that
-    /// it falls from there is no rain.
+    /// it falls from there is no rain. In rain areas ([`Context::set_rain_areas`]) it is theirs, mixed by their rims.
     fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, DVec3)> {
         let place = self.desc.world.frame_at(position).place;
         place.validate()?;
         let c = self.weather_at(time_s)?;
-        let mut falling = c.precipitation;
-        if place.altitude_m > falling_top_m(&c) {
-            (falling.rain_mm_h, falling.drizzle_mm_h) = (0.0, 0.0);
-        }
-        let sizes = DropSizes::new(&falling, factor_in(&c.air, place.altitude_m));
-        Ok((sizes, self.carrying_wind(time_s)?))
+        Ok((self.sizes_at(position, time_s, &c)?, self.carrying_wind(time_s)?))
     }
 
     /// Rain and drizzle at `position` and simulation time `time_s`.

@@ -3,9 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Context, GivenDirection, GroundModel, ground::GroundState};
+use super::{Context, GivenDirection, GroundModel, areas::KeptArea, ground::GroundState};
 use crate::{
     error::{Error, Result, Status, check_range},
+    rain::MAX_AREAS,
     sky::sun::Utc,
     weather::Timeline,
     wind::Drift,
@@ -29,6 +30,8 @@ struct Saved {
     drifted: Option<[f64; 4]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ground: Option<GroundState>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    areas: Vec<KeptArea>,
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten. States written before there was a drift begin there
@@ -61,6 +64,7 @@ impl Context {
                 [drifted.time_s, drifted.path_m, d.x, d.y]
             }),
             ground: self.ground,
+            areas: self.areas.clone(),
         };
         toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
     }
@@ -111,10 +115,14 @@ impl Context {
         if saved.ground.is_some_and(|g| !g.is_valid()) {
             return Err(parse(&"ground must have finite amounts of water from 0 on"));
         }
+        if saved.areas.len() > MAX_AREAS || !saved.areas.iter().all(KeptArea::is_valid) {
+            return Err(parse(&"areas must be as they can be set"));
+        }
         let timeline = Timeline::load(&saved.timeline)?;
         let drifted = drifted_from(saved.drifted, &timeline).map_err(|e| parse(&e))?;
         (self.timeline, self.drifted) = (timeline, drifted);
         self.ground = saved.ground;
+        self.areas = saved.areas;
         (self.given_sun, self.given_moon) = (sun, moon);
         self.time_s = saved.time_s;
         self.desc.utc_at_zero = Utc(saved.utc_at_zero);

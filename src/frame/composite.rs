@@ -42,6 +42,12 @@ impl Variant {
         Self { air: air > 0.0, sky: sky > 0.0, fog: self.fog.filter(|_| fog > 0.0), ..self }
     }
 
+    /// Those of [`Variant::constants`] that shaders of the veil alone have.
+    pub fn veil_constants(&self) -> [(&'static str, f64); 9] {
+        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, f0, f1, f2, f3, f4] = self.constants();
+        [march, fog, kinds, air, f0, f1, f2, f3, f4]
+    }
+
     /// Values of the shader's `override` constants.
     pub fn constants(&self) -> [(&'static str, f64); 17] {
         let yes = |b: bool| f64::from(u8::from(b));

@@ -80,7 +80,7 @@ impl View {
             camera: &frame.camera,
             up: scene.world_to_enu.transpose().z_axis,
             altitude_m: scene.place.altitude_m,
-            weather: &|t| context.known_weather(t),
+            weather: &|t| context.with_areas(frame.camera.position, t, context.known_weather(t)),
             cut: frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0)),
         };
         let (device, encoder) = (&self.device, &mut *to.encoder);

@@ -3,6 +3,7 @@
 //! A host hands over a [`Frame`] (camera, colour, depth) and a set of [`Stages`]; a [`View`] records them. All stages
 //! that neighbour each other in one call are fused into one full-screen draw.
 
+mod areas;
 mod composite;
 mod froxels;
 mod lens;

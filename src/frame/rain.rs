@@ -4,17 +4,22 @@ use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DMat4, DVec3};
 
-use super::Frame;
+use super::{
+    Frame, Shared,
+    areas::{AreaPass, Columns},
+};
 use crate::{
     context::{Context, Scene},
     error::Result,
     gpu::Device,
     rain::{
-        Air, Classes, ConeUniform, Drawn, DropLight, RainLayer, RainModel, RainSettings, RainUniform, Shelter, Shot,
-        Splashes, drops,
+        Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
+        RainSettings, RainUniform, Shelter, Shot, Splashes, drops,
         lattice::{FADE, REACH_M, SHELLS},
+        pattern,
     },
     scene::{LightUniform, ViewRays},
+    sky::SkyVolume,
     weather::Falling,
 };
 
@@ -22,21 +27,57 @@ use crate::{
 pub(super) struct Rain {
     layer: RainLayer,
     pub settings: RainSettings,
-    /// Drops a class, and what they were counted for.
-    counted: Option<(Falling, f64, u32, Classes)>,
+    /// Drops a class of each rain of late, and what they were counted for.
+    counted: Vec<(Falling, f64, u32, Classes)>,
+    /// Columns of rain areas about the camera, and what they let fall round it.
+    field: AreaField,
+    local: Option<Local>,
+    areas: Option<Box<AreaPass>>,
     boxes: Vec<[[f32; 4]; 4]>,
     lights: Vec<LightUniform>,
 }
 
+/// Rains whose drops are kept counted: more than the weather's and all areas'.
+const COUNTED: usize = 32;
+
+/// What is drawn into: the frame's work, the frame, and its colour.
+pub(super) type To<'a, 'b> = (&'a mut wgpu::CommandEncoder, &'a Frame<'b>, &'a wgpu::Texture);
+
 impl Rain {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
-        Self { layer: RainLayer::new(device), settings, counted: None, boxes: Vec::new(), lights: Vec::new() }
+        Self {
+            layer: RainLayer::new(device),
+            settings,
+            counted: Vec::new(),
+            field: AreaField::empty(),
+            local: None,
+            areas: None,
+            boxes: Vec::new(),
+            lights: Vec::new(),
+        }
     }
 
-    /// Whether anything falls that is drawn before the picture.
-    pub fn shows(&self, scene: &Scene) -> bool {
-        let f = &scene.conditions.precipitation;
-        f.rain_mm_h + f.drizzle_mm_h > 0.0 && self.settings.model != RainModel::Veil
+    /// Looks what there is for a camera in a scene: what falls round it, and columns further off.
+    pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) -> Result<()> {
+        let falling = &scene.conditions.precipitation;
+        let at = (eye, &scene.world_to_enu, scene.place.altitude_m);
+        self.field.columns.clear();
+        if context.rain_areas().len() > 0 {
+            let shafts = context.shafts_at(context.time_s(), &scene.conditions)?;
+            self.field.set(shafts, at, &context.own_rain(&scene.conditions), context.time_s());
+        }
+        self.local = Some(Local::new(falling, &self.field, at));
+        Ok(())
+    }
+
+    /// Whether drops or cones fall near the camera.
+    fn falls_here(&self) -> bool {
+        self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
+    }
+
+    /// Whether anything is drawn before the picture.
+    pub fn shows(&self) -> bool {
+        self.falls_here() || !self.field.columns.is_empty()
     }
 
     /// Bytes of GPU memory held.
@@ -49,23 +90,84 @@ impl Rain {
         self.layer.view(device, color.size())
     }
 
-    /// What drops or cones hide, as an extinction (their discs: half of theirs, the rest is diffraction), and the distance up
-    /// to which they do.
+    /// What drops or cones of the weather's own rain hide, as an extinction (their discs: half of theirs, the rest is
+    /// diffraction), and the distance up to which they do.
     pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
-        [0.5 * self.classes(device, scene).extinction_per_m, 0.5 * (1.0 + FADE) * REACH_M].map(|v| v as f32)
+        let falling = scene.conditions.precipitation;
+        [self.near(device, scene, &falling), 0.5 * (1.0 + FADE) * REACH_M].map(|v| v as f32)
     }
 
-    fn classes(&mut self, device: &Device, scene: &Scene) -> Classes {
+    /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
+    fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
+        match self.settings.model {
+            RainModel::Veil => 0.0,
+            _ => 0.5 * self.classes(device, scene, falling).extinction_per_m,
+        }
+    }
+
+    fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
         let most = self.settings.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 });
         let station = &scene.conditions.air;
         let factor = drops::factor_in(station, station.station_altitude_m);
-        let falling = &scene.conditions.precipitation;
-        match &self.counted {
-            Some((f, x, m, classes)) if f == falling && *x == factor && *m == most => *classes,
-            _ => {
-                let classes = Classes::new(falling, factor, most);
-                self.counted = Some((*falling, factor, most, classes));
-                classes
+        let same = |c: &&(Falling, f64, u32, Classes)| c.0 == *falling && c.1 == factor && c.2 == most;
+        if let Some((.., classes)) = self.counted.iter().find(same) {
+            return *classes;
+        }
+        if self.counted.len() == COUNTED {
+            self.counted.clear();
+        }
+        let classes = Classes::new(falling, factor, most);
+        self.counted.reserve_exact(COUNTED - self.counted.len());
+        self.counted.push((*falling, factor, most, classes));
+        classes
+    }
+
+    /// Draws the columns of rain areas into the layer; whether there are any.
+    pub fn draw_areas(
+        &mut self,
+        (device, shared): (&Arc<Device>, &Shared),
+        (encoder, frame, color): To<'_, '_>,
+        (context, scene): (&Context, &Scene),
+        (blocks, sky): ([&wgpu::Buffer; 2], &SkyVolume),
+        constants: &[(&'static str, f64)],
+    ) -> Result<bool> {
+        if self.field.columns.is_empty() {
+            return Ok(false);
+        }
+        let falling = scene.conditions.precipitation;
+        self.field.own_near = self.near(device, scene, &falling);
+        for i in 0..self.field.columns.len() {
+            let shaft = *self.field.columns[i].shaft();
+            let near = self.near(device, scene, &shaft.falling);
+            self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
+        }
+        self.field.waves = pattern(context.seed() as u32);
+        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
+        let columns = Columns { field: &self.field, scene, clip: frame.camera.projection * view, constants };
+        let target = self.layer.view(device, color.size());
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
+        pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth), target)?;
+        Ok(true)
+    }
+
+    /// The drops of what falls round the camera, and how many fall where if that differs.
+    fn falling_here(&mut self, device: &Device, scene: &Scene) -> (Classes, Option<LocalUniform>) {
+        let weather = scene.conditions.precipitation;
+        match self.local.unwrap_or(Local::Pure(weather)) {
+            Local::Pure(falling) => (self.classes(device, scene, &falling), None),
+            Local::Mixed(falling, bits) => {
+                let base = self.classes(device, scene, &falling);
+                let mut near = [None; crate::rain::MAX_AREAS];
+                for (i, to) in near.iter_mut().enumerate().take(self.field.columns.len()) {
+                    let column = self.field.columns[i];
+                    let begun = column.shaft().begun(scene.place.altitude_m);
+                    if bits & (1 << i) != 0 {
+                        *to = Some((column.uniform(), begun, self.classes(device, scene, &column.shaft().falling)));
+                    }
+                }
+                let columns = near.iter().flatten().map(|(column, begun, classes)| (*column, *begun, classes));
+                let (block, envelope) = LocalUniform::new(&base, columns);
+                (envelope, Some(block))
             }
         }
     }
@@ -74,13 +176,21 @@ impl Rain {
     pub fn draw(
         &mut self,
         device: &Arc<Device>,
-        encoder: &mut wgpu::CommandEncoder,
+        (encoder, frame, color): To<'_, '_>,
         (context, scene, rays): (&Context, &Scene, &ViewRays),
-        frame: &Frame<'_>,
-        color: &wgpu::Texture,
-        exposure: f64,
+        (exposure, over): (f64, bool),
     ) -> Result<u32> {
-        let classes = self.classes(device, scene);
+        if !self.falls_here() {
+            return Ok(0);
+        }
+        let on_cones = self.settings.model == RainModel::Cones;
+        let (classes, local) = if on_cones {
+            // They have the rain of the camera's place all round.
+            let here = context.with_areas(frame.camera.position, context.time_s(), scene.conditions);
+            (self.classes(device, scene, &here.precipitation), None)
+        } else {
+            self.falling_here(device, scene)
+        };
         let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
         let enu = |v: DVec3| scene.world_to_enu * v;
         let shot = Shot {
@@ -110,7 +220,6 @@ impl Rain {
         self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
         self.lights.clear();
         self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
-        let on_cones = self.settings.model == RainModel::Cones;
         let cones = on_cones
             .then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &|from, to| context.carried(from, to)));
         let drawn = Drawn {
@@ -120,6 +229,8 @@ impl Rain {
             lights: &self.lights,
             splash: &splashes.uniform(shot.position_m, height_m, air.time_s),
             splashes: splashes.instances(),
+            local: local.as_ref(),
+            over,
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
         Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 })
@@ -127,7 +238,7 @@ impl Rain {
 }
 
 /// What a drop passes on: the mean of the sky and of the ground it hangs over, and sun or moon.
-fn light(scene: &Scene, exposure: f64) -> DropLight {
+pub(super) fn light(scene: &Scene, exposure: f64) -> DropLight {
     let light = scene.brighter();
     let g = &scene.ground;
     let lux = if light == &scene.sun { g.sun_lux } else { g.moon_lux };

@@ -13,7 +13,7 @@ const MOST_UNITS: f64 = 6e4;
 
 /// Whether there is any water to draw on surfaces.
 pub(super) fn is_wet(frame: &Frame<'_>, context: &Context, scene: &Scene) -> bool {
-    let cover = context.ground_cover(scene.conditions.surface);
+    let cover = context.ground_cover_at(frame.camera.position, scene.conditions.surface);
     frame.depth.is_some() && (cover.wetness > 0.0 || cover.puddles > 0.0)
 }
 
@@ -40,7 +40,11 @@ pub(super) fn uniform(
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
     let seen = Seen {
         scene,
-        cover: &context.ground_cover(scene.conditions.surface),
+        cover: &context.ground_cover_at(frame.camera.position, scene.conditions.surface),
+        rain_mm_h: context
+            .with_areas(frame.camera.position, context.time_s(), scene.conditions)
+            .precipitation
+            .rain_mm_h,
         hollows: context.hollows(),
         position: frame.camera.position,
         time_s: context.time_s(),

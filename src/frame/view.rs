@@ -206,7 +206,8 @@ impl View {
         let scene = context.scene_at(frame.camera.position, context.time_s())?;
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
-        let stages = if self.rain.shows(&scene) { stages } else { stages.without(Stages::PARTICLES) };
+        self.rain.look(context, &scene, frame.camera.position)?;
+        let stages = if self.rain.shows() { stages } else { stages.without(Stages::PARTICLES) };
         let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
         let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
         let drawn = stages.without(Stages::PREPARE) != Stages(0);
@@ -335,7 +336,7 @@ impl View {
         if variant.stages == Stages(0) {
             return Ok(());
         }
-        let drops = self.rain.shows(scene).then(|| self.rain.layer(&self.device, color).clone());
+        let drops = self.rain.shows().then(|| self.rain.layer(&self.device, color).clone());
         self.bind(frame, color, drops)?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
@@ -357,7 +358,7 @@ impl View {
         }
         let drawn = self.planner.drawn();
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
-        if self.rain.shows(scene) {
+        if self.rain.shows() {
             block.drops = self.rain.hidden(&self.device, scene);
         }
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
@@ -365,9 +366,13 @@ impl View {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
         }
         if variant.stages.has(Stages::PARTICLES) {
+            let (shared, blocks) = ((&self.device, &*self.shared), [&self.uniform, &self.fog]);
+            let constants = variant.reduced(drawn).veil_constants();
+            let layer = (&mut *to.encoder, frame, color);
+            let over = self.rain.draw_areas(shared, layer, (context, scene), (blocks, &self.sky), &constants)?;
             let at = (context, scene, rays);
-            self.report.drops = self.rain.draw(&self.device, to.encoder, at, frame, color, exposure)?;
-            self.report.passes += 1;
+            self.report.drops = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, (exposure, over))?;
+            self.report.passes += 1 + u32::from(over);
         }
         if variant.stages.has(Stages::SURFACE) {
             let block = surface::uniform(frame, color, context, scene, &fog);

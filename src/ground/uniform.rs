@@ -63,6 +63,8 @@ pub(crate) struct GroundUniform {
 pub(crate) struct Seen<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
+    /// Rain on it, mm/h.
+    pub rain_mm_h: f64,
     pub hollows: &'a Hollows,
     /// Of the camera in the host's world, m.
     pub position: DVec3,
@@ -93,7 +95,7 @@ fn level_of(covered: f64) -> f32 {
 impl Seen<'_> {
     pub fn uniform(&self) -> GroundUniform {
         let (scene, cover) = (self.scene, self.cover);
-        let rain = scene.conditions.precipitation.rain_mm_h;
+        let rain = self.rain_mm_h;
         let lamp = scene.brighter();
         let lamp_lux = if std::ptr::eq(lamp, &scene.sun) { scene.ground.sun_lux } else { scene.ground.moon_lux };
         let film = smooth(0.3, 1.0, cover.wetness);

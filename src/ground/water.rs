@@ -116,6 +116,15 @@ impl GroundWater {
         }
     }
 
+    /// Of each the more of two.
+    pub(crate) fn max(&self, other: &Self) -> Self {
+        Self {
+            film_mm: self.film_mm.max(other.film_mm),
+            soaked_mm: self.soaked_mm.max(other.soaked_mm),
+            hollows_mm: self.hollows_mm.max(other.hollows_mm),
+        }
+    }
+
     /// All of it, mm.
     pub fn total_mm(&self) -> f64 {
         self.film_mm + self.soaked_mm + self.hollows_mm

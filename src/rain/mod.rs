@@ -3,27 +3,37 @@
 //! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many. [`lattice`] has the places: a repeated cell of air full of drops that a camera
 //! sees the nearest copy of, with no state and no update. One quad draws a drop's streak, as faint as the drop's disc is
 //! small against the way it falls during the exposure; streaks make a layer of their own, which the composition puts before
-//! the picture. What is too small or too far for a drop is the fog's extinction.
+//! the picture. What is too small or too far for a drop is the fog's extinction; under a rain area of its own ([`RainArea`]) it is
+//! a column of rain, whose drops fall thinned by the area's rim near the camera and as a veil beyond.
 
+mod area;
 pub mod candidates;
 mod cone_pass;
 pub mod cones;
+mod curtain;
 pub mod drops;
 pub mod lattice;
+mod local;
 mod passes;
 pub mod probe;
 mod settings;
+mod shaft;
 pub mod shelter;
 pub mod sizes;
 pub mod source;
 mod splash;
 mod uniforms;
 
+pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
 pub use settings::{RainModel, RainSettings};
 pub use shelter::{MAX_SHELTERS, Shelter};
 
+pub(crate) use area::Shaft;
 pub(crate) use cones::ConeUniform;
+pub(crate) use curtain::{WAVES, pattern};
+pub(crate) use local::{Local, LocalUniform};
 pub(crate) use passes::{Drawn, RainLayer};
+pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform, OwnRain};
 pub(crate) use splash::Splashes;
 pub use uniforms::Classes;
 pub(crate) use uniforms::{Air, DropLight, RainUniform, Shot};

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    cone_pass::ConePass, cones::ConeUniform, lattice::SHELLS, shelter::MAX_SHELTERS, splash::SplashUniform,
-    uniforms::RainUniform,
+    LocalUniform, cone_pass::ConePass, cones::ConeUniform, lattice::SHELLS, shelter::MAX_SHELTERS,
+    splash::SplashUniform, uniforms::RainUniform,
 };
 use crate::{
     error::Result,
@@ -22,8 +22,8 @@ pub(crate) struct RainLayer {
     staged: Vec<u8>,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
-    /// Of drops and of splashes, for each kind of depth.
-    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 4],
+    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near.
+    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
     cones: Option<ConePass>,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
@@ -42,6 +42,10 @@ pub(crate) struct Drawn<'a> {
     /// Splashes, and how many slots of them there are.
     pub splash: &'a SplashUniform,
     pub splashes: u32,
+    /// How many drops fall where, if a rim of a rain area is near.
+    pub local: Option<&'a LocalUniform>,
+    /// Whether something lies in the layer already, before which the drops come.
+    pub over: bool,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -73,6 +77,8 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             uniform(2, SHELTER_BYTES),
             uniform(3, size_of::<SplashUniform>()),
             uniform(4, LIGHT_BYTES),
+            uniform(7, COLUMNS_BYTES),
+            uniform(8, size_of::<LocalUniform>() - COLUMNS_BYTES),
         ],
     })
 }
@@ -81,12 +87,16 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
 /// Likewise.
 const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
-/// Where each block begins: rain, splashes, shelters, lights; and the end.
-const STARTS: [usize; 5] = {
+/// The columns of [`LocalUniform`], which are a block of their own.
+const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
+/// Where each block begins: rain, splashes, shelters, lights, columns of areas, drops of areas; and the end.
+const STARTS: [usize; 7] = {
     let splash = size_of::<RainUniform>().next_multiple_of(256);
     let shelters = splash + size_of::<SplashUniform>().next_multiple_of(256);
     let lights = shelters + SHELTER_BYTES.next_multiple_of(256);
-    [0, splash, shelters, lights, lights + LIGHT_BYTES.next_multiple_of(256)]
+    let columns = lights + LIGHT_BYTES.next_multiple_of(256);
+    let local = columns + COLUMNS_BYTES.next_multiple_of(256);
+    [0, splash, shelters, lights, columns, local, local + size_of::<LocalUniform>() - COLUMNS_BYTES]
 };
 
 impl RainLayer {
@@ -94,13 +104,13 @@ impl RainLayer {
         Self {
             blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain"),
-                size: STARTS[4] as u64,
+                size: STARTS[6] as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            staged: vec![0; STARTS[4]],
+            staged: vec![0; STARTS[6]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            pipelines: [const { [None, None] }; 4],
+            pipelines: [const { [None, None] }; 8],
             cones: None,
             none: None,
             texture: None,
@@ -156,19 +166,20 @@ impl RainLayer {
         self.bind(device, depth, multi);
         self.view(device, color.size());
         let kind = (multi, depth.is_some());
-        let key = usize::from(multi) * 2 + usize::from(depth.is_some());
+        let areas = drawn.local.is_some();
+        let key = usize::from(areas) * 4 + usize::from(multi) * 2 + usize::from(depth.is_some());
         let layout = &self.layouts[usize::from(multi)];
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, layout, kind)?;
-            self.draw_into(encoder, |pass, layer| layer.cones.iter().for_each(|c| c.draw(pass, kind)));
+            self.draw_into(encoder, drawn.over, |pass, layer| layer.cones.iter().for_each(|c| c.draw(pass, kind)));
             return Ok(());
         }
         for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
             if slot.is_none() {
-                *slot = Some(pipeline(device, layout, vertex, multi, depth.is_some())?);
+                *slot = Some(pipeline(device, layout, vertex, multi, [depth.is_some(), areas])?);
             }
         }
-        self.draw_into(encoder, |pass, layer| {
+        self.draw_into(encoder, drawn.over, |pass, layer| {
             let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
             pass.set_pipeline(falling);
             pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
@@ -180,8 +191,13 @@ impl RainLayer {
         Ok(())
     }
 
-    /// Clears the layer and draws into it.
-    fn draw_into(&self, encoder: &mut wgpu::CommandEncoder, draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self)) {
+    /// Draws into the layer, over what is there or a clear one.
+    fn draw_into(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        over: bool,
+        draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self),
+    ) {
         let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("drops"),
@@ -190,7 +206,7 @@ impl RainLayer {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    load: if over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) },
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -211,8 +227,14 @@ impl RainLayer {
         put(STARTS[2] + 16, bytemuck::cast_slice(boxes));
         put(STARTS[3], &(lights.len() as u32).to_ne_bytes());
         put(STARTS[3] + 16, bytemuck::cast_slice(lights));
-        // What lies behind the last lamp is not read.
-        let end = STARTS[3] + 16 + size_of_val(lights);
+        // What lies behind the last lamp is not read, if no rim of an area is near.
+        let mut end = STARTS[3] + 16 + size_of_val(lights);
+        if let Some(local) = drawn.local {
+            let (columns, counts) = bytemuck::bytes_of(local).split_at(COLUMNS_BYTES);
+            put(STARTS[4], columns);
+            put(STARTS[5], counts);
+            end = STARTS[6];
+        }
         device.queue.write_buffer(&self.blocks, 0, &self.staged[..end]);
     }
 
@@ -246,6 +268,8 @@ impl RainLayer {
                 block(2, STARTS[2], SHELTER_BYTES),
                 block(3, STARTS[1], size_of::<SplashUniform>()),
                 block(4, STARTS[3], LIGHT_BYTES),
+                block(7, STARTS[4], COLUMNS_BYTES),
+                block(8, STARTS[5], size_of::<LocalUniform>() - COLUMNS_BYTES),
             ],
         });
         self.bound = Some((depth.cloned(), multi, group));
@@ -272,7 +296,7 @@ fn pipeline(
     layout: &wgpu::BindGroupLayout,
     vertex: &str,
     multi: bool,
-    has_depth: bool,
+    [has_depth, areas]: [bool; 2],
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -281,13 +305,15 @@ fn pipeline(
         immediate_size: 0,
     });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    // Mixtures take each column by itself: what lies over what is in their order.
+    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0)];
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("drops"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some(vertex),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },

@@ -18,6 +18,8 @@ pub const SMALLEST_MM: f64 = 0.1;
 pub const LARGEST_MM: f64 = 6.0;
 /// Below this rate, mm/h, sizes stay and numbers alone go down.
 const LEAST_RATE_MM_H: f64 = 1e-6;
+/// Most distributions that lie over each other at a place: the weather's three and one of each area.
+const PARTS: usize = 3 + super::MAX_AREAS;
 /// Entries of [`DropSizes::diameter_table`].
 pub const TABLE_LEN: usize = 64;
 
@@ -37,7 +39,7 @@ struct Part {
 /// The drops in a cubic metre of rain and drizzle. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
-    parts: [Part; 3],
+    parts: [Part; PARTS],
     factor: f64,
 }
 
@@ -106,6 +108,11 @@ impl Part {
     }
 }
 
+fn filled(parts: [Part; 3]) -> [Part; PARTS] {
+    let none = Part { n0: 0.0, lambda: 1.0 };
+    std::array::from_fn(|i| parts.get(i).copied().unwrap_or(none))
+}
+
 impl DropSizes {
     /// Of rain and drizzle as they fall at the ground, where drops are `speed_factor` times as fast as at sea level
     /// ([`super::drops::altitude_factor`]). Showers have fewer and larger drops of the same water. The rate holds at every
@@ -120,13 +127,28 @@ impl DropSizes {
             let share = if whole[i] > 0.0 { rates[i] / whole[i] } else { 0.0 };
             Part { n0: whole_part.n0 * share, ..whole_part }
         };
-        Self { parts: [part(0), part(1), part(2)], factor: speed_factor }
+        Self { parts: filled([part(0), part(1), part(2)]), factor: speed_factor }
     }
 
     /// Of steady rain of a rate, mm/h.
     pub fn of_rain(rate_mm_h: f64, speed_factor: f64) -> Self {
         let part = |i, rate| Part::new(SLOPES_PER_MM[i], rate, speed_factor);
-        Self { parts: [part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)], factor: speed_factor }
+        Self { parts: filled([part(0, rate_mm_h), part(1, 0.0), part(2, 0.0)]), factor: speed_factor }
+    }
+
+    /// The mixture of which `share` is `over`, as far as that has `begun` to fall, and the rest these; both where drops are as
+    /// fast.
+    pub fn covered(mut self, over: &Self, share: f64, begun: f64) -> Self {
+        for part in &mut self.parts {
+            part.n0 *= 1.0 - share;
+        }
+        for part in over.parts.iter().filter(|p| p.n0 > 0.0) {
+            let part = Part { n0: part.n0 * share * begun, ..*part };
+            if let Some(free) = self.parts.iter_mut().find(|p| p.n0 <= 0.0) {
+                *free = part;
+            }
+        }
+        self
     }
 
     fn sum(&self, f: impl Fn(&Part) -> f64) -> f64 {

@@ -96,6 +96,12 @@ fn puddles_from_rain(liquid_mm_h: f64) -> f64 {
     excess / (excess + 20.0)
 }
 
+/// Wetness and share of puddles that rain and drizzle keep up.
+pub(crate) fn cover_under_rain(falling: &Falling, humidity: f64) -> (f64, f64) {
+    let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
+    (wetness_from_rain(liquid, humidity), puddles_from_rain(liquid))
+}
+
 /// The ground as observed, else as what falls on it keeps it. Rain that freezes makes ice instead of a film.
 pub(super) fn surface_cover(s: &Surface, air_c: f64, humidity: f64, falling: &Falling) -> SurfaceCover {
     let cover = |wetness, puddles, ice| SurfaceCover { wetness, puddles, ice, snow_depth_m: s.snow_depth_m };

@@ -5,8 +5,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, plan::*, query::*, rain::*,
-    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, plan::*, query::*,
+    rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -65,6 +65,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_lights", "context", false, |h| unsafe { wk_context_set_lights(h.cast(), null(), 0, 0) }),
         case("wk_context_get_ground", "context", false, |h| unsafe {
             wk_context_get_ground(h.cast(), null(), null_mut())
+        }),
+        case("wk_context_set_rain_areas", "context", false, |h| unsafe {
+            wk_context_set_rain_areas(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)

@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, opengl::*, plan::*, query::*,
-    rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
-    wind::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, opengl::*, plan::*,
+    query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    weather::*, wind::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -103,6 +103,9 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_shelter", "shelters[0]", true, move |p| unsafe {
             wk_context_set_shelters(context, p.cast(), 1, 1 << 24)
+        }),
+        case("wk_rain_area", "areas[0]", true, move |p| unsafe {
+            wk_context_set_rain_areas(context, p.cast(), 1, 1 << 24)
         }),
         case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),

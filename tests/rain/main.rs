@@ -1,5 +1,6 @@
 //! Rain as a host sees it: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
 
+mod areas;
 mod cones;
 mod drops;
 mod pictures;

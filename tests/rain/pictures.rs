@@ -11,7 +11,7 @@ use welkin::{
 use crate::scene::{Host, rain, upright};
 
 /// The host's own drawing: a road in a meadow and concrete, lit by what Welkin answers.
-fn paint(host: &Host) {
+pub fn paint(host: &Host) {
     let light = host.context.light_at(host.camera.position, host.context.time_s()).unwrap();
     let (sun, lux) = (light.sun.direction, light.arriving);
     host.draw(|p, n| {

@@ -1,0 +1,162 @@
+//! Rain areas
+//!
+//! Regions with rain of their own: a shower that passes, a squall line, a dry hole in steady rain. In a region the weather's
+//! rain and drizzle give way to the area's, smoothly over the rim inside of its border; where areas overlap, a later one of
+//! the list lies over the earlier ones. A camera inside sees the drops of the rate where each of them is; from outside the rain
+//! is a shaft with falling curtains, leaning as the drops fall behind their cloud. All queries of rain and visibility and
+//! the wetness of the ground that follows the weather of the moment know the areas. They are kept by wk_context_save.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input,
+    layout::{init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Status},
+    rain::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_area.rs"));
+
+/// What falls in a rain area.
+pub type wk_area_rain = u32;
+/// Steady rain.
+pub const WK_AREA_RAIN_STEADY: wk_area_rain = 0;
+/// Showers: fewer and larger drops.
+pub const WK_AREA_RAIN_SHOWERS: wk_area_rain = 1;
+/// Drizzle.
+pub const WK_AREA_RAIN_DRIZZLE: wk_area_rain = 2;
+
+/// What moves a rain area.
+pub type wk_area_motion = u32;
+/// The wind at 10 m with its gusts, by its displacement.
+pub const WK_AREA_MOTION_WITH_WIND: wk_area_motion = 0;
+/// A velocity of its own.
+pub const WK_AREA_MOTION_OWN: wk_area_motion = 1;
+
+/// A region with rain of its own.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_rain_area {
+    /// sizeof(wk_rain_area) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_RAIN_AREA.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height does not matter. Default
+    /// 0, 0, 0.
+    pub center_m: [f64; 3],
+    /// Half the extent of an ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+    pub semi_axes_m: [f64; 2],
+    /// Corners of a polygon in place of the ellipse, one after the other either way round, two numbers each: to the right of the
+    /// heading and along it from the centre, m, within 1e6. The region must be convex and larger than 1 m^2. Default 0.
+    pub corners_m: [f64; 16],
+    /// Corners of the polygon, [3, 8], or 0, the default, for the ellipse.
+    pub corner_count: u32,
+    /// Default WK_AREA_RAIN_STEADY.
+    pub rain: wk_area_rain,
+    /// Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0.
+    pub heading_deg: f64,
+    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], of an ellipse at most the smaller half extent.
+    /// Default 500.
+    pub rim_m: f64,
+    /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
+    pub rate_mm_h: f64,
+    /// Altitude above the sea of the cloud base that it falls from, m. Range [-1000, 20 000], default 1500.
+    pub top_m: f64,
+    /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
+    pub velocity_m_s: [f64; 2],
+    /// Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
+    /// timeline knows. Default 0.
+    pub at_s: f64,
+    /// Default WK_AREA_MOTION_WITH_WIND.
+    pub motion: wk_area_motion,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_rain_area {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_RAIN_AREA,
+        next: null(),
+        center_m: [0.0, 0.0, 0.0],
+        semi_axes_m: [2000.0, 2000.0],
+        corners_m: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        corner_count: 0,
+        rain: WK_AREA_RAIN_STEADY,
+        heading_deg: 0.0,
+        rim_m: 500.0,
+        rate_mm_h: 10.0,
+        top_m: 1500.0,
+        velocity_m_s: [0.0, 0.0],
+        at_s: 0.0,
+        motion: WK_AREA_MOTION_WITH_WIND,
+        reserved0: 0,
+    };
+
+    fn corners(&self) -> [[f64; 2]; MAX_CORNERS] {
+        std::array::from_fn(|i| [self.corners_m[2 * i], self.corners_m[2 * i + 1]])
+    }
+
+    fn area(&self) -> RainArea {
+        RainArea {
+            center_m: self.center_m,
+            shape: match self.corner_count {
+                0 => AreaShape::Ellipse(self.semi_axes_m),
+                count => AreaShape::Polygon(self.corners(), count as usize),
+            },
+            heading_deg: self.heading_deg,
+            rim_m: self.rim_m,
+            rate_mm_h: self.rate_mm_h,
+            kind: match self.rain {
+                WK_AREA_RAIN_SHOWERS => AreaRain::Showers,
+                WK_AREA_RAIN_DRIZZLE => AreaRain::Drizzle,
+                _ => AreaRain::Rain,
+            },
+            top_m: self.top_m,
+            motion: match self.motion {
+                WK_AREA_MOTION_OWN => AreaMotion::Own(self.velocity_m_s),
+                _ => AreaMotion::WithWind,
+            },
+            at_s: self.at_s,
+        }
+    }
+}
+
+/// Sets the regions with rain of their own, in place of those before. They go on moving by themselves: set them again only to
+/// change them. count 0 removes all. At most 16. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_rain_areas(
+    context: *mut wk_context,
+    areas: *const wk_rain_area,
+    count: u32,
+    stride: u32,
+) -> wk_status {
+    guard("wk_context_set_rain_areas", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let mut list = [RainArea::default(); MAX_AREAS];
+        let named = |i: usize| {
+            move |e: Error| Error::new(e.status, e.message.replacen("rain_area.", &format!("areas[{i}]."), 1))
+        };
+        let mut take = |i: usize, c: wk_rain_area| {
+            let area = c.area();
+            area.validate().map_err(named(i))?;
+            list[i] = area;
+            Ok(())
+        };
+        // SAFETY: the caller's promise about `areas`.
+        unsafe {
+            input::each("areas", areas, count as usize, stride as usize, MAX_AREAS, &mut take)?;
+        }
+        object.write().set_rain_areas(&list[..count as usize])?;
+        Ok(Status::Ok)
+    })
+}

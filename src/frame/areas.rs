@@ -1,0 +1,353 @@
+//! The columns of rain under rain areas, drawn as veils into the layer that lies before the picture.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::{Shared, rain::light};
+use crate::{
+    context::Scene,
+    error::Result,
+    gpu::Device,
+    rain::{AreaField, BELOW_M, Column, ColumnUniform, MAX_AREAS, WAVES},
+    sky::SkyVolume,
+};
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// `Columns` of `shaders/rain/area.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ColumnsUniform {
+    count: u32,
+    pad: [u32; 3],
+    list: [ColumnUniform; MAX_AREAS],
+}
+
+/// `ShaftUniform` of `shaders/rain/shaft.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ShaftUniform {
+    above: [f32; 3],
+    own: f32,
+    below: [f32; 3],
+    own_top: f32,
+    sun: [f32; 3],
+    own_soft: f32,
+    to_sun: [f32; 3],
+    own_near: f32,
+    order: [[u32; 4]; MAX_AREAS / 4],
+    rects: [[f32; 4]; MAX_AREAS],
+    waves: [[f32; 4]; WAVES],
+}
+
+/// Both blocks, as one upload.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Blocks {
+    columns: ColumnsUniform,
+    pad: [u32; SHAFT_AT / 4 - size_of::<ColumnsUniform>() / 4],
+    shaft: ShaftUniform,
+}
+
+const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
+
+/// Name and value of an `override` constant.
+type Constant = (&'static str, f64);
+
+/// What decides which pipeline draws, beside the constants of the veil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kind {
+    pub multi: bool,
+    pub has_depth: bool,
+    pub overlaps: bool,
+    pub polygons: bool,
+}
+
+/// The pass, made when there first are areas.
+pub(super) struct AreaPass {
+    blocks: wgpu::Buffer,
+    layouts: [wgpu::BindGroupLayout; 2],
+    none: wgpu::TextureView,
+    pipelines: Vec<(Kind, Vec<Constant>, wgpu::RenderPipeline)>,
+    bound: Option<(Option<wgpu::Texture>, wgpu::BindGroup)>,
+}
+
+fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: both,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("rain areas"),
+        entries: &[
+            uniform(0, size_of::<super::uniform::FrameUniform>()),
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled,
+                },
+                count: None,
+            },
+            uniform(4, size_of::<crate::fog::FogUniform>()),
+            uniform(7, size_of::<ColumnsUniform>()),
+            uniform(8, size_of::<ShaftUniform>()),
+        ],
+    })
+}
+
+/// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east, north,
+/// up.
+fn part_of_picture(column: &Column, clip: &DMat4) -> Option<[f32; 4]> {
+    let r = column.shaft().radius_m;
+    let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for corner in 0..8u32 {
+        let side = |bit: u32| if corner & bit != 0 { 1.0 } else { -1.0 };
+        let z = if corner & 4 != 0 { column.top } else { column.ground - BELOW_M };
+        let middle = column.center + column.shaft().lean * (z - column.ground);
+        let at = *clip * (middle + glam::DVec2::new(side(1), side(2)) * r).extend(z).extend(1.0);
+        if at.w < 1.0 {
+            // It reaches behind the camera, or round it.
+            return Some([-1.0, -1.0, 1.0, 1.0]);
+        }
+        let ndc = at.truncate() / at.w;
+        (low, high) = (low.min(ndc), high.max(ndc));
+    }
+    let part = [low.x.max(-1.0), low.y.max(-1.0), high.x.min(1.0), high.y.min(1.0)];
+    (part[0] < part[2] && part[1] < part[3]).then(|| part.map(|v| v as f32))
+}
+
+/// A frame's columns.
+pub(super) struct Columns<'a> {
+    pub field: &'a AreaField,
+    pub scene: &'a Scene,
+    pub clip: DMat4,
+    /// Of the veil before them.
+    pub constants: &'a [Constant],
+}
+
+impl Columns<'_> {
+    /// The blocks, and how many columns are in the picture.
+    fn blocks(&self) -> (Blocks, u32) {
+        let mut blocks: Blocks = bytemuck::Zeroable::zeroed();
+        let field = self.field;
+        blocks.columns.count = field.columns.len() as u32;
+        for (to, column) in blocks.columns.list.iter_mut().zip(&field.columns) {
+            *to = column.uniform();
+        }
+        // The pass puts the exposure on.
+        let light = light(self.scene, 1.0);
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let s = &mut blocks.shaft;
+        (s.above, s.below, s.sun, s.to_sun) = (v(light.above), v(light.below), v(light.sun), v(light.to_sun));
+        (s.own, s.own_soft) = (field.own.extinction_per_m as f32, field.own.soft_m as f32);
+        (s.own_top, s.own_near) = (field.own_top as f32, field.own_near as f32);
+        s.waves = field.waves.map(|w| w.map(|v| v as f32));
+        let mut seen = [(0.0f64, 0u32, [0.0f32; 4]); MAX_AREAS];
+        let mut count = 0;
+        for (i, column) in field.columns.iter().enumerate().take(MAX_AREAS) {
+            if let Some(part) = part_of_picture(column, &self.clip) {
+                seen[count] = (column.center.length_squared(), i as u32, part);
+                count += 1;
+            }
+        }
+        seen[..count].sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for (at, (_, i, part)) in seen[..count].iter().enumerate() {
+            s.order[at / 4][at % 4] = *i;
+            s.rects[at] = *part;
+        }
+        (blocks, count as u32)
+    }
+}
+
+impl AreaPass {
+    pub fn new(device: &Device) -> Self {
+        let none = device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("no depth"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        Self {
+            blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("rain areas"),
+                size: size_of::<Blocks>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            layouts: [layout(&device.device, false), layout(&device.device, true)],
+            none: none.create_view(&Default::default()),
+            pipelines: Vec::new(),
+            bound: None,
+        }
+    }
+
+    /// Draws the columns into the layer `target`, which is cleared first.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn draw(
+        &mut self,
+        (device, shared): (&Arc<Device>, &Shared),
+        encoder: &mut wgpu::CommandEncoder,
+        columns: &Columns<'_>,
+        [frame, fog]: [&wgpu::Buffer; 2],
+        (sky, depth): (&SkyVolume, Option<&wgpu::Texture>),
+        target: &wgpu::TextureView,
+    ) -> Result<()> {
+        let (blocks, count) = columns.blocks();
+        device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
+        let kind = Kind {
+            multi: depth.is_some_and(|d| d.sample_count() > 1),
+            has_depth: depth.is_some(),
+            overlaps: columns.field.columns.iter().any(|c| c.later != 0),
+            polygons: blocks.columns.list.iter().any(|c| c.corners > 0),
+        };
+        self.bind(device, [frame, fog], depth, kind.multi);
+        let at = self.pipeline(device, shared, kind, columns.constants)?;
+        let Some((_, group)) = &self.bound else { return Ok(()) };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("rain areas"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        if count > 0 {
+            pass.set_pipeline(&self.pipelines[at].2);
+            pass.set_bind_group(0, group, &[]);
+            pass.set_bind_group(1, sky.bind_group(), &[]);
+            pass.draw(0..4, 0..count);
+        }
+        Ok(())
+    }
+
+    fn bind(&mut self, device: &Device, [frame, fog]: [&wgpu::Buffer; 2], depth: Option<&wgpu::Texture>, multi: bool) {
+        if self.bound.as_ref().is_some_and(|(d, _)| d.as_ref() == depth) {
+            return;
+        }
+        let view = depth.map(|t| {
+            let aspect =
+                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
+            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
+        });
+        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.blocks,
+                offset: offset as u64,
+                size: wgpu::BufferSize::new(size as u64),
+            }),
+        };
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("rain areas"),
+            layout: &self.layouts[usize::from(multi)],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(&self.none)),
+                },
+                wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
+                block(7, 0, size_of::<ColumnsUniform>()),
+                block(8, SHAFT_AT, size_of::<ShaftUniform>()),
+            ],
+        });
+        self.bound = Some((depth.cloned(), group));
+    }
+
+    /// The place of the pipeline for what is drawn, compiled at its first use.
+    fn pipeline(&mut self, device: &Arc<Device>, shared: &Shared, kind: Kind, constants: &[Constant]) -> Result<usize> {
+        if let Some(at) = self.pipelines.iter().position(|(k, c, _)| *k == kind && c == constants) {
+            return Ok(at);
+        }
+        let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
+        let composite = shared.composite()?;
+        let [_, sky] = composite.layouts(kind.multi);
+        let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("rain areas"),
+            bind_group_layouts: &[Some(&self.layouts[usize::from(kind.multi)]), Some(sky)],
+            immediate_size: 0,
+        });
+        let yes = |b: bool| f64::from(u8::from(b));
+        let mut all = constants.to_vec();
+        all.extend([
+            ("HAS_DEPTH", yes(kind.has_depth)),
+            ("OVERLAPS", yes(kind.overlaps)),
+            ("POLYGONS", yes(kind.polygons)),
+        ]);
+        let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("rain areas"),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("shaft_vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("shaft_fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &all, ..Default::default() },
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: FORMAT,
+                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        self.pipelines.push((kind, constants.to_vec(), pipeline));
+        Ok(self.pipelines.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_agree_with_the_shader() {
+        let text = shader::assemble("rain/shaft.wgsl").unwrap();
+        let (size, _) = shader::struct_layout(&text, "Columns").unwrap();
+        assert_eq!(size as usize, size_of::<ColumnsUniform>());
+        let (size, members) = shader::struct_layout(&text, "ShaftUniform").unwrap();
+        assert_eq!(size as usize, size_of::<ShaftUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(
+                    members.contains(&(stringify!($field).into(), offset_of!(ShaftUniform, $field) as u32)),
+                    "{}: {members:?}", stringify!($field)
+                );)*
+            };
+        }
+        same!(above, own, below, own_top, sun, own_soft, to_sun, own_near, order, rects, waves);
+    }
+}

@@ -1,0 +1,188 @@
+//! Drops round a camera that stands in or near the rim of rain areas: how many of each class fall at each place.
+//!
+//! The weather and each area have their own count of every class. A place keeps the drops whose number lies below the mixture
+//! of the counts there. The number of a drop has nothing to do with its place, so that thins evenly, and the same drop stays or
+//! goes on every channel. A camera that no rim is near sees one pure rain and needs none of this.
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    MAX_AREAS,
+    lattice::{CLASSES, REACH_M},
+    shaft::{AreaField, ColumnUniform},
+    splash::Splashes,
+    uniforms::Classes,
+};
+use crate::weather::Falling;
+
+/// Rains of a mixture: the weather's and each area's.
+const STATES: usize = MAX_AREAS + 1;
+/// Vectors of four that hold a number for each.
+const ROWS: usize = STATES.div_ceil(4);
+
+/// `Columns` of `shaders/rain/area.wgsl` and behind it `Local` of `shaders/rain/local.wgsl`, as one upload.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct LocalUniform {
+    pub count: u32,
+    pub pad: [u32; 3],
+    pub list: [ColumnUniform; MAX_AREAS],
+    pub counts: [[f32; 4]; CLASSES * ROWS],
+    pub weights: [[f32; 4]; ROWS],
+    pub splashes: [[f32; 4]; ROWS],
+}
+
+/// Which rains fall within reach of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Local {
+    /// One for all of it.
+    Pure(Falling),
+    /// A mixture of the weather's and of those columns, a bit each.
+    Mixed(Falling, u32),
+}
+
+impl Local {
+    /// At a camera, under columns that lie about it.
+    pub fn new(weather: &Falling, field: &AreaField, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64)) -> Self {
+        let mut local = Self::Pure(*weather);
+        for (i, column) in field.columns.iter().enumerate() {
+            let shaft = column.shaft();
+            let [least, most] = shaft.share_within(eye, to_enu, altitude_m, REACH_M);
+            let begun = shaft.begun(altitude_m);
+            local = match local {
+                _ if least >= 1.0 && begun >= 1.0 => Self::Pure(shaft.falling),
+                _ if most <= 0.0 => local,
+                Self::Pure(falling) => Self::Mixed(falling, 1 << i),
+                Self::Mixed(falling, bits) => Self::Mixed(falling, bits | 1 << i),
+            };
+        }
+        local
+    }
+
+    /// Whether any of it is drawn as drops.
+    pub fn falls(&self, field: &AreaField) -> bool {
+        let wet = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h > 0.0;
+        match self {
+            Self::Pure(f) => wet(f),
+            Self::Mixed(f, bits) => {
+                let mixed = |(i, c): (usize, &super::Column)| bits & (1 << i) != 0 && wet(&c.shaft().falling);
+                wet(f) || field.columns.iter().enumerate().any(mixed)
+            }
+        }
+    }
+}
+
+impl Classes {
+    /// As many of each class as the fullest of both has.
+    pub(crate) fn enveloped(&self, other: &Self) -> Self {
+        let (mut upto, mut envelope) = (0.0, *self);
+        for k in 0..CLASSES {
+            upto += self.count(k).max(other.count(k));
+            envelope.table[k][2] = upto as f32;
+            if other.flux[k].2 > self.flux[k].2 {
+                envelope.flux[k] = other.flux[k];
+            }
+        }
+        envelope.per_shell = upto as u32;
+        envelope
+    }
+
+    /// Drops of a class in a shell.
+    pub(crate) fn count(&self, class: usize) -> f64 {
+        let before = if class > 0 { self.table[class - 1][2] } else { 0.0 };
+        f64::from(self.table[class][2] - before)
+    }
+}
+
+impl LocalUniform {
+    /// A mixture of the `weather`'s drops with those of some columns, and the classes that hold enough for all of them.
+    pub fn new<'a>(
+        weather: &Classes,
+        columns: impl Iterator<Item = (ColumnUniform, f64, &'a Classes)>,
+    ) -> (Self, Classes) {
+        let mut block: Self = bytemuck::Zeroable::zeroed();
+        let mut envelope = *weather;
+        let mut put = |state: usize, classes: &Classes, begun: f64| {
+            let (row, at) = (state / 4, state % 4);
+            for k in 0..CLASSES {
+                block.counts[k * ROWS + row][at] = (classes.count(k) * begun) as f32;
+            }
+            block.weights[row][at] = classes.weight as f32;
+            // As a rate for now.
+            block.splashes[row][at] = (Splashes::new(classes).drawn_per_m2_s * begun) as f32;
+        };
+        put(0, weather, 1.0);
+        let mut list = [ColumnUniform::NONE; MAX_AREAS];
+        let mut count = 0;
+        for (column, begun, classes) in columns.take(MAX_AREAS) {
+            list[count] = column;
+            count += 1;
+            put(count, classes, begun);
+            envelope = envelope.enveloped(classes);
+        }
+        let most = Splashes::new(&envelope).drawn_per_m2_s.max(1e-9) as f32;
+        for rate in block.splashes.iter_mut().flatten() {
+            *rate = (*rate / most).min(1.0);
+        }
+        (block.count, block.list) = (count as u32, list);
+        (block, envelope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::{
+        gpu::shader,
+        rain::{AreaShape, OwnRain, RainArea, Shaft},
+    };
+
+    #[test]
+    fn offsets_are_those_of_the_shaders() {
+        let text = shader::assemble("rain/local.wgsl").unwrap();
+        let (columns, _) = shader::struct_layout(&text, "Columns").unwrap();
+        assert_eq!(columns as usize, offset_of!(LocalUniform, counts));
+        let (size, members) = shader::struct_layout(&text, "Local").unwrap();
+        assert_eq!(size as usize, size_of::<LocalUniform>() - columns as usize);
+        for (name, at) in [
+            ("counts", offset_of!(LocalUniform, counts)),
+            ("weights", offset_of!(LocalUniform, weights)),
+            ("splashes", offset_of!(LocalUniform, splashes)),
+        ] {
+            assert!(members.contains(&(name.into(), at as u32 - columns)), "{name}: {members:?}");
+        }
+        let (size, members) = shader::struct_layout(&text, "Column").unwrap();
+        assert_eq!(size as usize, size_of::<ColumnUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(
+                    members.contains(&(stringify!($field).into(), offset_of!(ColumnUniform, $field) as u32)),
+                    "{}: {members:?}", stringify!($field)
+                );)*
+            };
+        }
+        same!(
+            center, lean, right, semi, rim, ground, top, extinction, fallen, turn, fine, near, corners, later, radius
+        );
+        same!(soft, edges);
+    }
+
+    #[test]
+    fn only_a_camera_near_a_rim_sees_a_mixture() {
+        let area = RainArea { shape: AreaShape::Ellipse([1000.0, 600.0]), rim_m: 200.0, ..RainArea::default() };
+        let dry = crate::weather::derive(&Default::default()).unwrap().precipitation;
+        let at = |x: f64| {
+            let shaft = Shaft::new(&area, 0, (DVec3::ZERO, 0.0), (6.0, Default::default()), 0.0);
+            let eye = (DVec3::X * x, &DMat3::IDENTITY, 0.0);
+            let own = OwnRain { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
+            let field = AreaField::new(std::iter::once(shaft), eye, &own, 0.0);
+            let local = Local::new(&dry, &field, eye);
+            (local, local.falls(&field))
+        };
+        assert_eq!(at(0.0), (Local::Pure(area.falling()), true));
+        assert_eq!(at(900.0), (Local::Mixed(dry, 1), true));
+        assert_eq!(at(1100.0), (Local::Pure(dry), false));
+    }
+}

@@ -1,0 +1,486 @@
+//! Rain areas seen from a camera: the columns of their rain, and what one ray meets of them. The shaders' twin in f64.
+//!
+//! A column is the region's plan carried up to its cloud along the lean of the falling drops. A ray's way through it is
+//! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft top end;
+//! on each of the four pieces what falls is integrated by Gauss's four points, and the pattern of curtains, a sum of waves that
+//! fall as the drops do, exactly on its mean. Columns count by how much more they take than the weather's own
+//! rain, which is in the fog.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{
+    area::{MAX_AREAS, MAX_CORNERS, Outline, Shaft},
+    curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
+    lattice::{FADE, REACH_M},
+};
+use crate::scene::depth::RANGE_SKY_M;
+
+/// How far below the station's altitude columns reach, m: into the valleys.
+pub(crate) const BELOW_M: f64 = 1000.0;
+/// Distance up to which drops are drawn in place of the veil, m.
+pub(crate) const NEAR_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
+/// Gauss's four points in \[0, 1\], and their weights.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_7, 0.173_927_422_568_727),
+    (0.330_009_478_207_571_9, 0.326_072_577_431_273),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_727),
+];
+
+/// What is drawn of the weather's own rain: the extinction in the fog, its soft upper end, and what drops have taken over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct OwnRain {
+    pub extinction_per_m: f64,
+    /// Altitude above which there is none, m.
+    pub top_m: f64,
+    /// Depth below it within which it sets in, m.
+    pub soft_m: f64,
+}
+
+/// `Column` of `shaders/rain/area.wgsl`, which explains the fields.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct ColumnUniform {
+    pub center: [f32; 2],
+    pub lean: [f32; 2],
+    pub right: [f32; 2],
+    pub semi: [f32; 2],
+    pub rim: f32,
+    pub ground: f32,
+    pub top: f32,
+    pub extinction: f32,
+    pub fallen: f32,
+    pub turn: f32,
+    pub fine: f32,
+    pub near: f32,
+    pub corners: u32,
+    pub later: u32,
+    pub radius: f32,
+    pub soft: f32,
+    pub edges: [[f32; 4]; MAX_CORNERS],
+}
+
+impl ColumnUniform {
+    /// What stands for none.
+    pub const NONE: Self = Self {
+        center: [0.0; 2],
+        lean: [0.0; 2],
+        right: [1.0, 0.0],
+        semi: [1.0; 2],
+        rim: 1.0,
+        ground: 0.0,
+        top: 0.0,
+        extinction: 0.0,
+        fallen: 0.0,
+        turn: 0.0,
+        fine: 1.0,
+        near: 0.0,
+        corners: 0,
+        later: 0,
+        radius: 1.0,
+        soft: 1.0,
+        edges: [[0.0; 4]; MAX_CORNERS],
+    };
+}
+
+/// A column about a camera: east, north, up of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub center: DVec2,
+    shaft: Shaft,
+    /// Height of the level at which the plan holds, and of the cloud, m.
+    pub ground: f64,
+    pub top: f64,
+    /// 1/m; fades with the distance of what is too far to be seen.
+    extinction: f64,
+    /// What drops of it hide near the camera, 1/m.
+    pub near: f64,
+    /// Distance that its drops have fallen, m, in the pattern's period.
+    fallen: f64,
+    /// Later columns that lie over it, a bit each.
+    pub later: u32,
+}
+
+/// All columns about a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct AreaField {
+    pub columns: Vec<Column>,
+    pub own: OwnRain,
+    /// The own rain's upper end over the camera, m, and what its drops hide near it, 1/m.
+    pub own_top: f64,
+    pub own_near: f64,
+    /// Wave numbers to the right, ahead and up (1/m), and phases (rad) of the pattern.
+    pub waves: [[f64; 4]; WAVES],
+}
+
+fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
+    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Mean of a ramp that is 1 from `soft` below `top` down and 0 above it, between two heights.
+fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
+    let below = |z: f64| {
+        let x = ((top - z) / soft).clamp(0.0, 1.0);
+        // Integral from the top down, over soft.
+        (((top - z) / soft - x).max(0.0) + 0.5 * x * x) * soft
+    };
+    if (b - a).abs() < 0.01 * soft {
+        return ((top - 0.5 * (a + b)) / soft).clamp(0.0, 1.0);
+    }
+    (below(a) - below(b)) / (b - a)
+}
+
+impl Column {
+    fn new(shaft: Shaft, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64), time_s: f64) -> Option<Self> {
+        let away = to_enu * (shaft.center - eye);
+        let distance = away.length() - shaft.radius_m;
+        // Nothing of it shows from so far away; it goes without a jump.
+        let shown = 1.0 - smoothstep(1.5e5, 2.5e5, distance);
+        if shown <= 0.0 || shaft.top_m <= shaft.ground_m - BELOW_M {
+            return None;
+        }
+        // On a round planet it stands as low as its centre's place does.
+        let level = |altitude: f64| {
+            let sunk = away.z - (shaft.center_altitude_m - altitude_m);
+            altitude - altitude_m + sunk
+        };
+        Some(Self {
+            center: away.truncate(),
+            shaft,
+            ground: level(shaft.ground_m),
+            top: level(shaft.top_m),
+            extinction: shaft.falling.extinction_per_m * shown,
+            near: 0.0,
+            fallen: (shaft.speed_m_s * time_s).rem_euclid(PERIOD_M),
+            later: 0,
+        })
+    }
+
+    /// What falls in it.
+    pub fn shaft(&self) -> &Shaft {
+        &self.shaft
+    }
+
+    /// Whether two columns may have a place in common.
+    fn meets(&self, other: &Self) -> bool {
+        // Seen from the cloud down to the valleys, each moves aside by its own lean.
+        let height = (self.top.max(other.top) - self.ground.min(other.ground) + BELOW_M).max(0.0);
+        let aside = (self.shaft.lean - other.shaft.lean).length() * height;
+        (self.center - other.center).length() < self.shaft.radius_m + other.shaft.radius_m + aside
+    }
+
+    fn turned(&self, plan: DVec2) -> DVec2 {
+        self.shaft.turned(plan)
+    }
+
+    /// Share of the rain at a camera-relative place that is this column's.
+    fn share(&self, p: DVec3) -> f64 {
+        let q = p.truncate() - self.center - self.shaft.lean * (p.z - self.ground);
+        smoothstep(0.0, self.shaft.rim_m, self.shaft.outline.depth(self.turned(q)))
+    }
+
+    /// Between which distances a ray's plan, `q + u t`, is at least `inset` inside.
+    fn chord(&self, q: DVec2, u: DVec2, inset: f64) -> Option<[f64; 2]> {
+        match &self.shaft.outline {
+            Outline::Ellipse(semi) => {
+                let inner = *semi - inset;
+                if inner.min_element() < 1.0 {
+                    return None;
+                }
+                let (e, v) = (q / inner, u / inner);
+                let a = v.length_squared().max(1e-16);
+                let middle = -e.dot(v) / a;
+                let left = 1.0 - (e + v * middle).length_squared();
+                (left > 0.0).then(|| {
+                    let half = (left / a).sqrt();
+                    [middle - half, middle + half]
+                })
+            }
+            Outline::Polygon(edges, count) => {
+                let (mut first, mut last) = (-1e9f64, 1e9f64);
+                for e in &edges[..*count] {
+                    let (f, g) = (e.depth(q) - inset, e.normal.dot(u));
+                    let t = -f / if g.abs() < 1e-9 { 1e-9f64.copysign(g) } else { g };
+                    if g >= 0.0 { first = first.max(t) } else { last = last.min(t) }
+                }
+                (last > first).then_some([first, last])
+            }
+        }
+    }
+
+    /// Mean of the pattern between two distances of the ray; 1 on the mean over all places.
+    fn pattern(&self, waves: &[[f64; 4]; WAVES], q: DVec2, u: DVec2, (z, dz): (f64, f64), [a, b]: [f64; 2]) -> f64 {
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        let fine = self.fine();
+        let at = (q + u * middle) * fine;
+        let height = z + dz * middle - self.ground + self.fallen;
+        let mut sum = 0.0;
+        for (i, [kx, ky, kz, phase]) in waves.iter().enumerate() {
+            let x = ((kx * u.x + ky * u.y) * fine + kz * dz) * half;
+            let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
+            let turn = self.turn() * (i as f64 + 1.0);
+            sum += (kx * at.x + ky * at.y + kz * height + phase + turn).cos() * sinc;
+        }
+        let shown = smoothstep(PATTERN_M[0], PATTERN_M[1], middle);
+        (1.0 + AMOUNT * shown * sum).max(0.0)
+    }
+
+    /// Each column has a pattern of its own.
+    fn turn(&self) -> f64 {
+        f64::from(self.shaft.index) * 2.4
+    }
+
+    /// How much finer the pattern of a small area is.
+    fn fine(&self) -> f64 {
+        (2000.0 / self.shaft.radius_m).clamp(1.0, 10.0)
+    }
+
+    /// The block of the shaders.
+    pub fn uniform(&self) -> ColumnUniform {
+        let two = |v: DVec2| v.as_vec2().to_array();
+        let (semi, corners, mut edges) = match &self.shaft.outline {
+            Outline::Ellipse(semi) => (*semi, 0, [[0.0; 4]; MAX_CORNERS]),
+            Outline::Polygon(e, count) => {
+                let row = |e: super::area::Edge| [e.normal.x as f32, e.normal.y as f32, e.offset as f32, 0.0];
+                (DVec2::ONE, *count as u32, e.map(row))
+            }
+        };
+        // What is not a side must not be infinite.
+        edges[corners as usize..].fill([0.0; 4]);
+        ColumnUniform {
+            center: two(self.center),
+            lean: two(self.shaft.lean),
+            right: two(self.shaft.right),
+            semi: two(semi),
+            rim: self.shaft.rim_m as f32,
+            ground: self.ground as f32,
+            top: self.top as f32,
+            extinction: self.extinction as f32,
+            fallen: self.fallen as f32,
+            turn: self.turn() as f32,
+            fine: self.fine() as f32,
+            near: self.near as f32,
+            corners,
+            later: self.later,
+            radius: self.shaft.radius_m as f32,
+            soft: self.shaft.soft_m() as f32,
+            edges,
+        }
+    }
+}
+
+impl AreaField {
+    /// No columns.
+    pub fn empty() -> Self {
+        let own = OwnRain { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
+        Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, waves: [[0.0; 4]; WAVES] }
+    }
+
+    /// About an eye: its place in the host's world, its axes and altitude.
+    pub fn new(
+        shafts: impl Iterator<Item = Shaft>,
+        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
+        own: &OwnRain,
+        time_s: f64,
+    ) -> Self {
+        let mut field = Self::empty();
+        field.set(shafts, (eye, to_enu, altitude_m), own, time_s);
+        field
+    }
+
+    /// As [`AreaField::new`], in the place of what was there.
+    pub fn set(
+        &mut self,
+        shafts: impl Iterator<Item = Shaft>,
+        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
+        own: &OwnRain,
+        time_s: f64,
+    ) {
+        self.columns.clear();
+        self.columns.reserve_exact(MAX_AREAS);
+        self.columns.extend(shafts.filter_map(|s| Column::new(s, (eye, to_enu, altitude_m), time_s)));
+        (self.own, self.own_top, self.own_near) = (*own, own.top_m - altitude_m, 0.0);
+        for i in 0..self.columns.len() {
+            let later = (i + 1..self.columns.len()).filter(|j| self.columns[i].meets(&self.columns[*j]));
+            self.columns[i].later = later.fold(0, |bits, j| bits | 1 << j);
+        }
+    }
+
+    /// Share of the rain at a camera-relative place that is of column `i`, those over it taken off.
+    pub fn share(&self, i: usize, p: DVec3) -> f64 {
+        let over = |j: &usize| self.columns[i].later & (1 << j) != 0;
+        let left: f64 = (i + 1..self.columns.len()).filter(over).map(|j| 1.0 - self.columns[j].share(p)).product();
+        self.columns[i].share(p) * left
+    }
+
+    /// Optical depth that a ray from `origin` (relative to the camera) along `d` meets in column `i` before `range`, `None` if it misses it.
+    pub fn met(&self, i: usize, origin: DVec3, d: DVec3, range: f64, patterned: bool) -> Option<f64> {
+        let c = &self.columns[i];
+        let lean = c.shaft.lean;
+        let q = c.turned(origin.truncate() - c.center - lean * (origin.z - c.ground));
+        let u = c.turned(d.truncate() - lean * d.z);
+        let [first, last] = c.chord(q, u, 0.0)?;
+        // Between the valleys and the cloud.
+        let up = if d.z.abs() < 1e-6 { 1e-6f64.copysign(d.z) } else { d.z };
+        let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top - origin.z) / up];
+        let mut end = range.min(a.max(b)).min(last);
+        if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
+            // Where the host drew nothing, the ground ends it.
+            end = end.min((c.ground - origin.z) / up);
+        }
+        let begin = first.max(a.min(b)).max(0.0);
+        if end <= begin {
+            return None;
+        }
+        let middle = 0.5 * (first + last);
+        let [s0, s1] = c.chord(q, u, c.shaft.rim_m).unwrap_or([middle; 2]);
+        let [s0, s1, soft] = [s0, s1, (c.top - c.shaft.soft_m() - origin.z) / up].map(|t| t.clamp(begin, end));
+        let cuts = [begin, s0.min(soft), s0.max(soft.min(s1)), s1.max(soft), end];
+        let mut depth = 0.0;
+        for piece in cuts.windows(2) {
+            let (from, length) = (piece[0], piece[1] - piece[0]);
+            if length <= 0.0 {
+                continue;
+            }
+            let (mut share, mut fallen) = (0.0, 0.0);
+            for (x, w) in GAUSS {
+                let p = origin + d * (from + x * length);
+                let here = w * self.share(i, p);
+                share += here;
+                fallen += here * ((c.top - p.z) / c.shaft.soft_m()).clamp(0.0, 1.0);
+            }
+            let [z0, z1] = [piece[0], piece[1]].map(|t| origin.z + d.z * t);
+            let way = [piece[0], piece[1]];
+            let more = if patterned { c.pattern(&self.waves, q, u, (origin.z, d.z), way) } else { 1.0 };
+            let own = self.own.extinction_per_m * ramp_mean(self.own_top, self.own.soft_m, z0, z1);
+            depth += length * (c.extinction * more * fallen - own * share);
+        }
+        // What drops near the eye hide is drawn as drops.
+        let near = range.min(NEAR_M);
+        let half = origin + d * (0.5 * near);
+        depth -= (c.near - self.own_near) * near * self.share(i, half);
+        Some(depth)
+    }
+
+    /// Optical depth that all columns add before `range`, on the mean over their pattern.
+    pub fn depth_along(&self, origin: DVec3, d: DVec3, range: f64) -> f64 {
+        (0..self.columns.len()).filter_map(|i| self.met(i, origin, d, range, false)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rain::{AreaMotion, AreaShape, RainArea};
+
+    /// The extinction that a column adds at a place, from its description alone.
+    fn added(field: &AreaField, i: usize, p: DVec3, patterned: bool) -> f64 {
+        let c = &field.columns[i];
+        if p.z < c.ground - BELOW_M || p.z > c.top {
+            return 0.0;
+        }
+        let q = c.turned(p.truncate() - c.center - c.shaft.lean * (p.z - c.ground));
+        let begun = ((c.top - p.z) / c.shaft.soft_m()).min(1.0);
+        let own = ((field.own_top - p.z) / field.own.soft_m).clamp(0.0, 1.0);
+        let wave = |(i, w): (usize, &[f64; 4])| {
+            let at = q * c.fine();
+            (w[0] * at.x + w[1] * at.y + w[2] * (p.z - c.ground + c.fallen) + w[3] + c.turn() * (i as f64 + 1.0)).cos()
+        };
+        let shown = if patterned { smoothstep(PATTERN_M[0], PATTERN_M[1], p.length()) } else { 0.0 };
+        let more = (1.0 + AMOUNT * shown * field.waves.iter().enumerate().map(wave).sum::<f64>()).max(0.0);
+        field.share(i, p) * (c.extinction * more * begun - field.own.extinction_per_m * own)
+    }
+
+    fn areas() -> Vec<RainArea> {
+        let ellipse = RainArea {
+            center_m: [300.0, 5000.0, 0.0],
+            shape: AreaShape::Ellipse([1500.0, 900.0]),
+            heading_deg: 30.0,
+            rim_m: 400.0,
+            rate_mm_h: 12.0,
+            ..RainArea::default()
+        };
+        let mut corners = [[0.0; 2]; MAX_CORNERS];
+        corners[..5].copy_from_slice(&[
+            [-900.0, -700.0],
+            [800.0, -900.0],
+            [1200.0, 100.0],
+            [300.0, 1100.0],
+            [-800.0, 700.0],
+        ]);
+        let polygon =
+            RainArea { shape: AreaShape::Polygon(corners, 5), motion: AreaMotion::Own([3.0, -4.0]), ..ellipse };
+        let beside = RainArea { center_m: [1300.0, 5600.0, 0.0], rate_mm_h: 30.0, ..ellipse };
+        vec![ellipse, polygon, beside]
+    }
+
+    fn field(areas: &[RainArea], own_per_m: f64) -> AreaField {
+        let shafts = areas.iter().enumerate().map(|(i, a)| {
+            a.validate().unwrap();
+            Shaft::new(a, i as u32, (DVec3::from(a.center_m), 0.0), (6.0, DVec2::new(1.5, 0.5)), 0.0)
+        });
+        let own = OwnRain { extinction_per_m: own_per_m, top_m: 1200.0, soft_m: 100.0 };
+        let mut field = AreaField::new(shafts, (DVec3::Z * 2.0, &DMat3::IDENTITY, 2.0), &own, 77.0);
+        field.waves = crate::rain::pattern(5);
+        field
+    }
+
+    /// Every ray's closed form against a sum of small steps.
+    #[test]
+    fn what_a_ray_meets_is_the_integral_along_it() {
+        for areas in [&areas()[..1], &areas()[1..2], &areas()[..]] {
+            for own in [0.0, 4e-4] {
+                let field = field(areas, own);
+                let (mut seen, mut off) = (0.0, [(0.0f64, 0.0f64); 2]);
+                for k in 0..400 {
+                    let (azimuth, elevation) = (f64::from(k % 20) * 0.04 - 0.4, f64::from(k / 20) * 0.02 - 0.06);
+                    let d = DVec3::new(azimuth.sin(), azimuth.cos(), elevation).normalize();
+                    let range = if elevation < 0.0 {
+                        2.0 / -d.z
+                    } else if k % 3 == 0 {
+                        5200.0
+                    } else {
+                        1e5
+                    };
+                    for patterned in [false, true] {
+                        let met = |i| field.met(i, DVec3::ZERO, d, range, patterned).unwrap_or(0.0);
+                        let got: f64 = (0..areas.len()).map(met).sum();
+                        let h = 2.0;
+                        let steps = (range.min(12e3) / h) as usize;
+                        let at = |s: usize| d * ((s as f64 + 0.5) * h);
+                        let step = |s| (0..areas.len()).map(|i| added(&field, i, at(s), patterned)).sum::<f64>() * h;
+                        let want: f64 = (0..steps).map(step).sum();
+                        seen += f64::from(u8::from(want != 0.0 && patterned));
+                        let ratio = ((-got).exp() / (-want).exp() - 1.0).abs();
+                        let (worst, squares) = &mut off[usize::from(patterned)];
+                        *worst = worst.max(ratio);
+                        *squares += ratio * ratio;
+                    }
+                }
+                let [even, patterned] = off.map(|(worst, squares)| [worst, (squares / seen).sqrt()]);
+                assert!(even[0] < 0.05 && even[1] < 0.01, "{} areas: {even:?}", areas.len());
+                assert!(patterned[1] < 0.15, "{} areas: {patterned:?}", areas.len());
+                assert!(seen > 100.0, "{seen}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_pattern_is_even_on_the_mean_and_falls_with_the_drops() {
+        let mut field = field(&areas()[..1], 0.0);
+        let c = field.columns[0];
+        let at = |c: &Column, field: &AreaField, x: f64, z: f64| {
+            c.pattern(&field.waves, DVec2::new(x, 0.3 * x), DVec2::X, (z, 0.0), [1000.0, 1001.0])
+        };
+        let values: Vec<f64> = (0..4000).map(|i| at(&c, &field, f64::from(i) * 23.0, 700.0)).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+        assert!((mean - 1.0).abs() < 0.05 && (0.3..0.7).contains(&spread), "{mean} {spread}");
+        let mut lower = c;
+        lower.fallen += 60.0;
+        assert!((at(&c, &field, 40.0, 700.0) - at(&lower, &field, 40.0, 640.0)).abs() < 1e-9);
+        field.waves = crate::rain::pattern(6);
+        assert_ne!(at(&c, &field, 40.0, 700.0), values[0]);
+    }
+}

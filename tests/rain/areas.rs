@@ -1,0 +1,361 @@
+//! Rain areas: what falls where, what a camera sees of it from outside, on the rim and inside, and that all of it moves and is
+//! kept as the weather is.
+
+use glam::DVec3;
+use welkin::{
+    context::{Context, GivenDirection, RainSurface},
+    frame::Stages,
+    rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea},
+    weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
+};
+
+use crate::{
+    pictures::{paint, save},
+    scene::Host,
+};
+
+fn shower(north_m: f64, rate_mm_h: f64) -> RainArea {
+    RainArea {
+        center_m: [0.0, north_m, 0.0],
+        shape: AreaShape::Ellipse([2200.0, 1500.0]),
+        rim_m: 400.0,
+        rate_mm_h,
+        kind: AreaRain::Showers,
+        motion: AreaMotion::Own([0.0, 0.0]),
+        ..RainArea::default()
+    }
+}
+
+fn square(half_m: f64) -> AreaShape {
+    let mut corners = [[0.0; 2]; MAX_CORNERS];
+    corners[..4].copy_from_slice(&[[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]]);
+    AreaShape::Polygon(corners, 4)
+}
+
+fn fair(wind_m_s: f64) -> Weather {
+    let mut weather = Weather { visibility_m: 45_000.0, ..Weather::default() };
+    (weather.wind.speed_m_s, weather.wind.from_deg) = (wind_m_s, 270.0);
+    weather
+}
+
+fn host(weather: &Weather, areas: &[RainArea]) -> Host {
+    let mut host = Host::new((160, 90));
+    host.context.set_weather(weather, 0.0, 0.0).unwrap();
+    host.context.set_rain_areas(areas).unwrap();
+    host
+}
+
+fn rate(context: &Context, x: f64, y: f64) -> f64 {
+    context.rain_at(DVec3::new(x, y, 0.0), context.time_s()).unwrap().rate_mm_h
+}
+
+/// Mean of the picture's luminance over a part of it, in shares of width and height.
+fn mean(host: &Host, [x0, y0, x1, y1]: [f64; 4]) -> f64 {
+    let (w, h) = host.size;
+    let at = |v: f64, n: u32| (v * f64::from(n)) as u32;
+    let pixels = host.pixels();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for y in at(y0, h)..at(y1, h) {
+        for x in at(x0, w)..at(x1, w) {
+            let p = pixels[(y * w + x) as usize];
+            sum += 0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2]);
+            count += 1.0;
+        }
+    }
+    sum / count
+}
+
+#[test]
+fn rates_are_those_of_the_place_and_half_in_the_middle_of_the_rim() {
+    let steady = Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, 3.0), ..fair(0.0) };
+    let polygon = RainArea { shape: square(1500.0), ..shower(0.0, 23.0) };
+    for area in [shower(0.0, 23.0), polygon] {
+        let host = host(&steady, &[area]);
+        let at = |y: f64| rate(&host.context, 0.0, y);
+        for (y, want) in [(0.0, 23.0), (1099.0, 23.0), (1300.0, 13.0), (1500.1, 3.0), (9000.0, 3.0), (-1300.0, 13.0)] {
+            assert!((at(y) / want - 1.0).abs() < 2e-3, "{y} m: {} mm/h, want {want}", at(y));
+        }
+        // What lands on a level surface is the same rate, and what the ground shows is not drier than it.
+        let surface = RainSurface {
+            position: DVec3::new(0.0, 1300.0, 0.0),
+            normal: DVec3::Z,
+            velocity_m_s: DVec3::ZERO,
+            area_m2: 1.0,
+        };
+        assert!((host.context.rain_on(&surface, 0.0).unwrap().rate_mm_h / 13.0 - 1.0).abs() < 2e-3);
+        let ground = |y: f64| host.context.ground_at(DVec3::new(0.0, y, 0.0)).unwrap();
+        assert!(ground(0.0).puddles > ground(1300.0).puddles && ground(1300.0).puddles > ground(3000.0).puddles);
+        assert!(rate(&host.context, 0.0, 0.0) > 0.0);
+        assert!(host.context.rain_at(DVec3::new(0.0, 0.0, 1600.0), 0.0).unwrap().rate_mm_h <= 3.001, "over its cloud");
+    }
+    // A dry hole, and a second area over the first.
+    let host = host(&steady, &[shower(0.0, 23.0), RainArea { rate_mm_h: 0.0, ..shower(1800.0, 0.0) }]);
+    assert_eq!(rate(&host.context, 0.0, 1800.0), 0.0);
+    let mut last = rate(&host.context, 0.0, -3000.0);
+    for i in -300..500 {
+        let now = rate(&host.context, 0.0, f64::from(i) * 10.0);
+        assert!((now - last).abs() < 1.0, "{} m: {last} to {now} mm/h in 10 m", i * 10);
+        last = now;
+    }
+}
+
+/// The query's closed form against the sum of what `rain_at` answers along the way.
+#[test]
+fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
+    // A visibility that leaves the rain all of its extinction.
+    let precipitation = Precipitation::of(PrecipitationKind::Rain, 1.0);
+    let steady = Weather { precipitation, visibility_m: 6000.0, ..fair(6.0) };
+    for (weather, limit) in [(fair(6.0), 0.03), (steady, 0.05)] {
+        let polygon =
+            RainArea { shape: square(1200.0), center_m: [2300.0, 7000.0, 0.0], heading_deg: 20.0, ..shower(0.0, 12.0) };
+        let host = host(&weather, &[shower(6500.0, 4.0), polygon]);
+        let dry = super::areas::host(&weather, &[]);
+        for (to, eye) in [([300.0, 9000.0, 500.0], 1.7), ([2000.0, 9000.0, 100.0], 1.7), ([0.0, 6500.0, 1.0], 900.0)] {
+            let (from, to) = (DVec3::new(0.0, 0.0, eye), DVec3::from(to));
+            let way = to - from;
+            let n = 4000;
+            let depth: f64 = (0..n)
+                .map(|i| from + way * ((f64::from(i) + 0.5) / f64::from(n)))
+                .map(|p| {
+                    host.context.rain_at(p, 0.0).unwrap().extinction_per_m
+                        - dry.context.rain_at(p, 0.0).unwrap().extinction_per_m
+                })
+                .sum::<f64>()
+                * way.length()
+                / f64::from(n);
+            let through = |h: &Host| h.context.between(from, to, 0.0).unwrap().transmittance[1];
+            let ratio = through(&host) / through(&dry);
+            assert!(
+                depth > 0.1 && (ratio / (-depth).exp() - 1.0).abs() < limit,
+                "{to}: {ratio} for a depth of {depth}"
+            );
+        }
+    }
+}
+
+/// What is drawn of a white wall behind a shaft 5 km away is what the f64 integral leaves of its contrast.
+#[test]
+fn a_shaft_from_afar_takes_what_the_integral_says() {
+    let mut host = Host::new((320, 180));
+    host.context.set_weather(&fair(6.0), 0.0, 0.0).unwrap();
+    host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.0, 1.0, 0.08));
+    host.boxes = vec![crate::scene::upright([0.0, 12_000.0, 900.0], [9000.0, 10.0, 1000.0])];
+    let shown = |host: &mut Host, areas: &[RainArea], wall: f64| {
+        host.context.set_rain_areas(areas).unwrap();
+        host.draw(|_, _| [wall; 3]);
+        host.record(Stages::PREPARE.with(Stages::MEDIUM).with(Stages::PARTICLES)).unwrap();
+        host.pixels()
+    };
+    let beside =
+        RainArea { center_m: [2600.0, 7500.0, 0.0], shape: square(1300.0), heading_deg: 20.0, ..shower(0.0, 4.0) };
+    for areas in [vec![shower(6500.0, 4.0)], vec![shower(6500.0, 4.0), beside]] {
+        let contrast = |host: &mut Host, areas: &[RainArea]| -> Vec<f64> {
+            let (white, black) = (shown(host, areas, 30_000.0), shown(host, areas, 0.0));
+            white.iter().zip(&black).map(|(b, a)| f64::from(b[1] - a[1])).collect()
+        };
+        let (clear, veiled) = (contrast(&mut host, &[]), contrast(&mut host, &areas));
+        let (mut drawn, mut asked, mut worst, mut count) = (0.0, 0.0, 0.0f64, 0.0);
+        for k in 0..600u32 {
+            let (x, y) = (10 * (k % 32) + 3, 4 * (k / 32) + 30);
+            let ndc = glam::DVec2::new((f64::from(x) + 0.5) / 160.0 - 1.0, 1.0 - (f64::from(y) + 0.5) / 90.0);
+            let Some((p, _)) = host.cast(ndc).filter(|(p, _)| p.y > 9000.0) else { continue };
+            let eye = host.camera.position;
+            let with = host.context.between(eye, eye + p, 0.0).unwrap().transmittance[1];
+            host.context.set_rain_areas(&[]).unwrap();
+            let want = with / host.context.between(eye, eye + p, 0.0).unwrap().transmittance[1];
+            host.context.set_rain_areas(&areas).unwrap();
+            let at = (y * host.size.0 + x) as usize;
+            let got = veiled[at] / clear[at];
+            (drawn, asked, count) = (drawn + got, asked + want, count + 1.0);
+            // Its curtains make some darker and some brighter.
+            worst = worst.max((got - want).abs());
+            assert!(want < 0.999 || (got - 1.0).abs() < 0.01, "{x} {y}: {got} beside the shaft");
+        }
+        assert!(asked / count < 0.8 && (drawn / asked - 1.0).abs() < 0.05, "{drawn} {asked} of {count}");
+        assert!((0.02..0.3).contains(&worst), "{worst}");
+    }
+}
+
+/// A dark room of which only the drops are bright: the sum of what they cover.
+fn brightness(host: &mut Host, position: DVec3, [x0, x1]: [f64; 2]) -> f64 {
+    host.look(position, DVec3::Y);
+    host.boxes = vec![crate::scene::upright([position.x, position.y + 12.0, 0.0], [60.0, 0.5, 60.0])];
+    host.draw(|_, _| [0.0; 3]);
+    host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
+    mean(host, [x0, 0.0, x1, 1.0])
+}
+
+#[test]
+fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
+    let area = RainArea { shape: square(1500.0), rim_m: 1400.0, ..shower(0.0, 50.0) };
+    let mut host = host(&fair(0.0), &[area]);
+    let eye = |x: f64| DVec3::new(x, 0.0, 2.0);
+    let whole = [0.0, 1.0];
+    let inside = brightness(&mut host, eye(0.0), whole);
+    assert!(host.view.report().drops > 0);
+    let half = brightness(&mut host, eye(800.0), whole) / inside;
+    assert!((half - 0.5).abs() < 0.06, "{half} of the drops in the middle of the rim");
+    let outside = brightness(&mut host, eye(1600.0), whole) / inside;
+    assert!(outside == 0.0 && host.view.report().drops == 0, "{outside}");
+    // On the border of a narrow rim it rains to the one side only.
+    host.context.set_rain_areas(&[RainArea { rim_m: 1.0, ..area }]).unwrap();
+    let (left, right) =
+        (brightness(&mut host, eye(1500.0), [0.0, 0.45]), brightness(&mut host, eye(1500.0), [0.55, 1.0]));
+    assert!(left > 0.5 * inside && right < 1e-3 * inside, "{left} {right}, inside {inside}");
+}
+
+#[test]
+fn a_camera_that_drives_through_the_rim_sees_no_jump() {
+    let mut host = host(&fair(5.0), &[shower(0.0, 30.0)]);
+    let mut shown = |y: f64| {
+        host.look(DVec3::new(0.0, y, 1.7), DVec3::new(0.0, 1.0, 0.1));
+        host.draw(|_, _| [600.0; 3]);
+        host.record(Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM).with(Stages::PARTICLES)).unwrap();
+        (mean(&host, [0.0, 0.0, 1.0, 0.5]), mean(&host, [0.0, 0.6, 1.0, 1.0]))
+    };
+    let walk = |from: f64, step: f64, count: u32, shown: &mut dyn FnMut(f64) -> (f64, f64)| {
+        let values: Vec<_> = (0..count).map(|i| shown(from + step * f64::from(i))).collect();
+        let steps = values
+            .windows(2)
+            .map(|v| [(v[1].0 / v[0].0).ln().abs(), (v[1].1 / v[0].1).ln().abs()].into_iter().fold(0.0, f64::max));
+        let all = (values[0].0 / values[values.len() - 1].0).ln().abs();
+        (steps.fold(0.0, f64::max), all)
+    };
+    // From 1.5 km before the border to the middle, then finely where drops come and where the rim ends.
+    let (most, all) = walk(-3000.0, 25.0, 120, &mut shown);
+    assert!(all > 0.05 && most < 0.03, "{most} in 25 m, {all} in all");
+    for from in [-1560.0, -1510.0, -1110.0] {
+        let (most, _) = walk(from, 1.0, 40, &mut shown);
+        assert!(most < 0.01, "{most} in 1 m behind {from}");
+    }
+}
+
+#[test]
+fn cameras_in_different_areas_see_each_its_own() {
+    let areas = [shower(0.0, 50.0), RainArea { kind: AreaRain::Drizzle, rim_m: 900.0, ..shower(9000.0, 1.0) }];
+    let places = [DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, 7900.0, 2.0), DVec3::new(0.0, 4500.0, 2.0)];
+    let alone: Vec<_> = places
+        .iter()
+        .map(|p| {
+            let mut host = host(&fair(4.0), &areas);
+            (brightness(&mut host, *p, [0.0, 1.0]), host.pixels())
+        })
+        .collect();
+    assert!(alone[0].0 > 0.0 && alone[1].0 > 0.0 && alone[2].0 == 0.0);
+    let mut together = host(&fair(4.0), &areas);
+    for _ in 0..2 {
+        for (place, (_, want)) in places.iter().zip(&alone) {
+            brightness(&mut together, *place, [0.0, 1.0]);
+            assert!(together.pixels() == *want, "{place}: not as seen alone");
+        }
+    }
+}
+
+fn told(context: &mut Context) {
+    context.set_weather(&fair(9.0), 0.0, 0.0).unwrap();
+    let mut turned = fair(14.0);
+    turned.wind.from_deg = 190.0;
+    context.set_weather(&turned, 20.0, 15.0).unwrap();
+    let with_wind = |north: f64, at_s: f64| RainArea { motion: AreaMotion::WithWind, at_s, ..shower(north, 20.0) };
+    context.set_rain_areas(&[with_wind(0.0, 0.0), with_wind(700.0, 30.0), shower(-900.0, 5.0)]).unwrap();
+}
+
+#[test]
+fn areas_go_with_the_wind_the_same_way_in_any_steps_and_after_loading() {
+    let make = || {
+        let mut host = Host::new((16, 16));
+        told(&mut host.context);
+        host.context
+    };
+    let (mut at_once, mut in_steps, mut loaded) = (make(), make(), make());
+    at_once.update(60.0).unwrap();
+    for i in 1..=240 {
+        in_steps.update(f64::from(i) * 0.25).unwrap();
+        if i == 100 {
+            loaded.load(&in_steps.save().unwrap()).unwrap();
+        }
+    }
+    loaded.update(60.0).unwrap();
+    let bits = |c: &Context| -> Vec<u64> {
+        (0..60).map(|i| rate(c, f64::from(i) * 60.0, f64::from(i) * 45.0 - 1000.0).to_bits()).collect()
+    };
+    assert!(bits(&at_once).iter().any(|b| f64::from_bits(*b) > 0.0));
+    assert_eq!(bits(&at_once), bits(&in_steps));
+    assert_eq!(bits(&at_once), bits(&loaded));
+    assert_eq!(at_once.state_hash().unwrap(), in_steps.state_hash().unwrap());
+    assert_eq!(at_once.state_hash().unwrap(), loaded.state_hash().unwrap());
+    // The centre has gone where the wind has carried the air: there is its rain, and none where it came from.
+    let moved = at_once.wind_displacement(60.0).unwrap();
+    let ahead = moved + moved.normalize() * 1000.0;
+    let behind = -moved.normalize() * 6000.0;
+    assert!(
+        moved.length() > 300.0 && rate(&at_once, ahead.x, ahead.y) > 10.0 && rate(&at_once, behind.x, behind.y) == 0.0
+    );
+}
+
+#[test]
+fn bad_areas_are_named_and_leave_the_running_ones() {
+    let mut host = host(&fair(0.0), &[shower(0.0, 20.0)]);
+    let hash = host.context.state_hash().unwrap();
+    let nan = f64::NAN;
+    let star = {
+        let mut c = [[0.0; 2]; MAX_CORNERS];
+        for (i, c) in c.iter_mut().enumerate().take(5) {
+            let (s, k) = (f64::from(i as u32) * 2.0 * std::f64::consts::TAU / 5.0).sin_cos();
+            *c = [900.0 * s, 900.0 * k];
+        }
+        AreaShape::Polygon(c, 5)
+    };
+    let flat = AreaShape::Polygon([[0.0; 2]; MAX_CORNERS], 4);
+    let good = shower(0.0, 20.0);
+    for (bad, name) in [
+        (RainArea { shape: AreaShape::Ellipse([0.0, 500.0]), ..good }, "rain_area.semi_axes_m"),
+        (RainArea { shape: AreaShape::Ellipse([nan, 500.0]), ..good }, "rain_area.semi_axes_m"),
+        (RainArea { shape: flat, ..good }, "rain_area.corners_m"),
+        (RainArea { shape: star, ..good }, "rain_area.corners_m"),
+        (RainArea { shape: AreaShape::Polygon([[1.0; 2]; MAX_CORNERS], 9), ..good }, "rain_area.corner_count"),
+        (RainArea { rim_m: 0.0, ..good }, "rain_area.rim_m"),
+        (RainArea { rim_m: 1501.0, ..good }, "rain_area.rim_m"),
+        (RainArea { rate_mm_h: -1.0, ..good }, "rain_area.rate_mm_h"),
+        (RainArea { rate_mm_h: nan, ..good }, "rain_area.rate_mm_h"),
+        (RainArea { rate_mm_h: f64::INFINITY, ..good }, "rain_area.rate_mm_h"),
+        (RainArea { center_m: [nan, 0.0, 0.0], ..good }, "rain_area.center_m"),
+        (RainArea { top_m: 1e6, ..good }, "rain_area.top_m"),
+        (RainArea { motion: AreaMotion::Own([0.0, 900.0]), ..good }, "rain_area.velocity_m_s"),
+        (RainArea { heading_deg: 1e3, ..good }, "rain_area.heading_deg"),
+        (RainArea { at_s: nan, ..good }, "rain_area.at_s"),
+    ] {
+        let e = host.context.set_rain_areas(&[good, bad]).unwrap_err();
+        assert!(e.message.contains(name), "{}", e.message);
+        assert_eq!(host.context.state_hash().unwrap(), hash, "{name}: what ran has changed");
+    }
+    let e = host.context.set_rain_areas(&[good; 17]).unwrap_err();
+    assert!(e.message.contains("16"), "{}", e.message);
+    assert_eq!(host.context.rain_areas().len(), 1);
+}
+
+#[test]
+fn pictures_of_a_shaft_from_afar_at_its_edge_and_inside() {
+    let mut host = Host::new((640, 360));
+    let mut weather = fair(7.0);
+    for (sky, cloud, azimuth_deg) in [("clear", None, 220.0), ("facing", None, 20.0), ("overcast", Some(1.0), 140.0)] {
+        weather.clouds = cloud.iter().map(|c| CloudLayer::of(CloudKind::Stratocumulus, *c, 1500.0)).collect();
+        host.context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg: 25.0 })).unwrap();
+        host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+        let mut means = Vec::new();
+        for (place, away) in [("5km", 6500.0), ("edge", 1800.0), ("rim", 1250.0), ("inside", 0.0)] {
+            host.context.set_rain_areas(&[RainArea { center_m: [600.0, away, 0.0], ..shower(0.0, 25.0) }]).unwrap();
+            host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.1, 1.0, 0.12));
+            paint(&host);
+            host.record(Stages::ALL).unwrap();
+            save(&host, &format!("area_{sky}_{place}.png"));
+            // The shaft against the sky beside it, just above the horizon.
+            means.push((mean(&host, [0.45, 0.5, 0.6, 0.6]), mean(&host, [0.02, 0.5, 0.12, 0.6])));
+        }
+        let (shaft, beside) = means[0];
+        assert!(
+            sky == "facing" || shaft < 0.98 * beside,
+            "{sky}: a shaft is darker than the sky that it hangs before: {shaft} {beside}"
+        );
+    }
+}
