@@ -55,7 +55,8 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
 
 fn with_drops(veil: Veil, pixel: vec2u) -> Veil {
     let layer = textureLoad(drops, vec2i(pixel), 0);
-    let clear = 1.0 - layer.a;
+    // Blended halves may round beyond 1.
+    let clear = max(1.0 - layer.a, 0.0);
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 

@@ -46,7 +46,8 @@ struct RainUniform {
     // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a drop of one speed unit has
     // fallen, likewise.
     cell: array<vec4u, SHELLS>,
-    // Per shell: side of the cell, m; distances between which it takes over from the smaller one.
+    // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it hands on
+    // itself, and at which it has taken over.
     shell: array<vec4f, SHELLS>,
     // Per class: diameter, m; fall speed, speed units; drops of the classes up to this one.
     classes: array<vec4f, CLASSES>,
@@ -107,13 +108,13 @@ fn drop_at(s: u32, k: u32, number: u32, away_units: vec3u) -> Drop {
     let d = length(p);
     let last = s + 1u == SHELLS;
     let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
-    let inner = select(smoothstep(shell.y, 0.25 * shell.x, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
+    let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
     var here = vec2f(1e9, rain.weight);
     if AREAS {
         here = local_drops(k, p);
     }
     let share = select(0.0, inner * outer, f32(number) < here.x);
-    return Drop(p, size.x, size.y * SPEED_UNIT, share, here.y * f32(1u << (3u * s)));
+    return Drop(p, size.x, size.y * SPEED_UNIT, share, here.y * f32(1u << s));
 }
 
 // Radiance of a drop at `p` seen along `d`: it shows, small and upside down, most of the half space behind it, and what

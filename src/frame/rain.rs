@@ -14,8 +14,10 @@ use crate::{
     gpu::Device,
     rain::{
         Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shelter, Shot, Splashes, drops,
-        lattice::{FADE, REACH_M, SHELLS},
+        RainSettings, RainUniform, Shelter, Shot, Splashes,
+        cones::{BANDS_M, CONES},
+        drops,
+        lattice::{HIDDEN_M, REACH_M, SHELLS},
         pattern,
     },
     scene::{LightUniform, ViewRays},
@@ -94,7 +96,8 @@ impl Rain {
     /// diffraction), and the distance up to which they do.
     pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
         let falling = scene.conditions.precipitation;
-        [self.near(device, scene, &falling), 0.5 * (1.0 + FADE) * REACH_M].map(|v| v as f32)
+        let reach = if self.settings.model == RainModel::Cones { BANDS_M[CONES] } else { HIDDEN_M };
+        [self.near(device, scene, &falling), reach].map(|v| v as f32)
     }
 
     /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.

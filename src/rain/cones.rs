@@ -22,7 +22,7 @@ use half::f16;
 
 use super::{
     Classes,
-    lattice::{FADE, REACH_M, random3, side_m},
+    lattice::{SIDE_M, random3},
     sizes::{DropSizes, Weight},
     uniforms::{Air, Shot},
 };
@@ -31,7 +31,7 @@ use super::{
 pub const CONES: usize = 4;
 /// Distances, m, between which the drops of each cone are: what the shells of the drops reach, to the middle of their fading.
 pub const BANDS_M: [f64; CONES + 1] = {
-    let reach = 0.5 * (1.0 + FADE) * REACH_M;
+    let reach = 14.0;
     [0.1875, reach / 8.0, reach / 4.0, reach / 2.0, reach]
 };
 /// Texels along either side of the texture.
@@ -113,7 +113,8 @@ impl ConeUniform {
             let texel = (1.1 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
             let tiles = (std::f64::consts::TAU / (f64::from(SIDE) * texel)).round().max(1.0);
             let length = (relative.length() * shot.exposure_s + mean.diameter_m) / middle;
-            let number = f64::from(classes.per_shell) / side_m(j).powi(3) * (far.powi(3) - near.powi(3)) / 3.0;
+            let number =
+                f64::from(classes.per_shell) * classes.weight / SIDE_M.powi(3) * (far.powi(3) - near.powi(3)) / 3.0;
             let depth = 0.5 * classes.extinction_per_m * (far - near);
             c.bands[j] = [near, far, middle, depth].map(|x| x as f32);
             c.shapes[j] = [tiles, length * f64::from(SIDE) / LENGTH, number, 1.5 * pixel * f64::from(SIDE) / LENGTH]

@@ -6,8 +6,9 @@
 //! exact at any time and place: place = random(seed, shell, class, index) + displacement of the air - speed x fall phase.
 //! Fall speeds are whole multiples of [`SPEED_UNIT`], the phase is the distance that one such unit has fallen.
 //!
-//! The innermost shell holds every drop of its volume, each further one twice as wide holds as many drops, each of which
-//! stands for eight times as many (level of detail by replication would draw them; their mean is what is drawn).
+//! The innermost shell holds every drop of its volume. Each further one is wider by the cube root of 2 and holds as many
+//! drops, each of which stands for twice as many as one of the last: so streaks make together the contrast that all drops
+//! would, those included that are too far to be drawn (`docs/rain.md`, `docs/lab`).
 
 use glam::DVec3;
 
@@ -21,17 +22,21 @@ pub const CLASSES: usize = 32;
 pub const SIDE_M: f64 = 4.0;
 /// What fall speeds are multiples of, m/s.
 pub const SPEED_UNIT: f64 = 1.0 / 64.0;
+/// Sides over that of the innermost shell: 2^(1/3) from each to the next.
+const WIDER: [f64; SHELLS] = [1.0, 1.259_921_049_894_873_2, 1.587_401_051_968_199_4, 2.0];
 /// Distance from the camera beyond which no drop of the lattice is drawn, m.
-pub const REACH_M: f64 = SIDE_M * (1 << (SHELLS - 1)) as f64 * 0.5;
+pub const REACH_M: f64 = 0.5 * SIDE_M * WIDER[SHELLS - 1];
 
 /// A shell takes over from the smaller one, and hands on to the larger, between this share of its reach and all of it.
-pub(crate) const FADE: f64 = 0.75;
+pub(crate) const FADE: f64 = 0.85;
+/// Distance from the camera up to which the drops hide what all drops would, m: to the middle of their fading.
+pub const HIDDEN_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
 /// Drops nearer than this fade away, m: `NEAREST` of `shaders/rain/drops.wgsl`.
 const NEAREST_M: f64 = 0.25;
 
 /// Side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
-    SIDE_M * f64::from(1u32 << shell)
+    SIDE_M * WIDER[shell]
 }
 
 /// `x` metres as a fraction of `side`, in 2^-32 of it; wraps.
@@ -121,7 +126,8 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let inner = if shell == 0 {
         smoothstep(0.5 * NEAREST_M, NEAREST_M, distance_m)
     } else {
-        smoothstep(0.5 * FADE * reach, 0.5 * reach, distance_m)
+        let last = 0.5 * side_m(shell - 1);
+        smoothstep(FADE * last, last, distance_m)
     };
     inner * outer
 }

@@ -11,14 +11,14 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{
     area::{MAX_AREAS, MAX_CORNERS, Outline, Shaft},
     curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
-    lattice::{FADE, REACH_M},
+    lattice::HIDDEN_M,
 };
 use crate::scene::depth::RANGE_SKY_M;
 
 /// How far below the station's altitude columns reach, m: into the valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
 /// Distance up to which drops are drawn in place of the veil, m.
-pub(crate) const NEAR_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
+pub(crate) const NEAR_M: f64 = HIDDEN_M;
 /// Gauss's four points in \[0, 1\], and their weights.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_727),

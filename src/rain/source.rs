@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::{
     Classes,
-    lattice::{Drop, REACH_M, random3, short_seed},
+    lattice::{Drop, random3, short_seed},
 };
 
 /// Drops nearer than this are not drawn, m.
@@ -31,7 +31,7 @@ pub struct SourceLod {
 
 impl Default for SourceLod {
     fn default() -> Self {
-        Self { seeds: 20_000, copies: 0, reach_m: REACH_M }
+        Self { seeds: 20_000, copies: 0, reach_m: 16.0 }
     }
 }
 

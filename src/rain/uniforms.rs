@@ -148,7 +148,8 @@ impl RainUniform {
             }),
             shell: std::array::from_fn(|s| {
                 let side = side_m(s);
-                [side, 0.25 * side * FADE, 0.5 * side * FADE, 0.0].map(|x| x as f32)
+                let last = if s > 0 { 0.5 * side_m(s - 1) } else { 0.0 };
+                [side, last * FADE, 0.5 * side * FADE, last].map(|x| x as f32)
             }),
             classes: classes.table,
         }

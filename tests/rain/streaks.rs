@@ -18,7 +18,7 @@ use crate::{
 
 const SIZE: (u32, u32) = (640, 360);
 const FOV: f64 = 0.25;
-const MOST: u32 = 30_000;
+const MOST: u32 = 12_000;
 /// Streaks are at least this wide, in pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 pub const LEAST_PIXELS: f64 = 1.2;
 
@@ -104,7 +104,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
         host.velocity_m_s = DVec3::X * speed;
         host.view.set_rain(RainSettings { shutter_s, most_drops: Some(MOST), ..RainSettings::default() }).unwrap();
         let mut ratios = vec![Vec::new(); CLASSES];
-        for _ in 0..20 {
+        for _ in 0..150 {
             t += 0.37;
             host.context.update(t).unwrap();
             let pixels = through(&mut host);
@@ -130,7 +130,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
         );
         let sizes = |i: usize| 1e3 * classes.table[means[i].0][0];
         assert!(means.len() >= 28, "{means:?}");
-        assert!(sizes(0) < 0.6 && sizes(means.len() - 1) > 5.3, "{means:?}");
+        assert!(sizes(0) < 0.6 && sizes(means.len() - 1) > 4.9, "{means:?}");
         for (class, count, mean) in means {
             let d = 1e3 * classes.table[class][0];
             assert!((mean - 1.0).abs() < 0.03, "{d} mm, {count} streaks: {mean} of the law's length");
