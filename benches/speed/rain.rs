@@ -7,7 +7,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    rain::{RainSettings, Shelter},
+    rain::{AreaMotion, AreaShape, RainArea, RainSettings, Shelter},
     scene::{Camera, HostLight},
     weather::{Precipitation, PrecipitationKind, Weather},
 };
@@ -97,6 +97,30 @@ fn median(v: &mut [f64]) -> f64 {
     v[v.len() / 2]
 }
 
+/// What rain areas before the camera add to the drops, and the rim of one that it stands in.
+fn areas(bench: &mut Bench) -> Fallible<()> {
+    let area = |i: u32| RainArea {
+        center_m: [(f64::from(i % 4) - 1.5) * 2500.0, 6000.0 + f64::from(i / 4) * 2500.0, 0.0],
+        shape: AreaShape::Ellipse([1000.0, 800.0]),
+        rim_m: 300.0,
+        motion: AreaMotion::Own([0.0, 0.0]),
+        ..RainArea::default()
+    };
+    let list: Vec<RainArea> = (0..16).map(area).collect();
+    let rim = [RainArea { center_m: [0.0, 650.0, 0.0], ..list[0] }];
+    for (name, areas) in [
+        ("1 rain area 5 km away adds", &list[..1]),
+        ("4 add", &list[..4]),
+        ("16 add", &list[..]),
+        ("the rim of one round the camera adds", &rim[..]),
+    ] {
+        let (a, b) =
+            bench.compare(8, |s| Ok(s.context.set_rain_areas(&[])?), |s| Ok(s.context.set_rain_areas(areas)?))?;
+        println!("  {name} {:.0} % of {} drops", 100.0 * (b / a - 1.0), 100_000);
+    }
+    Ok(bench.context.set_rain_areas(&[])?)
+}
+
 pub fn run() -> Fallible<()> {
     let mut bench = Bench::new()?;
     println!("rain: {} at {} x {}", bench.device.caps().adapter_name, SIZE.width, SIZE.height);
@@ -133,6 +157,7 @@ pub fn run() -> Fallible<()> {
     let (a, b) = bench.compare(12, |s| Ok(s.context.set_lights(&[])?), |s| Ok(s.context.set_lights(&lamps)?))?;
     println!("  4 lamps add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_lights(&[])?;
+    areas(&mut bench)?;
     let wet = median(&mut (0..8).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);
     bench.weather(0.0, bench.context.time_s() + 1.0)?;
     let dry = median(&mut (0..8).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);

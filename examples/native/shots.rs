@@ -5,6 +5,7 @@ use welkin::{
     context::{Context, GivenDirection},
     frame::Exposure,
     glass::{Pane, Windscreen, WiperArm},
+    rain::{AreaRain, AreaShape, RainArea},
     scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
@@ -157,6 +158,41 @@ pub fn shots() -> Vec<Shot> {
             },
             elevation_deg: -6.0,
             height_m: 1.8,
+            ..GROUND
+        },
+        Shot {
+            name: "rain_shaft",
+            caption: "A shower 5 km away",
+            weather: |c, ground| {
+                sun(c, 305.0, 20.0)?;
+                let weather = Weather {
+                    visibility_m: 35_000.0,
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Stratocumulus, 0.95, 1500.0)],
+                    wind: Wind::of(13.0, 275.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)?;
+                let area = |ahead_m: f64, right_m: f64, semi: [f64; 2], rate_mm_h: f64| RainArea {
+                    center_m: [f64::from(GROUND.at[0]) + right_m, f64::from(GROUND.at[1]) + ahead_m, ground],
+                    shape: AreaShape::Ellipse(semi),
+                    heading_deg: 15.0,
+                    rim_m: 0.8 * semi[0].min(semi[1]),
+                    rate_mm_h,
+                    kind: AreaRain::Showers,
+                    top_m: ground + 1500.0,
+                    ..RainArea::default()
+                };
+                c.set_rain_areas(&[
+                    area(9500.0, -2600.0, [1500.0, 1800.0], 5.0),
+                    area(6400.0, 1300.0, [2600.0, 1600.0], 5.0),
+                    area(6200.0, 1700.0, [1200.0, 1000.0], 40.0),
+                ])
+            },
+            height_m: 130.0,
+            azimuth_deg: 10.0,
+            elevation_deg: 5.0,
+            fov_y_deg: 38.0,
             ..GROUND
         },
         Shot {

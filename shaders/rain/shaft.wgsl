@@ -180,8 +180,8 @@ fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     let top = columns.list[i].top;
     let radius = columns.list[i].radius;
     let under = max(top - p.z, 0.0);
-    // A rain cloud's base sends a fifth of what the sky beside it does.
-    let hidden = 0.8 * (1.0 - under / sqrt(under * under + radius * radius));
+    // A rain cloud reaches twice as far as its rain, and its base sends a fifth of what the sky beside it does.
+    let hidden = 0.8 * (1.0 - under / sqrt(under * under + 4.0 * radius * radius));
     let around = mix(shaft.below, shaft.above * (1.0 - hidden), 0.5 + 0.5 * d.z);
     let out = column_chord(i, column_plan(i, p), column_turned(i, shaft.to_sun.xy - columns.list[i].lean * shaft.to_sun.z), 0.0).y;
     let way = max(out, 0.0);

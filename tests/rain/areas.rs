@@ -271,7 +271,7 @@ fn areas_go_with_the_wind_the_same_way_in_any_steps_and_after_loading() {
     at_once.update(60.0).unwrap();
     for i in 1..=240 {
         in_steps.update(f64::from(i) * 0.25).unwrap();
-        if i == 100 {
+        if i == 200 {
             loaded.load(&in_steps.save().unwrap()).unwrap();
         }
     }
@@ -284,13 +284,20 @@ fn areas_go_with_the_wind_the_same_way_in_any_steps_and_after_loading() {
     assert_eq!(bits(&at_once), bits(&loaded));
     assert_eq!(at_once.state_hash().unwrap(), in_steps.state_hash().unwrap());
     assert_eq!(at_once.state_hash().unwrap(), loaded.state_hash().unwrap());
-    // The centre has gone where the wind has carried the air: there is its rain, and none where it came from.
+    // The centre has gone where the wind has carried the air: round it lies the same rain.
     let moved = at_once.wind_displacement(60.0).unwrap();
-    let ahead = moved + moved.normalize() * 1000.0;
-    let behind = -moved.normalize() * 6000.0;
-    assert!(
-        moved.length() > 300.0 && rate(&at_once, ahead.x, ahead.y) > 10.0 && rate(&at_once, behind.x, behind.y) == 0.0
-    );
+    let there = RainArea { center_m: moved.to_array(), ..shower(0.0, 20.0) };
+    let mut host = host(&fair(0.0), &[there]);
+    host.context.update(60.0).unwrap();
+    let mut alone = make();
+    alone.set_rain_areas(&[RainArea { motion: AreaMotion::WithWind, ..shower(0.0, 20.0) }]).unwrap();
+    alone.update(60.0).unwrap();
+    for i in 0..40 {
+        let (x, y) = (f64::from(i) * 90.0 - 1800.0, f64::from(i) * 60.0 - 1200.0);
+        let [want, got] = [&host.context, &alone].map(|c| rate(c, moved.x + x, moved.y + y));
+        assert!((want - got).abs() < 1e-6, "{x} {y}: {got} mm/h, want {want}");
+    }
+    assert!(moved.length() > 300.0);
 }
 
 #[test]
