@@ -249,6 +249,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_RAINFALL 41
 /** wk_rain_area */
 #define WK_STRUCT_TYPE_RAIN_AREA 42
+/** wk_wind_grid */
+#define WK_STRUCT_TYPE_WIND_GRID 43
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3739,6 +3741,11 @@ typedef uint32_t wk_rain_model;
 #define WK_RAIN_MODEL_CONES 2
 /** Each drop where seed and time put it. */
 #define WK_RAIN_MODEL_DROPS 3
+/**
+ * Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders
+ * (wk_caps.tier 1).
+ */
+#define WK_RAIN_MODEL_INTEGRATED 4
 
 /** How a view draws rain; what falls does not depend on it. */
 typedef struct wk_rain {
@@ -3801,9 +3808,12 @@ typedef struct wk_shelter {
 /**
  * Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of it,
+ * than the device can draw.
  */
-WK_API wk_status wk_view_set_rain(wk_view *view, const wk_rain *rain);
+WK_API
+wk_status wk_view_set_rain(wk_view *view,
+                           const wk_rain *rain);
 
 /**
  * Sets what keeps rain off, in place of what did before; a moving box is set anew every frame. count 0 removes all. At most
@@ -3946,6 +3956,85 @@ wk_status wk_context_set_rain_areas(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Wind that varies in space
+ *
+ * A host that knows how air flows round its buildings, over its deck or under its rotor gives the velocities on a grid. They
+ * blow in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. All else goes with the weather's wind.
+ * ====================================================================================================
+ */
+
+/** What the velocities of a grid are. */
+typedef uint32_t wk_wind_grid_kind;
+
+/** The whole wind: it replaces the weather's within the grid. */
+#define WK_WIND_GRID_WHOLE 0
+/** What is to be added to the weather's wind. */
+#define WK_WIND_GRID_ADDED 1
+
+/**
+ * Velocities of the air at the nodes of a grid that is level and aligned to true north; between the nodes they go linearly
+ * along each axis. Outside blows the weather's wind: give the grid room until the flow has become it again.
+ */
+typedef struct wk_wind_grid {
+    /** sizeof(wk_wind_grid) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WIND_GRID. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
+     */
+    double origin_m[3];
+    /** From node to node east, north and up, m. Range [0.01, 10 000], default 1, 1, 1. */
+    double cell_m[3];
+    /** Nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2. */
+    uint32_t nodes[3];
+    /** A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE. */
+    wk_wind_grid_kind kind;
+    /**
+     * Three numbers a node (east, north, up), m/s, of at most 300 m/s together; the node to the east comes next, after a row
+     * the next row to the north, after a layer the next layer up. Copied by the call.
+     */
+    const float *velocities_m_s;
+    /** Nodes in velocities_m_s: the product of `nodes`. */
+    uint32_t velocity_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_wind_grid;
+
+/** Every field of `wk_wind_grid` at its default. */
+#define WK_WIND_GRID_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_wind_grid), \
+    /* struct_type */ WK_STRUCT_TYPE_WIND_GRID, \
+    /* next */ NULL, \
+    /* origin_m */ { 0.0, 0.0, 0.0 }, \
+    /* cell_m */ { 1.0, 1.0, 1.0 }, \
+    /* nodes */ { 2, 2, 2 }, \
+    /* kind */ WK_WIND_GRID_WHOLE, \
+    /* velocities_m_s */ NULL, \
+    /* velocity_count */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Not part of a saved state.
+ * Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_wind_grid(wk_context *context,
+                                   const wk_wind_grid *wind_grid);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WIND_GRID_INIT`. `struct_size` is `sizeof(wk_wind_grid)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

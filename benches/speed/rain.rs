@@ -7,7 +7,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    rain::{AreaMotion, AreaShape, RainArea, RainSettings, Shelter},
+    rain::{AreaMotion, AreaShape, RainArea, RainModel, RainSettings, Shelter},
     scene::{Camera, HostLight},
     weather::{Precipitation, PrecipitationKind, Weather},
 };
@@ -74,6 +74,11 @@ impl Bench {
         Ok(self.view.set_rain(RainSettings { most_drops: Some(most_drops), ..RainSettings::default() })?)
     }
 
+    fn model(&mut self, model: RainModel, most_drops: u32) -> Fallible<()> {
+        let asked = RainSettings { model, most_drops: Some(most_drops), ..RainSettings::default() };
+        Ok(self.view.set_rain(asked)?)
+    }
+
     /// Medians of `n` frames of either, taken in turn.
     fn compare(
         &mut self,
@@ -134,6 +139,24 @@ pub fn run() -> Fallible<()> {
             f64::from(drops) / 1e5
         );
     }
+    for (first, name, second, other, drops) in [
+        (RainModel::Cones, "cones", RainModel::Drops, "drops without a state", base),
+        (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", base),
+        (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", 4 * base),
+    ] {
+        let (a, b) = bench.compare(6, |s| s.model(first, drops), |s| s.model(second, drops))?;
+        println!("  {drops} drops: {name} {a:.2} ms, {other} {b:.2} ms, {:.2} times", b / a);
+    }
+    // So hard a rain that all of them fall.
+    bench.weather(500.0, bench.context.time_s() + 1.0)?;
+    for drops in [500_000, 1_000_000, 2_000_000, 4_000_000] {
+        bench.drops(drops)?;
+        bench.frame()?;
+        let mut times = (0..3).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?;
+        let (ms, drawn) = (median(&mut times), f64::from(bench.view.report().drops));
+        println!("  {:.3} million drops: {ms:.1} ms, {:.1} ms a million", drawn / 1e6, ms / drawn * 1e6);
+    }
+    bench.weather(100.0, bench.context.time_s() + 1.0)?;
     bench.drops(base)?;
     let boxes: Vec<Shelter> = (0..16)
         .map(|i| Shelter {

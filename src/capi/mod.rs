@@ -53,6 +53,8 @@ pub mod rain;
 
 pub mod area;
 
+pub mod wind_grid;
+
 pub mod light;
 
 pub mod windscreen;

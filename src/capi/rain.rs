@@ -38,6 +38,9 @@ pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
 /// Each drop where seed and time put it.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
+/// Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders
+/// (wk_caps.tier 1).
+pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
 /// How a view draws rain; what falls does not depend on it.
 #[repr(C)]
@@ -103,7 +106,8 @@ impl wk_shelter {
 
 /// Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model, or more drops of it,
+/// than the device can draw.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_rain) -> wk_status {
     guard("wk_view_set_rain", |call| {
@@ -120,6 +124,7 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
                 WK_RAIN_MODEL_VEIL => RainModel::Veil,
                 WK_RAIN_MODEL_CONES => RainModel::Cones,
                 WK_RAIN_MODEL_DROPS => RainModel::Drops,
+                WK_RAIN_MODEL_INTEGRATED => RainModel::Integrated,
                 _ => RainModel::Automatic,
             };
         }

@@ -132,6 +132,8 @@ pub const WK_STRUCT_TYPE_WIND: wk_struct_type = 40;
 pub const WK_STRUCT_TYPE_RAINFALL: wk_struct_type = 41;
 /// wk_rain_area
 pub const WK_STRUCT_TYPE_RAIN_AREA: wk_struct_type = 42;
+/// wk_wind_grid
+pub const WK_STRUCT_TYPE_WIND_GRID: wk_struct_type = 43;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

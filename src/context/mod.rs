@@ -43,7 +43,7 @@ use crate::{
         sun::{Utc, direction},
     },
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
-    wind::{Drift, Wind},
+    wind::{Drift, Wind, WindGrid},
 };
 
 /// How to make a context.
@@ -129,6 +129,7 @@ pub struct Context {
     shelters: Vec<Shelter>,
     areas: Vec<areas::KeptArea>,
     lights: Vec<HostLight>,
+    wind_grid: Option<Arc<WindGrid>>,
     time_s: f64,
     ephemeris: Ephemeris,
     hollows: Hollows,
@@ -164,6 +165,7 @@ impl Context {
             shelters: Vec::new(),
             areas: Vec::new(),
             lights: Vec::new(),
+            wind_grid: None,
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             hollows,

@@ -1,11 +1,13 @@
 //! The wind that a context answers for: velocity at any place and time, and how far it has carried the air.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::Context;
 use crate::{
     error::Result,
-    wind::{Blowing, Drift, WindAt},
+    wind::{Blowing, Drift, WindAt, WindGrid, WindGridKind},
 };
 
 impl Context {
@@ -26,7 +28,35 @@ impl Context {
         place.validate()?;
         let conditions = self.weather_at(time_s)?;
         let height_m = place.altitude_m - conditions.air.station_altitude_m;
-        Ok(self.blowing(time_s)?.at_height(&conditions.wind, height_m))
+        let wind = self.blowing(time_s)?.at_height(&conditions.wind, height_m);
+        let found = self.wind_grid.as_ref().and_then(|g| {
+            let cells = g.cells_at(position, self.desc.world.frame_at(g.origin).world_to_enu);
+            Some((g.kind, g.at(cells)?))
+        });
+        Ok(match found {
+            None => wind,
+            Some((WindGridKind::Whole, v)) => WindAt { velocity_m_s: v, mean_m_s: v, gust_deviation_m_s: 0.0 },
+            Some((WindGridKind::Added, v)) => {
+                WindAt { velocity_m_s: wind.velocity_m_s + v, mean_m_s: wind.mean_m_s + v, ..wind }
+            }
+        })
+    }
+
+    /// Sets a wind that varies in space; `None` leaves the weather's. It blows in [`Context::wind_at`] and on drops of
+    /// [`RainModel::Integrated`](crate::rain::RainModel::Integrated); [`Context::wind_displacement`], and what goes with
+    /// it, know nothing of it. It is not saved with the context.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_wind_grid(&mut self, grid: Option<WindGrid>) -> Result<()> {
+        grid.as_ref().map_or(Ok(()), WindGrid::validate)?;
+        self.wind_grid = grid.map(Arc::new);
+        Ok(())
+    }
+
+    /// The wind that varies in space.
+    pub fn wind_grid(&self) -> Option<&Arc<WindGrid>> {
+        self.wind_grid.as_ref()
     }
 
     /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the integral of

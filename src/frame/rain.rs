@@ -5,7 +5,7 @@ use std::{f64::consts::PI, sync::Arc};
 use glam::{DMat4, DVec3};
 
 use super::{
-    Frame, Shared,
+    Frame, FrameFlags, Shared,
     areas::{AreaPass, Columns},
 };
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
     gpu::Device,
     rain::{
         Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shelter, Shot, Splashes,
+        RainSettings, RainUniform, Shelter, Shot, Splashes, Stepped,
         cones::{BANDS_M, CONES},
         drops,
         lattice::{HIDDEN_M, REACH_M, SHELLS},
@@ -109,7 +109,7 @@ impl Rain {
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
-        let most = self.settings.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 });
+        let most = self.settings.most_on(device);
         let station = &scene.conditions.air;
         let factor = drops::factor_in(station, station.station_altitude_m);
         let same = |c: &&(Falling, f64, u32, Classes)| c.0 == *falling && c.1 == factor && c.2 == most;
@@ -223,11 +223,25 @@ impl Rain {
         self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
         self.lights.clear();
         self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
-        let cones = on_cones
-            .then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &|from, to| context.carried(from, to)));
+        let carried = |from, to| context.carried(from, to);
+        let cones = on_cones.then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &carried));
+        let around = context.wind_grid().map(|g| {
+            let to_enu = context.world().frame_at(g.origin).world_to_enu;
+            (g, g.cells_at(frame.camera.position, to_enu))
+        });
+        let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
+            classes: &classes,
+            shot: &shot,
+            air: &air,
+            anew: frame.flags.has(FrameFlags(FrameFlags::CUT.0 | FrameFlags::NO_HISTORY.0)),
+            carried: &carried,
+            around,
+            most: self.settings.most_on(device),
+        });
         let drawn = Drawn {
             rain: &block,
             cones: cones.as_ref(),
+            stepped: stepped.as_ref(),
             shelters: &self.boxes,
             lights: &self.lights,
             splash: &splashes.uniform(shot.position_m, height_m, air.time_s),

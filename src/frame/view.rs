@@ -117,7 +117,7 @@ impl View {
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field and its range; nothing changes then.
     pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
-        settings.validate()?;
+        settings.validate_on(&self.device)?;
         self.rain.settings = settings;
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! The ways to draw rain that are charted against each other, with what they cost.
 
-use super::{RainModel, RainSettings, source::SourceLod};
+use super::{RainModel, RainSettings, STATE_BYTES, source::SourceLod};
 use crate::plan::{Candidate, Effect, Method, Units, Work};
 
 /// A way to draw rain.
@@ -14,6 +14,8 @@ pub enum RainMethod {
 
 /// Work of a drop, about a corner's hash, place, light and projection four times; few of them reach the picture.
 const DROP: Units = Units { samples: 5.0, texels: 0.5, bytes: 8.0 };
+/// Work of stepping one: an exponential or a few, two looks at the wind, its state read and written.
+const STEP: Units = Units { samples: 2.0, texels: 2.0, bytes: 32.0 };
 /// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 /// A pixel's light on four cones, and eight looks at the streaks, each from two sizes of their texture.
@@ -33,6 +35,11 @@ impl RainMethod {
                 RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
                 RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
                 RainModel::Automatic | RainModel::Drops => drops(s.most_drops.unwrap_or(400_000)),
+                RainModel::Integrated => {
+                    let n = s.most_drops.unwrap_or(400_000);
+                    let drawn = drops(n);
+                    Work { view: drawn.view.plus(STEP, f64::from(n)), view_bytes: u64::from(n) * STATE_BYTES, ..drawn }
+                }
             },
             Self::Source(lod) => drops(lod.drawn()),
         }
@@ -44,6 +51,7 @@ pub fn candidates() -> Vec<Candidate> {
     let offered =
         |model, most_drops| RainMethod::Offered(RainSettings { model, most_drops, ..RainSettings::default() });
     let drops = |n| offered(RainModel::Drops, Some(n));
+    let integrated = |n| offered(RainModel::Integrated, Some(n));
     let source = |seeds, copies| RainMethod::Source(SourceLod { seeds, copies, ..SourceLod::default() });
     let named = [
         ("veil", offered(RainModel::Veil, None)),
@@ -53,6 +61,8 @@ pub fn candidates() -> Vec<Candidate> {
         ("drops-100k", drops(100_000)),
         ("drops-400k", drops(400_000)),
         ("drops", offered(RainModel::Automatic, None)),
+        ("integrated-100k", integrated(100_000)),
+        ("integrated-400k", integrated(400_000)),
         ("source-20k", source(20_000, 0)),
         ("source-140k", source(140_000, 0)),
         ("source-replicated-140k", source(20_000, 6)),

@@ -78,7 +78,8 @@ impl ConePass {
                     layouts: &[frame, &self.layout],
                     targets: &[wgpu::ColorTargetState {
                         format: super::passes::FORMAT,
-                        blend: None,
+                        // Columns of rain areas may lie in the layer.
+                        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
                     constants: &[("HAS_DEPTH", f64::from(u8::from(has_depth)))],

@@ -8,9 +8,9 @@
 //! Towards these ends the azimuth is divided into half as many tiles for each halving of sin theta, so streaks keep their width.
 //! The cone of the sources was narrowed to a tip, where every streak met in a point.
 //!
-//! The bands are those of the lattice's shells ([`super::lattice`]), and a cone shows as many streaks as its shell would show
-//! drops, each of which stands for the same number: the texture's four channels hold 1, 4, 16 and 64 parts of the streaks, of
-//! which as many are taken as are wanted; where more are wanted than there are, contrast goes down as that of drops would.
+//! A cone shows as many streaks as there are drops in its band: the texture's four channels hold 1, 4, 16 and 64 parts of the
+//! streaks, of which as many are taken as are wanted; where more are wanted than there are, contrast goes down as that of
+//! drops would.
 //! What they hide on the mean is the optical depth of the band's drops.
 //!
 //! Nothing is carried from frame to frame. A cone is drawn twice, as two sets that grow and fade in turn, each with an offset by
@@ -29,7 +29,7 @@ use super::{
 
 /// Cones.
 pub const CONES: usize = 4;
-/// Distances, m, between which the drops of each cone are: what the shells of the drops reach, to the middle of their fading.
+/// Distances, m, between which the drops of each cone are.
 pub const BANDS_M: [f64; CONES + 1] = {
     let reach = 14.0;
     [0.1875, reach / 8.0, reach / 4.0, reach / 2.0, reach]

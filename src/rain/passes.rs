@@ -3,8 +3,14 @@
 use std::sync::Arc;
 
 use super::{
-    LocalUniform, cone_pass::ConePass, cones::ConeUniform, lattice::SHELLS, shelter::MAX_SHELTERS,
-    splash::SplashUniform, uniforms::RainUniform,
+    LocalUniform,
+    cone_pass::ConePass,
+    cones::ConeUniform,
+    lattice::SHELLS,
+    shelter::MAX_SHELTERS,
+    splash::SplashUniform,
+    step_pass::{StepPass, Stepped},
+    uniforms::RainUniform,
 };
 use crate::{
     error::Result,
@@ -25,6 +31,7 @@ pub(crate) struct RainLayer {
     /// Of drops and of splashes, for each kind of depth, with and without rims of areas near.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
     cones: Option<ConePass>,
+    stepped: Option<StepPass>,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
     bound: Option<(Option<wgpu::Texture>, bool, wgpu::BindGroup)>,
@@ -35,6 +42,8 @@ pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
     /// Cones in place of drops and splashes.
     pub cones: Option<&'a ConeUniform>,
+    /// Drops that are stepped in place of those without a state.
+    pub stepped: Option<&'a Stepped<'a>>,
     /// Rows and velocities of the boxes that keep rain off ([`super::Shelter`]).
     pub shelters: &'a [[[f32; 4]; 4]],
     /// The host's lamps.
@@ -84,13 +93,13 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 }
 
 /// A count, and the boxes after it.
-const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
+pub(super) const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
 /// Likewise.
 const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
 /// The columns of [`LocalUniform`], which are a block of their own.
 const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
 /// Where each block begins: rain, splashes, shelters, lights, columns of areas, drops of areas; and the end.
-const STARTS: [usize; 7] = {
+pub(super) const STARTS: [usize; 7] = {
     let splash = size_of::<RainUniform>().next_multiple_of(256);
     let shelters = splash + size_of::<SplashUniform>().next_multiple_of(256);
     let lights = shelters + SHELTER_BYTES.next_multiple_of(256);
@@ -112,6 +121,7 @@ impl RainLayer {
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             pipelines: [const { [None, None] }; 8],
             cones: None,
+            stepped: None,
             none: None,
             texture: None,
             bound: None,
@@ -121,7 +131,8 @@ impl RainLayer {
     /// Bytes of GPU memory that the layer holds.
     pub fn bytes(&self) -> u64 {
         let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
-        layer + self.cones.as_ref().map_or(0, ConePass::bytes)
+        let cones = self.cones.as_ref().map_or(0, ConePass::bytes);
+        layer + cones + self.stepped.as_ref().map_or(0, StepPass::bytes)
     }
 
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
@@ -174,6 +185,11 @@ impl RainLayer {
             self.draw_into(encoder, drawn.over, |pass, layer| layer.cones.iter().for_each(|c| c.draw(pass, kind)));
             return Ok(());
         }
+        if let Some(stepped) = drawn.stepped {
+            let pass = self.stepped.get_or_insert_with(|| StepPass::new(device));
+            pass.prepare_draw(device, layout, kind, areas)?;
+            pass.step(device, encoder, &self.blocks, stepped)?;
+        }
         for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
             if slot.is_none() {
                 *slot = Some(pipeline(device, layout, vertex, multi, [depth.is_some(), areas])?);
@@ -181,8 +197,13 @@ impl RainLayer {
         }
         self.draw_into(encoder, drawn.over, |pass, layer| {
             let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
-            pass.set_pipeline(falling);
-            pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+            match (&layer.stepped, drawn.stepped) {
+                (Some(stepped), Some(_)) => stepped.draw(pass, kind, areas),
+                _ => {
+                    pass.set_pipeline(falling);
+                    pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+                }
+            }
             if depth.is_some() && drawn.splashes > 0 {
                 pass.set_pipeline(splashing);
                 pass.draw(0..4, 0..drawn.splashes);

@@ -1,6 +1,10 @@
 //! What a host may ask of the rain's picture.
 
-use crate::error::{Result, check_range};
+use super::STATE_BYTES;
+use crate::{
+    error::{Error, Result, check_range},
+    gpu::Device,
+};
 
 /// With what a view draws rain; what falls is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,6 +19,8 @@ pub enum RainModel {
     Cones,
     /// Each drop where (seed, number, time) puts it, without a state ([`super::lattice`]).
     Drops,
+    /// Drops that are stepped through a wind that varies in space ([`super::integrated`]). Needs compute shaders.
+    Integrated,
 }
 
 /// How a view draws rain. What falls, and where each drop is, does not depend on it.
@@ -43,5 +49,29 @@ impl RainSettings {
     pub fn validate(&self) -> Result<()> {
         check_range("rain.shutter_s", self.shutter_s, 1e-4, 0.1, "s")?;
         self.most_drops.map_or(Ok(()), |n| check_range("rain.most_drops", f64::from(n), 1e3, 8e6, ""))
+    }
+
+    /// Most drops that are drawn on `device`.
+    pub(crate) fn most_on(&self, device: &Device) -> u32 {
+        self.most_drops.unwrap_or(if device.caps().software { 100_000 } else { 400_000 })
+    }
+
+    /// Refuses what `device` cannot draw, by name.
+    pub(crate) fn validate_on(&self, device: &Device) -> Result<()> {
+        self.validate()?;
+        if self.model != RainModel::Integrated {
+            return Ok(());
+        }
+        if device.caps().tier == 0 {
+            return Err(Error::unsupported("rain.model integrated: this device has no compute shaders"));
+        }
+        let room = device.device.limits().max_storage_buffer_binding_size / STATE_BYTES;
+        if u64::from(self.most_on(device)) + 4 > room {
+            return Err(Error::unsupported(format!(
+                "rain.most_drops above {} with the integrated model on this device",
+                room.saturating_sub(4)
+            )));
+        }
+        Ok(())
     }
 }

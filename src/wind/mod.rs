@@ -9,6 +9,7 @@
 //! What the wind carries is moved by the displacement, never by velocity times time: then no change throws it.
 
 mod drift;
+mod grid;
 mod gusts;
 #[cfg(test)]
 mod tests;
@@ -17,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use drift::Walk;
 pub use drift::{Blowing, Drift};
+pub use grid::{MAX_NODES, WindGrid, WindGridKind};
 use gusts::Gusts;
 
 use crate::weather::{Timeline, WindProfile};

@@ -6,7 +6,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, plan::*, query::*,
-    rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, windscreen::*,
+    rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*,
+    windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -72,6 +73,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),
+        case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
         case("wk_context_get_conditions", "context", false, |h| unsafe {
             wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())

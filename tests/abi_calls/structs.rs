@@ -9,7 +9,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, opengl::*, plan::*,
     query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    weather::*, wind::*, windscreen::*,
+    weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -108,6 +108,7 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_set_rain_areas(context, p.cast(), 1, 1 << 24)
         }),
         case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
+        case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {

@@ -2,7 +2,9 @@
 
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*};
+use welkin::capi::{
+    conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+};
 
 use super::world::{World, init, message};
 
@@ -238,4 +240,32 @@ fn patches_of_fog_go_with_the_air() {
         }
     }
     assert!(changed > 0.2, "a standing place sees them pass: {changed}");
+}
+
+#[test]
+fn a_wind_that_varies_in_space_comes_through_and_goes_again() {
+    let world = World::new();
+    let before = wind(&world, MAST, 0.0);
+    let velocities: Vec<f32> = (0..8).flat_map(|_| [3.0, -4.0, 5.0]).collect();
+    let grid = wk_wind_grid {
+        origin_m: [-10.0, -10.0, 0.0],
+        cell_m: [20.0, 20.0, 20.0],
+        kind: WK_WIND_GRID_ADDED,
+        velocities_m_s: velocities.as_ptr(),
+        velocity_count: 8,
+        ..init("wk_wind_grid")
+    };
+    // SAFETY, for all: live pointers.
+    let set = |grid: &wk_wind_grid| unsafe { wk_context_set_wind_grid(world.context, grid) };
+    assert_eq!(set(&grid), WK_OK, "{}", message());
+    let there = wind(&world, MAST, 0.0);
+    assert_eq!([0, 1, 2].map(|i| there.velocity_m_s[i] - before.velocity_m_s[i]), [3.0, -4.0, 5.0]);
+    let beside = [10.5, 0.0, 10.0];
+    assert_eq!(wind(&world, beside, 0.0).velocity_m_s, before.velocity_m_s);
+    refused(set(&wk_wind_grid { velocity_count: 7, ..grid }), "wind_grid.velocities_m_s' count must be 8");
+    refused(set(&wk_wind_grid { nodes: [2, 2, 33], ..grid }), "wind_grid.nodes[2] must be");
+    refused(set(&wk_wind_grid { velocities_m_s: null(), ..grid }), "wind_grid.velocities_m_s must not be NULL");
+    assert_eq!(wind(&world, MAST, 0.0).velocity_m_s, there.velocity_m_s, "an error changes nothing");
+    assert_eq!(unsafe { wk_context_set_wind_grid(world.context, null()) }, WK_OK);
+    assert_eq!(wind(&world, MAST, 0.0).velocity_m_s, before.velocity_m_s);
 }

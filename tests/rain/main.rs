@@ -3,6 +3,7 @@
 mod areas;
 mod cones;
 mod drops;
+mod integrated;
 mod pictures;
 mod processes;
 mod scene;

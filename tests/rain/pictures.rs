@@ -117,7 +117,12 @@ fn every_model_shows_the_same_rain() {
         host.context.set_weather(&rain(rate, 5.0), t, 0.0).unwrap();
         host.context.update(t + 1.0).unwrap();
         host.velocity_m_s = DVec3::Y * speed;
-        for (model, name) in [(RainModel::Veil, "veil"), (RainModel::Cones, "cones"), (RainModel::Drops, "drops")] {
+        for (model, name) in [
+            (RainModel::Veil, "veil"),
+            (RainModel::Cones, "cones"),
+            (RainModel::Drops, "drops"),
+            (RainModel::Integrated, "integrated"),
+        ] {
             host.view.set_rain(RainSettings { model, ..RainSettings::default() }).unwrap();
             paint(&host);
             host.record(Stages::ALL).unwrap();

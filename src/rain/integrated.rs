@@ -1,0 +1,126 @@
+//! Drops that are stepped: for a wind that varies in space, such as that round a building.
+//!
+//! Drops are those of the lattice ([`super::lattice`]), as many in the same shells, but each has a place and a velocity of its
+//! own, in a buffer of the view. In an even wind a drop starts where the lattice has it and stays there until it leaves
+//! the cell round the camera.
+//!
+//! A step goes by drag that is linear while it lasts, solved exactly ([`step`]), so that no length of it is unstable. The rate
+//! is that of drag by the square at the step's first moment, so short steps converge to it; where a step is long
+//! against it, the rate at rest, which ends at the right fall.
+//!
+//! A drop that leaves its cell, or that the camera leaves behind, comes in again on the opposite side at a place by
+//! chance (hash of its number and how often it has been there) at the speed that it has there at rest. As many leave as come in:
+//! neither dropped frames nor a camera at 300 m/s make gaps or bursts. After a jump of time, or of the camera where the host
+//! says so, all start anew.
+
+use glam::DVec3;
+
+use super::{
+    Classes,
+    drops::GRAVITY_M_S2,
+    lattice::{SHELLS, fraction, side_m},
+    uniforms::{Air, Shot},
+};
+use crate::wind::{WindGrid, WindGridKind};
+
+/// Longest time that is stepped over, s; what is longer starts anew.
+pub(crate) const MOST_S: f64 = 10.0;
+/// Longest time of one of the steps that a frame is divided into, s, as long as there are no more than [`MOST_STEPS`].
+const STEP_S: f64 = 1.0 / 60.0;
+/// Most steps of a frame.
+const MOST_STEPS: f64 = 8.0;
+
+/// One step: velocity (m/s) and way (m) after `dt_s` of a drop of `velocity_m_s` in air of `air_m_s`, that falls at
+/// `terminal_m_s` at rest. Vectors (east, north, up). `shaders/rain/step.wgsl` has the same.
+pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
+    let terminal = terminal_m_s.max(1e-3);
+    let at_rest = GRAVITY_M_S2 / terminal;
+    let pull = ((velocity_m_s - air_m_s).length() / terminal).clamp(0.25, 8.0);
+    let rate = at_rest * if dt_s * at_rest > 0.5 { 1.0 } else { pull };
+    let settled = air_m_s - DVec3::Z * (GRAVITY_M_S2 / rate);
+    let gone = -libm::expm1(-rate * dt_s);
+    let difference = velocity_m_s - settled;
+    (velocity_m_s - difference * gone, settled * dt_s + difference * (gone / rate))
+}
+
+/// `StepUniform` of `shaders/rain/step.wgsl`, which explains the fields.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct StepUniform {
+    pub air: [f32; 3],
+    pub dt: f32,
+    pub grid_scale: [f32; 3],
+    pub steps: u32,
+    pub grid_offset: [f32; 3],
+    pub known: u32,
+    pub grid_first: [f32; 3],
+    pub capacity: u32,
+    pub moved: [f32; 3],
+    pub whole: u32,
+    pub eye: [[u32; 4]; SHELLS],
+    pub before: [[u32; 4]; SHELLS],
+}
+
+/// What the last step left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Left {
+    pub time_s: f64,
+    pub position_m: DVec3,
+    pub per_shell: u32,
+}
+
+/// The wind that varies in space as a camera finds it: its place in cells of the grid.
+pub(crate) type Around<'a> = (&'a WindGrid, DVec3);
+
+impl StepUniform {
+    /// From what was `left` to now; none where there is nothing to step.
+    pub fn new(
+        classes: &Classes,
+        shot: &Shot<'_>,
+        air: &Air,
+        left: Option<Left>,
+        carried: &dyn Fn(f64, f64) -> DVec3,
+        around: Option<Around<'_>>,
+        capacity: u32,
+    ) -> Option<Self> {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let left = left.filter(|l| (0.0..=MOST_S).contains(&(air.time_s - l.time_s)));
+        let dt = left.map_or(0.0, |l| air.time_s - l.time_s);
+        let moved = left.map_or(DVec3::ZERO, |l| shot.position_m - l.position_m);
+        let known = left.map_or(0, |l| l.per_shell);
+        if left.is_some() && dt == 0.0 && moved == DVec3::ZERO && known >= classes.per_shell {
+            return None;
+        }
+        let steps = (dt / STEP_S).ceil().clamp(1.0, MOST_STEPS);
+        let blows = match left {
+            Some(l) if dt > 0.0 => carried(l.time_s, air.time_s) / dt,
+            _ => air.velocity_m_s,
+        };
+        let places = |p: DVec3| {
+            std::array::from_fn(|s| {
+                let [x, y, z] = p.to_array().map(|x| fraction(x, side_m(s)));
+                [x, y, z, 0]
+            })
+        };
+        let mut step = Self {
+            air: v(blows),
+            dt: (dt / steps) as f32,
+            steps: if dt > 0.0 { steps as u32 } else { 0 },
+            known,
+            capacity,
+            moved: v(moved),
+            eye: places(shot.position_m),
+            before: places(shot.position_m - moved),
+            ..bytemuck::Zeroable::zeroed()
+        };
+        if let Some((grid, cells)) = around {
+            let nodes = DVec3::from(grid.nodes.map(f64::from));
+            // A node is in the middle of its texel.
+            step.grid_scale = v(1.0 / (grid.cell_m * nodes));
+            step.grid_offset = v((cells + 0.5) / nodes);
+            step.grid_first = v(0.5 / nodes);
+            step.whole = u32::from(grid.kind == WindGridKind::Whole);
+        }
+        Some(step)
+    }
+}

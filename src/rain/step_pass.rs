@@ -1,0 +1,362 @@
+//! Drops that are stepped, on the GPU: their states, the pass that steps them, the draw.
+
+use std::sync::Arc;
+
+use super::{
+    Classes,
+    integrated::{Around, Left, StepUniform},
+    lattice::SHELLS,
+    passes::{FORMAT, SHELTER_BYTES, STARTS},
+    uniforms::{Air, RainUniform, Shot},
+};
+use crate::{error::Result, gpu::Device, wind::WindGrid};
+
+/// Bytes of one drop: place and word, velocity.
+pub(crate) const STATE_BYTES: u64 = 32;
+/// Where the camera's places begin in the block.
+const EYES: usize = 256;
+
+/// What a view holds for stepped drops, made when it first draws them.
+pub(crate) struct StepPass {
+    block: wgpu::Buffer,
+    states: Option<(u32, wgpu::Buffer)>,
+    left: Option<Left>,
+    /// The wind's texture and whose it is; one node where there is no grid.
+    grid: Option<(Option<Arc<WindGrid>>, wgpu::TextureView)>,
+    sampler: wgpu::Sampler,
+    layouts: [wgpu::BindGroupLayout; 3],
+    /// With and without a grid.
+    steps: [Option<wgpu::ComputePipeline>; 2],
+    /// For each kind of depth, with and without rims of areas near.
+    draws: [Option<wgpu::RenderPipeline>; 8],
+    groups: Option<[wgpu::BindGroup; 3]>,
+}
+
+/// What a frame steps by.
+pub(crate) struct Stepped<'a> {
+    pub classes: &'a Classes,
+    pub shot: &'a Shot<'a>,
+    pub air: &'a Air,
+    /// Nothing of earlier frames may show.
+    pub anew: bool,
+    pub carried: &'a dyn Fn(f64, f64) -> glam::DVec3,
+    /// The grid, and the camera's place in cells of it.
+    pub around: Option<(&'a Arc<WindGrid>, glam::DVec3)>,
+    /// Drops of all shells that there is room for.
+    pub most: u32,
+}
+
+fn uniform(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    }
+}
+
+/// Of the frame's blocks and of its own for the step, and of the draw's.
+fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
+    let compute = wgpu::ShaderStages::COMPUTE;
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: compute, ty, count: None };
+    let make = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    };
+    [
+        make("step frame", &[uniform(0, compute, size_of::<RainUniform>()), uniform(2, compute, SHELTER_BYTES)]),
+        make(
+            "step",
+            &[
+                uniform(0, compute, size_of::<StepUniform>()),
+                entry(
+                    1,
+                    wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Storage { read_only: false },
+                        has_dynamic_offset: false,
+                        min_binding_size: wgpu::BufferSize::new(STATE_BYTES),
+                    },
+                ),
+                entry(
+                    2,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                        view_dimension: wgpu::TextureViewDimension::D3,
+                        multisampled: false,
+                    },
+                ),
+                entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            ],
+        ),
+        make("stepped", &[uniform(0, wgpu::ShaderStages::VERTEX, 16 * SHELLS)]),
+    ]
+}
+
+impl StepPass {
+    pub fn new(device: &Device) -> Self {
+        Self {
+            block: device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("step"),
+                size: (EYES + 16 * SHELLS) as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            states: None,
+            left: None,
+            grid: None,
+            sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("wind"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            layouts: layouts(&device.device),
+            steps: [None, None],
+            draws: [const { None }; 8],
+            groups: None,
+        }
+    }
+
+    /// Bytes of GPU memory held.
+    pub fn bytes(&self) -> u64 {
+        self.states.as_ref().map_or(0, |(_, b)| b.size())
+    }
+
+    /// Makes room for the drops, takes up the wind, and records the step. The rain's blocks are up.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn step(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        blocks: &wgpu::Buffer,
+        stepped: &Stepped<'_>,
+    ) -> Result<()> {
+        // Near the rims of rain areas a shell holds the most of what falls on either side.
+        let room = device.device.limits().max_storage_buffer_binding_size / (STATE_BYTES * SHELLS as u64);
+        let wanted = stepped.most.div_ceil(SHELLS as u32).max(stepped.classes.per_shell);
+        let capacity = u64::from(wanted).min(room) as u32;
+        if self.states.as_ref().is_none_or(|(c, _)| *c < capacity) {
+            let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("drops"),
+                size: STATE_BYTES * u64::from(capacity) * SHELLS as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            (self.states, self.left, self.groups) = (Some((capacity, buffer)), None, None);
+        }
+        let capacity = self.states.as_ref().map_or(0, |(c, _)| *c);
+        let around = stepped.around.map(|(grid, cells)| -> Around<'_> { (grid, cells) });
+        self.take_wind(device, stepped.around.map(|(grid, _)| grid));
+        self.bind(device, blocks);
+        let left = self.left.filter(|_| !stepped.anew);
+        let (shot, air, per_shell) = (stepped.shot, stepped.air, stepped.classes.per_shell.min(capacity));
+        self.left = Some(Left { time_s: air.time_s, position_m: shot.position_m, per_shell });
+        let made = StepUniform::new(stepped.classes, shot, air, left, stepped.carried, around, capacity);
+        let Some(block) = made else { return Ok(()) };
+        let mut bytes = [0; EYES + 16 * SHELLS];
+        bytes[..size_of::<StepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
+        bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
+        device.queue.write_buffer(&self.block, 0, &bytes);
+        let slot = &mut self.steps[usize::from(around.is_some())];
+        if slot.is_none() {
+            *slot = Some(step_pipeline(device, &self.layouts, around.is_some())?);
+        }
+        if let (Some(pipeline), Some(groups)) = (slot, &self.groups) {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &groups[0], &[]);
+            pass.set_bind_group(1, &groups[1], &[]);
+            pass.dispatch_workgroups(per_shell.div_ceil(64).max(1), SHELLS as u32, 1);
+        }
+        Ok(())
+    }
+
+    /// Makes the draw's pipeline for a kind of depth, if it is not there.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn prepare_draw(
+        &mut self,
+        device: &Arc<Device>,
+        frame: &wgpu::BindGroupLayout,
+        (multi, has_depth): (bool, bool),
+        areas: bool,
+    ) -> Result<()> {
+        let slot = &mut self.draws[key(multi, has_depth, areas)];
+        if slot.is_none() {
+            *slot = Some(draw_pipeline(device, [frame, &self.layouts[2]], multi, [has_depth, areas])?);
+        }
+        Ok(())
+    }
+
+    /// Draws what was stepped; the frame's group is set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, (multi, has_depth): (bool, bool), areas: bool) {
+        let pipeline = &self.draws[key(multi, has_depth, areas)];
+        let (Some(pipeline), Some(groups), Some((capacity, states)), Some(left)) =
+            (pipeline, &self.groups, &self.states, &self.left)
+        else {
+            return;
+        };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &groups[2], &[]);
+        for shell in 0..SHELLS as u64 {
+            let first = shell * u64::from(*capacity) * STATE_BYTES;
+            pass.set_vertex_buffer(0, states.slice(first..));
+            pass.draw(0..4, 0..left.per_shell);
+        }
+    }
+
+    fn take_wind(&mut self, device: &Device, wind: Option<&Arc<WindGrid>>) {
+        let same = |(held, _): &(Option<Arc<WindGrid>>, wgpu::TextureView)| match (held, wind) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            // Without a grid the texture is not read.
+            (_, None) => true,
+            _ => false,
+        };
+        if !self.grid.as_ref().is_some_and(same) {
+            let nothing = ([1, 1, 1], &[[0.0; 3]][..]);
+            let (nodes, velocities) = wind.map_or(nothing, |w| (w.nodes, &w.velocities_m_s[..]));
+            self.grid = Some((wind.cloned(), wind_texture(device, nodes, velocities)));
+            self.groups = None;
+        }
+    }
+
+    fn bind(&mut self, device: &Device, blocks: &wgpu::Buffer) {
+        let (None, Some((_, states)), Some((_, wind))) = (&self.groups, &self.states, &self.grid) else { return };
+        let part = |buffer, offset: usize, size: usize| {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer,
+                offset: offset as u64,
+                size: wgpu::BufferSize::new(size as u64),
+            })
+        };
+        let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+            device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("step"), layout, entries })
+        };
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        self.groups = Some([
+            group(
+                &self.layouts[0],
+                &[
+                    entry(0, part(blocks, STARTS[0], size_of::<RainUniform>())),
+                    entry(2, part(blocks, STARTS[2], SHELTER_BYTES)),
+                ],
+            ),
+            group(
+                &self.layouts[1],
+                &[
+                    entry(0, part(&self.block, 0, size_of::<StepUniform>())),
+                    entry(1, states.as_entire_binding()),
+                    entry(2, wgpu::BindingResource::TextureView(wind)),
+                    entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
+                ],
+            ),
+            group(&self.layouts[2], &[entry(0, part(&self.block, EYES, 16 * SHELLS))]),
+        ]);
+    }
+}
+
+fn key(multi: bool, has_depth: bool, areas: bool) -> usize {
+    usize::from(areas) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
+}
+
+fn wind_texture(device: &Device, nodes: [u32; 3], velocities: &[[f32; 3]]) -> wgpu::TextureView {
+    let size = wgpu::Extent3d { width: nodes[0], height: nodes[1], depth_or_array_layers: nodes[2] };
+    let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("wind"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let texels: Vec<u16> =
+        velocities.iter().flat_map(|v| [v[0], v[1], v[2], 0.0]).map(|x| half::f16::from_f32(x).to_bits()).collect();
+    device.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&texels),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * nodes[0]), rows_per_image: Some(nodes[1]) },
+        size,
+    );
+    texture.create_view(&Default::default())
+}
+
+fn step_pipeline(
+    device: &Arc<Device>,
+    layouts: &[wgpu::BindGroupLayout; 3],
+    grid: bool,
+) -> Result<wgpu::ComputePipeline> {
+    let module = device.shader("rain/step.wgsl")?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("step"),
+        bind_group_layouts: &[Some(&layouts[0]), Some(&layouts[1])],
+        immediate_size: 0,
+    });
+    let constants = [("GRID", f64::from(u8::from(grid)))];
+    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("step"),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some("step_drops"),
+        compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+        cache: None,
+    }))
+}
+
+fn draw_pipeline(
+    device: &Arc<Device>,
+    layouts: [&wgpu::BindGroupLayout; 2],
+    multi: bool,
+    [has_depth, areas]: [bool; 2],
+) -> Result<wgpu::RenderPipeline> {
+    let vertex = device.shader("rain/integrated.wgsl")?;
+    let fragment = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("stepped"),
+        bind_group_layouts: &layouts.map(Some),
+        immediate_size: 0,
+    });
+    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0)];
+    let attribute = |shader_location, offset, format| wgpu::VertexAttribute { format, offset, shader_location };
+    let attributes = [attribute(0, 0, wgpu::VertexFormat::Uint32x4), attribute(1, 16, wgpu::VertexFormat::Float32x4)];
+    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("stepped"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &vertex,
+            entry_point: Some("integrated_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: STATE_BYTES,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            })],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &fragment,
+            entry_point: Some("rain_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(wgpu::ColorTargetState {
+                format: FORMAT,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,149 @@
+//! Wind that varies in space: velocities on a grid that the host, or a flow solver, gives.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result, check_range};
+
+/// Most nodes of a grid east, north and up.
+pub const MAX_NODES: [u32; 3] = [64, 64, 32];
+/// Largest speed of a node, m/s.
+const MAX_SPEED_M_S: f64 = 300.0;
+
+/// What the numbers of a grid are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WindGridKind {
+    /// The whole wind, which replaces the weather's within the grid.
+    #[default]
+    Whole,
+    /// What is to be added to the weather's wind.
+    Added,
+}
+
+/// Velocities of the air at the nodes of a grid that is level and aligned to north; between them they go linearly along each
+/// axis. Outside blows the weather's wind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WindGrid {
+    /// The node lowest and farthest to the south-west, in the host's world.
+    pub origin: DVec3,
+    /// From node to node east, north and up, m, \[0.01, 10 000\].
+    pub cell_m: DVec3,
+    /// Nodes east, north and up, 2 to [`MAX_NODES`].
+    pub nodes: [u32; 3],
+    /// What `velocities_m_s` are.
+    pub kind: WindGridKind,
+    /// (east, north, up), m/s, at most 300 in all; eastern neighbours beside each other, then northern, then upper.
+    pub velocities_m_s: Vec<[f32; 3]>,
+}
+
+impl WindGrid {
+    /// Refuses what is no grid, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.origin.is_finite() && self.origin.length() <= 1e12) {
+            return Err(Error::range("wind_grid.origin_m", "finite and within 1e12 m", self.origin));
+        }
+        for (i, (cell, nodes)) in self.cell_m.to_array().into_iter().zip(self.nodes).enumerate() {
+            check_range(&format!("wind_grid.cell_m[{i}]"), cell, 0.01, 1e4, "m")?;
+            check_range(&format!("wind_grid.nodes[{i}]"), f64::from(nodes), 2.0, f64::from(MAX_NODES[i]), "")?;
+        }
+        let count = self.nodes.iter().map(|n| *n as usize).product::<usize>();
+        if self.velocities_m_s.len() != count {
+            let wanted = format!("{count}, one a node");
+            return Err(Error::range("wind_grid.velocities_m_s' count", &wanted, self.velocities_m_s.len()));
+        }
+        let slow = |v: &[f32; 3]| DVec3::from(v.map(f64::from)).length() <= MAX_SPEED_M_S;
+        match self.velocities_m_s.iter().position(|v| !slow(v)) {
+            None => Ok(()),
+            Some(i) => Err(Error::range(
+                &format!("wind_grid.velocities_m_s[{i}]"),
+                &format!("finite and at most {MAX_SPEED_M_S} m/s"),
+                format!("{:?}", self.velocities_m_s[i]),
+            )),
+        }
+    }
+
+    /// `position` of the host's world in cells from the origin; `to_enu` turns the host's axes at the origin.
+    pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> DVec3 {
+        (to_enu * (position - self.origin)) / self.cell_m
+    }
+
+    /// The velocity so many cells from the origin, m/s; none outside.
+    pub fn at(&self, cells: DVec3) -> Option<DVec3> {
+        let c = cells.to_array();
+        let inside = c.iter().zip(self.nodes).all(|(x, n)| (0.0..=f64::from(n - 1)).contains(x));
+        if !inside {
+            return None;
+        }
+        let low = [0, 1, 2].map(|i| (c[i] as u32).min(self.nodes[i] - 2));
+        let part = DVec3::from([0, 1, 2].map(|i| c[i] - f64::from(low[i])));
+        let mut sum = DVec3::ZERO;
+        for corner in 0..8u32 {
+            let bit = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let at = [0, 1, 2].map(|i| (low[i] + bit[i]) as usize);
+            let weight: f64 = (0..3).map(|i| if bit[i] == 1 { part[i] } else { 1.0 - part[i] }).product();
+            let index = (at[2] * self.nodes[1] as usize + at[1]) * self.nodes[0] as usize + at[0];
+            sum += DVec3::from(self.velocities_m_s[index].map(f64::from)) * weight;
+        }
+        Some(sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is linear in every coordinate comes back exactly.
+    fn linear(p: DVec3) -> DVec3 {
+        DVec3::new(3.0 + 0.5 * p.x - 0.25 * p.z, -1.0 + 0.125 * p.y, 0.5 * p.z - 0.0625 * p.x)
+    }
+
+    fn grid() -> WindGrid {
+        let nodes = [5u32, 4, 3];
+        let mut velocities_m_s = Vec::new();
+        for z in 0..nodes[2] {
+            for y in 0..nodes[1] {
+                for x in 0..nodes[0] {
+                    let v = linear(DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+                    velocities_m_s.push(v.as_vec3().to_array());
+                }
+            }
+        }
+        let (origin, cell_m) = (DVec3::new(10.0, 20.0, 30.0), DVec3::new(2.0, 3.0, 4.0));
+        WindGrid { origin, cell_m, nodes, kind: WindGridKind::Whole, velocities_m_s }
+    }
+
+    #[test]
+    fn between_nodes_velocities_go_linearly_and_outside_there_are_none() {
+        let grid = grid();
+        for p in [DVec3::ZERO, DVec3::new(4.0, 3.0, 2.0), DVec3::new(1.3, 2.9, 0.4), DVec3::new(3.99, 0.01, 1.5)] {
+            assert!((grid.at(p).unwrap() - linear(p)).length() < 1e-6, "{p}");
+        }
+        for p in [DVec3::new(-0.01, 1.0, 1.0), DVec3::new(1.0, 3.01, 1.0), DVec3::new(1.0, 1.0, 2.01), DVec3::NAN] {
+            assert_eq!(grid.at(p), None, "{p}");
+        }
+        let there = grid.origin + DVec3::new(2.0, 6.0, 2.0);
+        assert_eq!(grid.cells_at(there, DMat3::IDENTITY), DVec3::new(1.0, 2.0, 0.5));
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused_by_name() {
+        grid().validate().unwrap();
+        let mut torn = grid();
+        torn.velocities_m_s[7][1] = f32::NAN;
+        let mut short = grid();
+        short.velocities_m_s.pop();
+        for (bad, name) in [
+            (WindGrid { origin: DVec3::splat(f64::INFINITY), ..grid() }, "origin_m"),
+            (WindGrid { cell_m: DVec3::new(1.0, 0.0, 1.0), ..grid() }, "cell_m[1]"),
+            (WindGrid { nodes: [5, 4, 33], ..grid() }, "nodes[2]"),
+            (WindGrid { nodes: [1, 4, 3], ..grid() }, "nodes[0]"),
+            (torn, "velocities_m_s[7]"),
+            (short, "velocities_m_s' count must be 60"),
+        ] {
+            let e = bad.validate().unwrap_err();
+            assert!(e.message.contains(&format!("wind_grid.{name}")), "{}", e.message);
+        }
+    }
+}
