@@ -5,6 +5,7 @@
 //! probe fog --visibility METRES
 //! probe rain-speed
 //! probe rain
+//! probe ice
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
@@ -20,7 +21,8 @@ use welkin::{Error, Result, Status};
 const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
                      probe fog --visibility METRES < distances.csv\n       \
                      probe rain-speed < diameters.csv\n       \
-                     probe rain < rates.csv";
+                     probe rain < rates.csv\n       \
+                     probe ice < rates.csv";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -92,6 +94,7 @@ fn run() -> Result<String> {
         "fog" => fog(arguments),
         "rain-speed" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::speed_csv(&read_input()?)),
         "rain" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::rain_csv(&read_input()?)),
+        "ice" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::ice_csv(&read_input()?)),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }
 }

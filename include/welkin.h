@@ -2832,7 +2832,7 @@ typedef struct wk_wind {
     /* gust_deviation_m_s */ 0.0 \
 }
 
-/** Rain and drizzle at a place and time; all 0 where none falls. */
+/** What falls at a place and time: rain and drizzle, hail and ice pellets; all 0 where none does. */
 typedef struct wk_rainfall {
     /** sizeof(wk_rainfall) of your header. */
     uint32_t struct_size;
@@ -2863,6 +2863,18 @@ typedef struct wk_rainfall {
      * and goes with the wind at 10 m.
      */
     double fall_velocity_m_s[3];
+    /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
+    double ice_mm_h;
+    /**
+     * Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen raindrops.
+     */
+    double stones_per_m3;
+    /** Extinction by the stones, 1/m. */
+    double stone_extinction_per_m;
+    /** Mean diameter of the stones in the air, mm. */
+    double stone_diameter_mm;
+    /** Stones that land on level ground, 1/(m^2 s). */
+    double stones_per_m2_s;
 } wk_rainfall;
 
 /** Every field of `wk_rainfall` at its default. */
@@ -2877,7 +2889,12 @@ typedef struct wk_rainfall {
     /* mean_diameter_mm */ 0.0, \
     /* median_volume_diameter_mm */ 0.0, \
     /* drops_per_m2_s */ 0.0, \
-    /* fall_velocity_m_s */ { 0.0, 0.0, 0.0 } \
+    /* fall_velocity_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* ice_mm_h */ 0.0, \
+    /* stones_per_m3 */ 0.0, \
+    /* stone_extinction_per_m */ 0.0, \
+    /* stone_diameter_mm */ 0.0, \
+    /* stones_per_m2_s */ 0.0 \
 }
 
 /** A surface that rain lands on, or an opening that it comes through; plain values of a list. */
@@ -2915,7 +2932,7 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Rain and drizzle at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+ * What falls at a place of the host's world and a simulation time. Above the lowest cloud there is none.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */

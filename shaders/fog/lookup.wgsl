@@ -390,12 +390,17 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return max(l + aureole, vec3f(0.0));
 }
 
+// Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
+const PATCH_ROW: f32 = 8.0;
+
 fn patch_wave(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> f32 {
     let along = dot(wave.xyz, direction);
     let x = along * half;
     let near = abs(x) < 1e-2;
     let sinc = select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
-    return cos(wave.w + dot(wave.xyz, origin) + along * middle) * sinc;
+    // No row of patches goes on for ever: a ray along one meets others after some.
+    let row = PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
+    return cos(wave.w + dot(wave.xyz, origin) + along * middle) * (sinc * row);
 }
 
 // Written out: an index that the compiler does not know would copy the whole uniform.

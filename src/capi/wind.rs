@@ -58,7 +58,7 @@ impl wk_wind {
     };
 }
 
-/// Rain and drizzle at a place and time; all 0 where none falls.
+/// What falls at a place and time: rain and drizzle, hail and ice pellets; all 0 where none does.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rainfall {
@@ -87,6 +87,16 @@ pub struct wk_rainfall {
     /// direction is the one along which to take a picture of what keeps rain off. It falls at Gunn and Kinzer's (1949) speed
     /// and goes with the wind at 10 m.
     pub fall_velocity_m_s: [f64; 3],
+    /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
+    pub ice_mm_h: f64,
+    /// Stones in the air, 1/m^3: hail of 5 to 60 mm (Cheng and English 1983), pellets of 0.5 to 5 mm, which are frozen raindrops.
+    pub stones_per_m3: f64,
+    /// Extinction by the stones, 1/m.
+    pub stone_extinction_per_m: f64,
+    /// Mean diameter of the stones in the air, mm.
+    pub stone_diameter_mm: f64,
+    /// Stones that land on level ground, 1/(m^2 s).
+    pub stones_per_m2_s: f64,
 }
 
 impl wk_rainfall {
@@ -102,6 +112,11 @@ impl wk_rainfall {
         median_volume_diameter_mm: 0.0,
         drops_per_m2_s: 0.0,
         fall_velocity_m_s: [0.0, 0.0, 0.0],
+        ice_mm_h: 0.0,
+        stones_per_m3: 0.0,
+        stone_extinction_per_m: 0.0,
+        stone_diameter_mm: 0.0,
+        stones_per_m2_s: 0.0,
     };
 
     fn of(rain: &RainAt) -> Self {
@@ -114,6 +129,11 @@ impl wk_rainfall {
             median_volume_diameter_mm: rain.median_volume_diameter_mm,
             drops_per_m2_s: rain.drops_per_m2_s,
             fall_velocity_m_s: rain.fall_velocity_m_s.to_array(),
+            ice_mm_h: rain.ice_mm_h,
+            stones_per_m3: rain.stones_per_m3,
+            stone_extinction_per_m: rain.stone_extinction_per_m,
+            stone_diameter_mm: rain.stone_diameter_mm,
+            stones_per_m2_s: rain.stones_per_m2_s,
             ..Self::INIT
         }
     }
@@ -180,7 +200,7 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Rain and drizzle at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+/// What falls at a place of the host's world and a simulation time. Above the lowest cloud there is none.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

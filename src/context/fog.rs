@@ -5,7 +5,7 @@ use crate::{
     error::Result,
     fog::{FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint},
     scene::Place,
-    weather::Conditions,
+    weather::{Conditions, lifting},
 };
 
 /// What the fog draws: the weather's low layer, and what falls from the clouds as long as nothing else draws it.
@@ -60,14 +60,19 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     } else {
         Phase::Droplets { diameter_um: 15.0 }
     };
-    let amount = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
+    let covered = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
     // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part of
     // the ground under fog, has the mean 1 - ln c: there the extinction shall be the reported one.
-    let inside = 1.0 - amount * f.coverage.max(0.01).ln();
+    let inside = 1.0 - covered * f.coverage.max(0.01).ln();
+    // Gusts lift more here and less there; what is reported is their mean.
+    let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
+    let amount = covered.max(gusts);
     let patches = (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m });
     // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
     let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
-    let exponent = f.angstrom_exponent - c.aerosol.absorption_angstrom_exponent;
+    let dust = lifting::DUST_ABSORPTION_EXPONENT;
+    let absorbing = c.aerosol.absorption_angstrom_exponent;
+    let exponent = f.angstrom_exponent - (absorbing + f.lifted * (dust - absorbing));
     let albedo = crate::sky::planet::EARTH_WAVELENGTHS_NM
         .map(|nm| 1.0 - (absorbed * (nm / crate::sky::planet::EARTH_WAVELENGTHS_NM[1]).powf(exponent)).min(1.0));
     Some(FogLayer {

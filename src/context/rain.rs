@@ -2,13 +2,17 @@
 
 use glam::DVec3;
 
-use super::Context;
+use super::{Context, fog::falling_top_m};
 use crate::{
     error::{Error, Result, check_range},
-    rain::sizes::{DropSizes, SMALLEST_MM, Weight},
+    rain::{
+        drops::factor_in,
+        ice::StoneSizes,
+        sizes::{DropSizes, SMALLEST_MM, Weight},
+    },
 };
 
-/// Rain and drizzle at a place.
+/// What falls at a place: rain and drizzle, hail and ice pellets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainAt {
     /// On level ground, mm/h.
@@ -28,6 +32,16 @@ pub struct RainAt {
     /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes steeper, the other
     /// flatter. Along it an occluder's picture is taken. 0 without rain.
     pub fall_velocity_m_s: DVec3,
+    /// Hail and ice pellets on level ground, mm/h of melted water.
+    pub ice_mm_h: f64,
+    /// Stones in the air, 1/m^3.
+    pub stones_per_m3: f64,
+    /// Extinction by the stones, 1/m.
+    pub stone_extinction_per_m: f64,
+    /// Mean diameter of the stones in the air, mm.
+    pub stone_diameter_mm: f64,
+    /// Stones that land on level ground, 1/(m^2 s).
+    pub stones_per_m2_s: f64,
 }
 
 /// A surface that rain may land on, or a window that it may come through.
@@ -50,6 +64,10 @@ pub struct RainOn {
     pub rate_mm_h: f64,
     /// Drops on all of it, 1/s.
     pub drops_per_s: f64,
+    /// Hail and ice pellets, mm/h of melted water.
+    pub ice_mm_h: f64,
+    /// Stones on all of it, 1/s.
+    pub stones_per_s: f64,
 }
 
 impl RainSurface {
@@ -66,24 +84,29 @@ impl RainSurface {
 }
 
 impl Context {
-    /// The drops in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the cloud that
-    /// it falls from there is no rain. In rain areas ([`Context::set_rain_areas`]) it is theirs, mixed by their rims.
-    fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, DVec3)> {
+    /// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the
+    /// cloud that they fall from there are none. In rain areas ([`Context::set_rain_areas`]) they are theirs, mixed by their rims.
+    fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
         let place = self.desc.world.frame_at(position).place;
         place.validate()?;
         let c = self.weather_at(time_s)?;
-        Ok((self.sizes_at(position, time_s, &c)?, self.carrying_wind(time_s)?))
+        let mut ice = self.with_areas(position, time_s, c).precipitation;
+        if place.altitude_m > falling_top_m(&c) {
+            (ice.ice_pellets_mm_h, ice.hail_mm_h) = (0.0, 0.0);
+        }
+        let stones = StoneSizes::new(&ice, factor_in(&c.air, place.altitude_m));
+        Ok((self.sizes_at(position, time_s, &c)?, stones, self.carrying_wind(time_s)?))
     }
 
-    /// Rain and drizzle at `position` and simulation time `time_s`.
+    /// What falls at `position` and simulation time `time_s`.
     ///
-    /// Any thread. Laws: [`crate::rain::sizes`].
+    /// Any thread. Laws: [`crate::rain::sizes`], [`crate::rain::ice`].
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn rain_at(&self, position: DVec3, time_s: f64) -> Result<RainAt> {
-        let (sizes, wind) = self.drops_at(position, time_s)?;
-        let level = sizes.on_level_ground();
+        let (sizes, stones, wind) = self.drops_at(position, time_s)?;
+        let (level, landed) = (sizes.on_level_ground(), stones.on_surface(DVec3::Z, DVec3::ZERO));
         let [median] = sizes.diameters(Weight::Water, SMALLEST_MM, [0.5]);
         let falls = level.drops_per_m2_s > 0.0;
         Ok(RainAt {
@@ -95,10 +118,15 @@ impl Context {
             median_volume_diameter_mm: sizes.median_volume_diameter_mm(),
             drops_per_m2_s: level.drops_per_m2_s,
             fall_velocity_m_s: if falls { wind - DVec3::Z * sizes.speed_m_s(median) } else { DVec3::ZERO },
+            ice_mm_h: landed.rate_mm_h,
+            stones_per_m3: stones.number_per_m3(),
+            stone_extinction_per_m: stones.extinction_per_m(),
+            stone_diameter_mm: stones.mean_diameter_mm(),
+            stones_per_m2_s: landed.drops_per_m2_s,
         })
     }
 
-    /// Rain and drizzle that land on a surface, or come through a window, at simulation time `time_s`: each size of drop along its own
+    /// What lands on a surface, or comes through a window, at simulation time `time_s`: each size along its own
     /// slant in the wind, and in that which the surface's own motion makes. Nothing shelters it.
     ///
     /// Any thread.
@@ -107,9 +135,14 @@ impl Context {
     /// As [`Context::conditions_at`]; [`crate::Status::InvalidArgument`] naming the field of `surface`.
     pub fn rain_on(&self, surface: &RainSurface, time_s: f64) -> Result<RainOn> {
         surface.validate()?;
-        let (sizes, wind) = self.drops_at(surface.position, time_s)?;
-        let fall = surface.velocity_m_s;
-        let flux = sizes.on_surface(surface.normal.normalize(), wind - fall);
-        Ok(RainOn { rate_mm_h: flux.rate_mm_h, drops_per_s: flux.drops_per_m2_s * surface.area_m2 })
+        let (sizes, stones, wind) = self.drops_at(surface.position, time_s)?;
+        let (normal, air) = (surface.normal.normalize(), wind - surface.velocity_m_s);
+        let (flux, ice) = (sizes.on_surface(normal, air), stones.on_surface(normal, air));
+        Ok(RainOn {
+            rate_mm_h: flux.rate_mm_h,
+            drops_per_s: flux.drops_per_m2_s * surface.area_m2,
+            ice_mm_h: ice.rate_mm_h,
+            stones_per_s: ice.drops_per_m2_s * surface.area_m2,
+        })
     }
 }

@@ -216,7 +216,8 @@ impl Context {
             above_fog.through_fog(&conditions, &local.place, [&sun, &moon], planet.ground_albedo)?
         };
         // Only patches show where the air has gone.
-        let patchy = conditions.fog.extinction_per_m > 0.0 && conditions.fog.coverage < 1.0;
+        let patchy =
+            conditions.fog.extinction_per_m > 0.0 && (conditions.fog.coverage < 1.0 || conditions.fog.lifted > 0.0);
         let drift_m = if patchy { self.wind_displacement(time_s)?.truncate().to_array() } else { [0.0; 2] };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;

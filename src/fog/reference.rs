@@ -55,6 +55,9 @@ const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
 /// through it. Fitted to adding and doubling (`tests/fog/light.rs`): .1 to .2 serve droplets and haze alike.
 pub(super) const FORWARD_SPREAD: f64 = 0.12;
 
+/// Half of a path on which a wave of the patches' pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
+/// `shaders/fog/lookup.wgsl`.
+const PATCH_ROW: f64 = 8.0;
 /// Number of plane waves in the patches' pattern: the pairs of four.
 pub const PATCH_WAVES: usize = 6;
 
@@ -432,7 +435,9 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
         let along = wave.dot(direction);
         let x = along * half;
         let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
-        sum += (phase + wave.dot(origin) + along * middle).cos() * sinc;
+        // No row of patches goes on for ever: a ray along one meets others after some.
+        let row = PATCH_ROW / (PATCH_ROW + wave.length() * half);
+        sum += (phase + wave.dot(origin) + along * middle).cos() * sinc * row;
     }
     // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
     (1.0 + m.patch_amount * 0.5 * sum).max(0.0)

@@ -11,6 +11,7 @@ mod measure;
 mod planned;
 mod rain;
 mod shared;
+mod stones;
 mod surface;
 mod target;
 pub mod tone;

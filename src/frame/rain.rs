@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3};
 use super::{
     Frame, FrameFlags, Shared,
     areas::{AreaPass, Columns},
+    stones::Ice,
 };
 use crate::{
     context::{Context, Scene},
@@ -14,7 +15,7 @@ use crate::{
     gpu::Device,
     rain::{
         Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shelter, Shot, Splashes, Stepped,
+        RainSettings, RainUniform, Shelter, Shot, Splashes, Stepped, StoneDraw,
         cones::{BANDS_M, CONES},
         drops,
         lattice::{HIDDEN_M, REACH_M, SHELLS},
@@ -35,6 +36,7 @@ pub(super) struct Rain {
     field: AreaField,
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
+    ice: Ice,
     boxes: Vec<[[f32; 4]; 4]>,
     lights: Vec<LightUniform>,
 }
@@ -54,6 +56,7 @@ impl Rain {
             field: AreaField::empty(),
             local: None,
             areas: None,
+            ice: Ice::default(),
             boxes: Vec::new(),
             lights: Vec::new(),
         }
@@ -69,12 +72,14 @@ impl Rain {
             self.field.set(shafts, at, &context.own_rain(&scene.conditions), context.time_s());
         }
         self.local = Some(Local::new(falling, &self.field, at));
+        self.ice.look(context, scene, eye);
         Ok(())
     }
 
-    /// Whether drops or cones fall near the camera.
+    /// Whether drops, cones or stones fall near the camera.
     fn falls_here(&self) -> bool {
-        self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
+        let wet = self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field));
+        wet || self.ice.falls(&self.settings)
     }
 
     /// Whether anything is drawn before the picture.
@@ -97,7 +102,10 @@ impl Rain {
     pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
         let falling = scene.conditions.precipitation;
         let reach = if self.settings.model == RainModel::Cones { BANDS_M[CONES] } else { HIDDEN_M };
-        [self.near(device, scene, &falling), reach].map(|v| v as f32)
+        let most = self.settings.most_on(device);
+        // Stones are rare: they hide as much as if they did within the drops' reach.
+        let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
+        [self.near(device, scene, &falling) + ice / reach, reach].map(|v| v as f32)
     }
 
     /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
@@ -214,11 +222,15 @@ impl Rain {
         };
         let block = RainUniform::new(context.seed(), &classes, &light(scene, exposure), &shot, &air);
         let splashes = Splashes::new(&classes);
+        let most = self.settings.most_on(device);
+        let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let eye = frame.camera.position;
         self.boxes.clear();
-        let slowest = classes.flux[0].1;
-        let matters = |s: &&Shelter| s.matters(eye, scene.world_to_enu, air.velocity_m_s, slowest, REACH_M);
+        // The smallest stones are a tenth slower than the smallest drops.
+        let slowest = 0.9 * classes.flux[0].1;
+        let reach = stones.map_or(REACH_M, |s| s.reach_m().max(REACH_M));
+        let matters = |s: &&Shelter| s.matters(eye, scene.world_to_enu, air.velocity_m_s, slowest, reach);
         let near = context.shelters().iter().filter(matters);
         self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
         self.lights.clear();
@@ -248,9 +260,11 @@ impl Rain {
             splashes: splashes.instances(),
             local: local.as_ref(),
             over,
+            stones: stones
+                .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 })
+        Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 } + stones.map_or(0, |s| s.drawn))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rain: sized by its rate, falling at the speeds that drops have, each drop where (seed, id, time) puts it.
 //!
-//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many. [`lattice`] has the places: a repeated cell of air full of drops that a camera
+//! The model: [`drops`] has the physics of one drop in f64, [`sizes`] that of many, [`ice`] that of hail and pellets. [`lattice`] has the places: a repeated cell of air full of drops that a camera
 //! sees the nearest copy of, with no state and no update. One quad draws a drop's streak, as faint as the drop's disc is
 //! small against the way it falls during the exposure; streaks make a layer of their own, which the composition puts before
 //! the picture. What is too small or too far for a drop is the fog's extinction; under a rain area of its own ([`RainArea`]) it is
@@ -12,6 +12,7 @@ mod cone_pass;
 pub mod cones;
 mod curtain;
 pub mod drops;
+pub mod ice;
 pub mod integrated;
 pub mod lattice;
 mod local;
@@ -24,6 +25,8 @@ pub mod sizes;
 pub mod source;
 mod splash;
 mod step_pass;
+mod stone_pass;
+mod stones;
 mod uniforms;
 
 pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
@@ -38,5 +41,7 @@ pub(crate) use passes::{Drawn, RainLayer};
 pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform, OwnRain};
 pub(crate) use splash::Splashes;
 pub(crate) use step_pass::{STATE_BYTES, Stepped};
+pub(crate) use stone_pass::StoneDraw;
+pub use stones::Stones;
 pub use uniforms::Classes;
 pub(crate) use uniforms::{Air, DropLight, RainUniform, Shot};

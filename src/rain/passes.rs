@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::{
-    LocalUniform,
+    LocalUniform, StoneDraw,
     cone_pass::ConePass,
     cones::ConeUniform,
     lattice::SHELLS,
     shelter::MAX_SHELTERS,
     splash::SplashUniform,
     step_pass::{StepPass, Stepped},
+    stone_pass::StonePass,
     uniforms::RainUniform,
 };
 use crate::{
@@ -32,6 +33,8 @@ pub(crate) struct RainLayer {
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
     cones: Option<ConePass>,
     stepped: Option<StepPass>,
+    /// Hail and pellets, when some fell.
+    stones: Option<StonePass>,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
     bound: Option<(Option<wgpu::Texture>, bool, wgpu::BindGroup)>,
@@ -55,6 +58,8 @@ pub(crate) struct Drawn<'a> {
     pub local: Option<&'a LocalUniform>,
     /// Whether something lies in the layer already, before which the drops come.
     pub over: bool,
+    /// Hail and pellets, if any fall.
+    pub stones: Option<StoneDraw>,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -122,6 +127,7 @@ impl RainLayer {
             pipelines: [const { [None, None] }; 8],
             cones: None,
             stepped: None,
+            stones: None,
             none: None,
             texture: None,
             bound: None,
@@ -180,9 +186,15 @@ impl RainLayer {
         let areas = drawn.local.is_some();
         let key = usize::from(areas) * 4 + usize::from(multi) * 2 + usize::from(depth.is_some());
         let layout = &self.layouts[usize::from(multi)];
+        if let Some(stones) = &drawn.stones {
+            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, layout, FORMAT, kind)?;
+        }
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, layout, kind)?;
-            self.draw_into(encoder, drawn.over, |pass, layer| layer.cones.iter().for_each(|c| c.draw(pass, kind)));
+            self.draw_into(encoder, drawn.over, |pass, layer| {
+                layer.cones.iter().for_each(|c| c.draw(pass, kind));
+                layer.draw_stones(pass, kind, drawn);
+            });
             return Ok(());
         }
         if let Some(stepped) = drawn.stepped {
@@ -208,8 +220,15 @@ impl RainLayer {
                 pass.set_pipeline(splashing);
                 pass.draw(0..4, 0..drawn.splashes);
             }
+            layer.draw_stones(pass, kind, drawn);
         });
         Ok(())
+    }
+
+    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool), drawn: &Drawn<'_>) {
+        if let (Some(stones), Some(own)) = (&drawn.stones, &self.stones) {
+            own.draw(pass, kind, stones);
+        }
     }
 
     /// Draws into the layer, over what is there or a clear one.

@@ -2,6 +2,7 @@
 
 use super::{
     drops::{altitude_factor, terminal_speed_m_s},
+    ice::StoneSizes,
     sizes::DropSizes,
 };
 use crate::error::{Error, Result, Status};
@@ -80,6 +81,22 @@ pub fn rain_csv(text: &str) -> Result<String> {
     })
 }
 
+/// Answers CSV with a column `hail_mm_h` and, if there is one, `pellets_mm_h` (\[0, 500\] each) with what such ice is at sea
+/// level: `number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm`.
+///
+/// # Errors
+/// [`Status::Parse`] with line and column for wrong input.
+pub fn ice_csv(text: &str) -> Result<String> {
+    let added = "number_per_m3,ice_g_m3,rate_closed_mm_h,extinction_per_km,mean_diameter_mm";
+    let columns = [("hail_mm_h", 0.0, 500.0, "mm/h", None), ("pellets_mm_h", 0.0, 500.0, "mm/h", Some(0.0))];
+    answered(text, columns, added, |[hail, pellets]| {
+        let s = StoneSizes::of_rates(pellets, hail, 1.0);
+        let rate = s.on_surface(glam::DVec3::Z, glam::DVec3::ZERO).rate_mm_h;
+        let (number, ice, extinction) = (s.number_per_m3(), s.ice_g_m3(), 1e3 * s.extinction_per_m());
+        format!("{number:?},{ice:?},{rate:?},{extinction:?},{:?}", s.mean_diameter_mm())
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -107,6 +124,16 @@ mod tests {
         // The raw distribution's 0.365 R^0.63 is 18 % above at 1 mm/h.
         assert!((column(&out, "extinction_per_km")[1] * 1.18 / 0.365 - 1.0).abs() < 0.03);
         assert_eq!(out.lines().last(), Some("0,0.0,0.0,0.0,0.0,0.0"));
+    }
+
+    #[test]
+    fn ice_closes_its_rate() {
+        let out = ice_csv("hail_mm_h,pellets_mm_h\n10,0\n0,2\n5,1\n0,0\n").unwrap();
+        for (rate, closed) in [10.0, 2.0, 6.0, 0.0].iter().zip(column(&out, "rate_closed_mm_h")) {
+            assert!((closed - rate).abs() <= 1e-3 * rate, "{rate}: {closed}");
+        }
+        assert!(column(&out, "mean_diameter_mm")[0] > 6.0 && column(&out, "number_per_m3")[1] > 100.0, "{out}");
+        assert!(ice_csv("hail_mm_h\n-1\n").unwrap_err().message.contains("hail_mm_h must be a number in [0, 500]"));
     }
 
     #[test]

@@ -109,6 +109,7 @@ impl FogLayer {
             softness_m: mix(self.softness_m, to.softness_m, q),
             coverage: mix(self.coverage, to.coverage, q),
             patch_size_m: mix(self.patch_size_m, to.patch_size_m, q),
+            lifted: mix(self.lifted, to.lifted, q),
         }
     }
 }

@@ -101,8 +101,11 @@ pub struct FogLayer {
     pub softness_m: f64,
     /// Part of the ground that it covers, 0 to 1.
     pub coverage: f64,
-    /// Size of a patch where `coverage` is below 1, m.
+    /// Size of a patch where `coverage` is below 1, or of a gust's where `lifted` is not 0, m.
     pub patch_size_m: f64,
+    /// Share of it that the wind lifts from the ground, 0 to 1: it comes in gusts ([`super::lifting`]).
+    #[serde(default)]
+    pub lifted: f64,
 }
 
 /// What falls, as rates of liquid water at the ground.
@@ -249,6 +252,7 @@ impl FogLayer {
         softness_m: 1.0,
         coverage: 1.0,
         patch_size_m: 200.0,
+        lifted: 0.0,
     };
 
     /// Extinction at each wavelength (nm), 1/m, inside the layer.

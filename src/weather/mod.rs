@@ -11,6 +11,7 @@ mod conditions;
 mod derive;
 pub mod hydrometeors;
 mod kinds;
+pub mod lifting;
 mod metar;
 mod model;
 mod particles;

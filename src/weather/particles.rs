@@ -156,7 +156,9 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
         rest
     } else if is_dry(w) {
         let height = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
-        sky_depth(rest * height) / height
+        // Sand keeps low: at most half of it fills the mixed layer.
+        let low = if matches!(w.lofted.kind, LoftedKind::BlowingSand | LoftedKind::BlowingDust) { 0.5 } else { 1.0 };
+        (sky_depth(rest * height) / height).min(low * rest)
     } else {
         rest.min((LN_20 / visibility_above_m(w, o) - rayleigh).max(0.0))
     };
@@ -217,7 +219,8 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
             top_m: top,
             softness_m: top,
             coverage: 1.0,
-            patch_size_m: 200.0,
+            patch_size_m: 120.0,
+            lifted: lifted(w),
         };
     }
     let top = w.fog.top_m.or(w.lofted.top_m).unwrap_or_else(|| default_top_m(w, extinction_per_m));
@@ -232,6 +235,9 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
     let (coverage, patch) = match w.fog.kind {
         FogKind::Patches => (0.4, 150.0),
         FogKind::Partial => (0.6, 800.0),
+        // What drifts along the ground does so in snakes of some metres.
+        FogKind::None if matches!(w.lofted.kind, LoftedKind::DriftingSnow | LoftedKind::DriftingDust) => (1.0, 12.0),
+        FogKind::None if w.lofted.kind != LoftedKind::None => (1.0, 120.0),
         _ => (1.0, 200.0),
     };
     let sheet = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing);
@@ -245,7 +251,13 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
         softness_m: top * if sheet { 0.3 } else { 0.5 },
         coverage: w.fog.coverage.unwrap_or(coverage),
         patch_size_m: patch,
+        lifted: if w.fog.kind == FogKind::None { lifted(w) } else { 0.0 },
     }
+}
+
+/// Share of the ground layer that the wind lifts.
+fn lifted(w: &Weather) -> f64 {
+    if w.lofted.kind == LoftedKind::None { 0.0 } else { 1.0 }
 }
 
 #[cfg(test)]

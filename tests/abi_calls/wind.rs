@@ -120,6 +120,14 @@ fn rain_is_the_weathers_and_falls_the_way_it_says() {
     assert!((-7.0..-5.5).contains(&fall[2]), "{fall:?}");
     let above_cloud = get(&[0.0, 0.0, 15_000.0], 20.0);
     assert_eq!(above_cloud.number_per_m3, 0.0);
+    assert_eq!((rain.ice_mm_h, rain.stones_per_m3, rain.stones_per_m2_s), (0.0, 0.0, 0.0));
+    let hail = wk_weather { precipitation_kind: WK_PRECIPITATION_HAIL, ..storm(270.0) };
+    // SAFETY: live pointers.
+    unsafe { assert_eq!(wk_context_set_weather(world.context, &hail, 40.0, 0.0), WK_OK) };
+    let hail = get(&MAST, 50.0);
+    assert!((hail.ice_mm_h / 20.0 - 1.0).abs() < 1e-3 && hail.rate_mm_h == 0.0, "{}", hail.ice_mm_h);
+    assert!((0.2..5.0).contains(&hail.stones_per_m3) && (6.0..20.0).contains(&hail.stone_diameter_mm));
+    assert!(hail.stones_per_m2_s > 6.0 * hail.stones_per_m3 && hail.stone_extinction_per_m > 5e-5);
     // SAFETY: live pointers.
     unsafe {
         let mut out = init::<wk_rainfall>("wk_rainfall");

@@ -1,4 +1,4 @@
-//! Rain as a host sees it: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
+//! Rain as a host sees it, and what else falls and blows: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
 
 mod areas;
 mod cones;
@@ -6,6 +6,8 @@ mod drops;
 mod integrated;
 mod pictures;
 mod processes;
+mod sand;
 mod scene;
 mod stability;
+mod stones;
 mod streaks;

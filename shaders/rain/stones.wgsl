@@ -1,0 +1,213 @@
+// Stones of ice, falling in the drops' lattice, and hopping where they land: (seed, id, time) alone say where each is.
+// How many there are is in src/rain/stones.rs. The entry points read the depth: stones_single.wgsl and stones_multi.wgsl.
+//!include "rain/splash.wgsl"
+
+const STONE_CLASSES: u32 = 16u;
+
+const STONE_SHELLS: u32 = 4u;
+
+struct StoneUniform {
+    // Of the stones' own lattice, as `cell` and `shell` of `RainUniform` are of the drops'.
+    air: array<vec4u, STONE_SHELLS>,
+    shells: array<vec4f, STONE_SHELLS>,
+    // Where each shell's stones begin among all.
+    first: vec4u,
+    // Per class and shell: stones of the classes up to this one.
+    upto: array<vec4u, STONE_CLASSES>,
+    // Per class: diameter, m; fall speed, speed units; share of the landings of the classes up to this one; 1 for clear ice.
+    classes: array<vec4f, STONE_CLASSES>,
+    // Per class and shell: stones that each of them stands for.
+    weight: array<vec4f, STONE_CLASSES>,
+    // The grid of landings, as `SplashUniform` has that of splashes.
+    cell: vec2i,
+    place: vec2f,
+    side: f32,
+    life: f32,
+    slots: u32,
+    cells: u32,
+    tick: u32,
+    part: f32,
+    share: f32,
+    ground: f32,
+    reach: f32,
+    // m/s^2.
+    gravity: f32,
+}
+
+@group(1) @binding(0) var<uniform> stones: StoneUniform;
+
+// Part of the light that milky ice gives back.
+const ICE_ALBEDO: f32 = 0.75;
+// Part of its speed that a stone keeps when it first bounces: ice that is hit this hard cracks.
+const FIRST_REBOUND: vec2f = vec2f(0.1, 0.32);
+// And every further time.
+const REBOUND: f32 = 0.45;
+const HOPS: u32 = 3u;
+
+struct Stone {
+    // Camera-relative, m.
+    position: vec3f,
+    velocity: vec3f,
+    diameter: f32,
+    clear: f32,
+    // Share of it that is drawn, and stones that it stands for.
+    share: f32,
+    weight: f32,
+}
+
+fn falling_stone(instance: u32) -> Stone {
+    let f = stones.first;
+    let s = u32(instance >= f.y) + u32(instance >= f.z) + u32(instance >= f.w);
+    let index = instance - f[s];
+    var k = 0u;
+    for (var i = 0u; i + 1u < STONE_CLASSES; i++) {
+        k += select(0u, 1u, index >= stones.upto[i][s]);
+    }
+    let before = select(0u, stones.upto[max(k, 1u) - 1u][s], k > 0u);
+    let class_row = stones.classes[k];
+    // Classes of drops come before those of stones.
+    let place = random3(vec3u(rain.seed, (s << 8u) | (CLASSES + k), index - before));
+    let fallen = u32(class_row.y) * stones.air[s].w;
+    let away = bitcast<vec3i>(place - vec3u(0u, 0u, fallen) - stones.air[s].xyz);
+    let shell = stones.shells[s];
+    let p = vec3f(away) * (shell.x / 4294967296.0);
+    let d = length(p);
+    let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
+    let inner = select(smoothstep(shell.y, 0.25 * shell.x, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
+    let velocity = rain.wind - vec3f(0.0, 0.0, class_row.y * SPEED_UNIT);
+    return Stone(p, velocity, class_row.x, class_row.w, inner * outer, stones.weight[k][s]);
+}
+
+struct Touch {
+    landing: Landing,
+    // Three numbers from 0 to 1 of its own.
+    chance: vec3f,
+    // Of the stone.
+    kind: vec4f,
+}
+
+// The stone that landed in a slot, before it is known where its ground is.
+fn touch_of(instance: u32) -> Touch {
+    let slot = instance % stones.slots;
+    let index = instance / stones.slots;
+    let cell = stones.cell + vec2i(i32(index % stones.cells), i32(index / stones.cells)) - i32(stones.cells / 2u);
+    let key = bitcast<vec2u>(cell);
+    // Each slot begins at a moment of its own.
+    let phase = random3(vec3u(key.x, key.y, rain.seed + 0x51ed270bu + slot)).x;
+    let time = stones.part + f32(phase >> 8u) / 16777216.0;
+    let turn = stones.tick + select(0u, 1u, time >= 1.0);
+    let turned = vec3u(key.x ^ (turn * 0x9e3779b9u), key.y, rain.seed + 0x51ed270bu + 77u * slot);
+    let value = vec3f(random3(turned) >> vec3u(8u)) / 16777216.0;
+    let more = random3(turned + 1u);
+    let size = f32(random3(turned + 2u).x >> 8u) / 16777216.0;
+    var k = 0u;
+    for (var i = 0u; i + 1u < STONE_CLASSES; i++) {
+        k += select(0u, 1u, size >= stones.classes[i].z);
+    }
+    let xy = (vec2f(cell - stones.cell) + value.xy) * stones.side - stones.place;
+    let fade = 1.0 - smoothstep(0.6 * stones.reach, stones.reach, length(xy));
+    let landing = Landing(xy, fract(time), select(0.0, fade, value.z < stones.share));
+    return Touch(landing, vec3f(more >> vec3u(8u)) / 16777216.0, stones.classes[k]);
+}
+
+// The stone where its hops have brought it: parabolas, each lower than the one before; then it lies.
+fn hopping_stone(touch: Touch, z: f32) -> Stone {
+    let kind = touch.kind;
+    let fall = kind.y * SPEED_UNIT;
+    let angle = 6.2831853 * touch.chance.y;
+    var up = fall * mix(FIRST_REBOUND.x, FIRST_REBOUND.y, touch.chance.x);
+    var level = 0.25 * rain.wind.xy + vec2f(cos(angle), sin(angle)) * (up * touch.chance.z);
+    var t = touch.landing.age * stones.life;
+    var at = touch.landing.xy;
+    var flight = vec4f(0.0);
+    for (var i = 0u; i < HOPS; i++) {
+        let lasts = 2.0 * up / stones.gravity;
+        let now = clamp(t, 0.0, lasts);
+        at += level * now;
+        flight = select(flight, vec4f(level, up - stones.gravity * now, now * (up - 0.5 * stones.gravity * now)), t >= 0.0);
+        flight = select(flight, vec4f(0.0), t > lasts);
+        t -= lasts;
+        up *= REBOUND;
+        level *= 0.6;
+    }
+    let p = vec3f(at, z + flight.w + 0.5 * kind.x);
+    let fade = touch.landing.fade * (1.0 - smoothstep(0.85, 1.0, touch.landing.age));
+    return Stone(p, flight.xyz, kind.x, kind.w, fade, 1.0);
+}
+
+// Mean over the disc of a matt sphere lit from where the cosine to the eye is `c`, over what a matt plane facing the light sends
+// (Russell 1916).
+fn sphere_phase(c: f32) -> f32 {
+    let angle = acos(clamp(c, -1.0, 1.0));
+    return (sin(angle) + (3.14159265 - angle) * c) * 0.21220659;
+}
+
+// Radiance of a stone at `p` seen along `d`: milky ice is matt and lit by what lies before it, clear ice shows what lies
+// behind.
+fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
+    var beams = rain.sun * sphere_phase(-dot(d, rain.to_sun));
+    for (var i = 0u; i < lights.count; i++) {
+        let to = p - lights.lamps[i].position;
+        let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
+        beams += light_at(lights.lamps[i], to) * sphere_phase(dot(d, from_lamp));
+    }
+    let around = mix(rain.above, rain.below, 0.5 + 0.5 * d.z);
+    let matt = ICE_ALBEDO * (around + beams * 0.31830989);
+    return mix(matt, drop_light(p, d), 0.5 * clear);
+}
+
+struct StoneVarying {
+    @builtin(position) position: vec4f,
+    @location(0) light: vec3f,
+    // How much it hides where it is thickest, before it is cut off at all.
+    @location(1) cover: f32,
+    @location(2) range: f32,
+    // Place in the quad in radii, across and along, and how far the middle's way reaches.
+    @location(3) at: vec2f,
+    @location(4) reach: f32,
+}
+
+fn no_stone() -> StoneVarying {
+    return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, 0.0, vec2f(0.0), 0.0);
+}
+
+// A corner of what the stone covers while the shutter is open: a round bar.
+fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
+    let d = max(length(stone.position), 1e-3);
+    let toward = stone.position / d;
+    let half = (stone.velocity - rain.camera) * (0.5 * rain.exposure);
+    var out = no_stone();
+    // What stretches beyond the eye cannot be drawn as a quad.
+    if stone.share <= 0.0 || abs(dot(half, toward)) > 0.6 * d {
+        return out;
+    }
+    let pixel = max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6);
+    let level = normalize(cross(toward, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0));
+    let across_view = half - toward * dot(half, toward);
+    let stretch = length(across_view);
+    let lengthwise = select(cross(level, toward), across_view / max(stretch, 1e-9), stretch > 1e-6);
+    let radius = 0.5 * max(stone.diameter, pixel);
+    let side = select(-1.0, 1.0, (corner & 1u) != 0u);
+    let end = select(-1.0, 1.0, (corner & 2u) != 0u);
+    let p = stone.position + half * end + lengthwise * (end * radius) + cross(toward, lengthwise) * (side * radius);
+    var clip = rain.clip * vec4f(p, 1.0);
+    clip.y *= rain.y_sign;
+    out.position = vec4f(clip.xy, 0.0, clip.w);
+    out.range = d - stone.diameter;
+    out.reach = stretch / radius;
+    out.at = vec2f(side, end * (out.reach + 1.0));
+    let disc = 0.78539816 * stone.diameter * stone.diameter * stone.weight;
+    // The profile has the mean 2/3 along the bar and 1/2 over its round ends.
+    out.cover = disc / (radius * (2.6666667 * stretch + 1.5707963 * radius)) * stone.share;
+    out.light = stone_light(stone.position, toward, stone.clear);
+    return out;
+}
+
+// Premultiplied.
+fn stone_color(in: StoneVarying, range: f32) -> vec4f {
+    let beyond = max(abs(in.at.y) - in.reach, 0.0);
+    let profile = max(1.0 - in.at.x * in.at.x - beyond * beyond, 0.0);
+    let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
+    let cover = min(in.cover * profile, 1.0) * soft * exp(-rain.extinction * in.range);
+    return vec4f(in.light * cover, cover);
+}

@@ -1,0 +1,45 @@
+//! Hail and ice pellets of a view: what falls round its camera, counted once.
+
+use glam::DVec3;
+
+use crate::{
+    context::{Context, Scene},
+    rain::{RainModel, RainSettings, Stones, drops},
+    weather::Falling,
+};
+
+/// What falls as stones round a camera.
+#[derive(Default)]
+pub(super) struct Ice {
+    here: Option<Falling>,
+    /// What they were counted for: what falls, how fast, the most of them.
+    counted: Option<(Falling, f64, u32, Stones)>,
+}
+
+impl Ice {
+    /// Looks what falls at a camera, in rain areas too.
+    pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) {
+        let falling = context.with_areas(eye, context.time_s(), scene.conditions).precipitation;
+        self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
+    }
+
+    /// Whether any falls that a view of these settings draws.
+    pub fn falls(&self, settings: &RainSettings) -> bool {
+        self.here.is_some() && settings.model != RainModel::Veil
+    }
+
+    /// Those that a view of these settings draws, if any; as many as it may draw drops.
+    pub fn stones(&mut self, scene: &Scene, settings: &RainSettings, most: u32) -> Option<Stones> {
+        let falling = self.here.filter(|_| self.falls(settings))?;
+        let air = &scene.conditions.air;
+        let factor = drops::factor_in(air, air.station_altitude_m);
+        match &self.counted {
+            Some((f, x, m, stones)) if *f == falling && *x == factor && *m == most => Some(*stones),
+            _ => {
+                let stones = Stones::new(&falling, factor, most);
+                self.counted = Some((falling, factor, most, stones));
+                Some(stones)
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Stones on the GPU: their block and their two draws, in the drops' pass.
+
+use super::stones::{StoneUniform, Stones};
+use crate::{error::Result, gpu::Device};
+
+/// What a frame draws of stones.
+#[derive(Clone, Copy)]
+pub(crate) struct StoneDraw {
+    pub block: StoneUniform,
+    /// Stones in the air, and slots of landings.
+    pub falling: u32,
+    pub landings: u32,
+}
+
+impl StoneDraw {
+    pub fn new(stones: &Stones, block: StoneUniform) -> Self {
+        Self { block, falling: stones.drawn, landings: stones.landings() }
+    }
+}
+
+/// What a view holds for stones, made when the first ones fall.
+pub(super) struct StonePass {
+    block: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
+    group: wgpu::BindGroup,
+    /// Falling and hopping, for each kind of depth.
+    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 4],
+}
+
+/// The kind of depth that a pass has: several samples, any at all.
+pub(super) type Depth = (bool, bool);
+
+fn key((multi, any): Depth) -> usize {
+    usize::from(multi) * 2 + usize::from(any)
+}
+
+impl StonePass {
+    pub fn new(device: &Device) -> Self {
+        let device = &device.device;
+        let block = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("stones"),
+            size: size_of::<StoneUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("stones"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: wgpu::BufferSize::new(size_of::<StoneUniform>() as u64),
+                },
+                count: None,
+            }],
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("stones"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() }],
+        });
+        Self { block, layout, group, pipelines: [const { [None, None] }; 4] }
+    }
+
+    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` is the layout of the
+    /// drops' own group, `format` that of their layer.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        drawn: &StoneDraw,
+        rain: &wgpu::BindGroupLayout,
+        format: wgpu::TextureFormat,
+        depth: Depth,
+    ) -> Result<()> {
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&drawn.block));
+        for (slot, vertex) in self.pipelines[key(depth)].iter_mut().zip(["falling_vertex", "hopping_vertex"]) {
+            if slot.is_none() {
+                *slot = Some(pipeline(device, &[Some(rain), Some(&self.layout)], format, vertex, depth)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws what was prepared, in a pass whose group 0 is the drops'.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, depth: Depth, drawn: &StoneDraw) {
+        let [Some(falling), Some(hopping)] = &self.pipelines[key(depth)] else { return };
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_pipeline(falling);
+        pass.draw(0..4, 0..drawn.falling);
+        if depth.1 && drawn.landings > 0 {
+            pass.set_pipeline(hopping);
+            pass.draw(0..4, 0..drawn.landings);
+        }
+    }
+}
+
+fn pipeline(
+    device: &Device,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    format: wgpu::TextureFormat,
+    vertex: &str,
+    (multi, has_depth): Depth,
+) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(if multi { "rain/stones_multi.wgsl" } else { "rain/stones_single.wgsl" })?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("stones"),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("stones"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("stone_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(wgpu::ColorTargetState {
+                format,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}
