@@ -150,7 +150,7 @@ fn measured(host: &Host, own: &Projector, pixels: &[f64]) -> BTreeMap<Id, (DVec2
             }
         }
         // Fainter ones are lost in the steps of half floats.
-        if sum > 0.3 && streak.half.length() > 5.0 && streak.end > 1.0 {
+        if sum > 0.3 && streak.half.length() > 5.0 && streak.end > 1.15 {
             found.insert(streak.id, (at / sum, distance_m));
         }
     }
@@ -276,7 +276,7 @@ fn neighbouring_channels_of_two_processes_show_the_same_drops() {
         off.len(),
         worst(&off),
     );
-    assert!(shared.len() >= 8, "{}", shared.len());
+    assert!(shared.len() >= 5, "{}", shared.len());
     assert!(worst(&shared) <= 0.5 && worst(&off) <= 0.5);
 }
 

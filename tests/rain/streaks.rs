@@ -104,7 +104,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
         host.velocity_m_s = DVec3::X * speed;
         host.view.set_rain(RainSettings { shutter_s, most_drops: Some(MOST), ..RainSettings::default() }).unwrap();
         let mut ratios = vec![Vec::new(); CLASSES];
-        for _ in 0..150 {
+        for _ in 0..90 {
             t += 0.37;
             host.context.update(t).unwrap();
             let pixels = through(&mut host);
@@ -118,7 +118,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
         let means: Vec<(usize, usize, f64)> = ratios
             .iter()
             .enumerate()
-            .filter(|(_, r)| r.len() >= 2)
+            .filter(|(_, r)| r.len() >= 4)
             .map(|(class, r)| (class, r.len(), r.iter().sum::<f64>() / r.len() as f64))
             .collect();
         let worst = means.iter().map(|m| (m.2 - 1.0).abs()).fold(0.0, f64::max);
