@@ -8,8 +8,8 @@ use welkin::{
     rain::{AreaRain, AreaShape, RainArea},
     scene::HostLight,
     weather::{
-        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface,
-        SurfaceState, Weather, Wind,
+        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, Precipitation,
+        PrecipitationKind, Surface, SurfaceState, Weather, Wind,
     },
 };
 
@@ -120,6 +120,48 @@ pub fn shots() -> Vec<Shot> {
                     station_altitude_m: ground,
                     clouds: vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 400.0)],
                     precipitation: Precipitation::of(PrecipitationKind::Rain, 2.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "hail",
+            caption: "Hail, 40 mm/h",
+            at: [2604.0, 138.8],
+            height_m: 1.8,
+            elevation_deg: -8.0,
+            weather: |c, ground| {
+                sun(c, 70.0, 40.0)?;
+                let weather = Weather {
+                    visibility_m: 9000.0,
+                    relative_humidity: 0.9,
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Cumulonimbus, 1.0, 900.0)],
+                    precipitation: Precipitation::of(PrecipitationKind::Hail, 40.0),
+                    wind: Wind::of(5.0, 260.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            ..GROUND
+        },
+        Shot {
+            name: "blowing_sand",
+            caption: "Blowing sand, visibility 500 m",
+            at: [2604.0, 138.8],
+            height_m: 1.8,
+            elevation_deg: -2.0,
+            weather: |c, ground| {
+                sun(c, 235.0, 40.0)?;
+                let weather = Weather {
+                    visibility_m: 500.0,
+                    relative_humidity: 0.15,
+                    temperature_c: 36.0,
+                    station_altitude_m: ground,
+                    lofted: Lofted::of(LoftedKind::BlowingSand),
+                    wind: Wind::of(19.0, 250.0),
                     ..Weather::default()
                 };
                 c.set_weather(&weather, 0.0, 0.0)

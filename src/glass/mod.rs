@@ -124,20 +124,19 @@ impl Default for Windscreen {
 }
 
 impl WiperArm {
-    fn validate(&self, name: &str) -> Result<()> {
-        let range = |field: &str, v, lo, hi, unit| check_range(&format!("{name}.{field}"), v, lo, hi, unit);
-        range("pivot_m[0]", self.pivot_m[0], -4.0, 12.0, "m")?;
-        range("pivot_m[1]", self.pivot_m[1], -4.0, 12.0, "m")?;
-        range("length_m", self.length_m, 0.01, 3.0, "m")?;
-        range("inner_radius_m", self.inner_radius_m, 0.0, 3.0, "m")?;
+    fn validate(&self) -> Result<()> {
+        check_range("pivot_m[0]", self.pivot_m[0], -4.0, 12.0, "m")?;
+        check_range("pivot_m[1]", self.pivot_m[1], -4.0, 12.0, "m")?;
+        check_range("length_m", self.length_m, 0.01, 3.0, "m")?;
+        check_range("inner_radius_m", self.inner_radius_m, 0.0, 3.0, "m")?;
         if self.inner_radius_m >= self.length_m {
             let accepted = format!("below length_m, {}", self.length_m);
-            return Err(Error::range(&format!("{name}.inner_radius_m"), &accepted, self.inner_radius_m));
+            return Err(Error::range("inner_radius_m", &accepted, self.inner_radius_m));
         }
-        range("parked_deg", self.parked_deg, -360.0, 360.0, "deg")?;
-        range("far_deg", self.far_deg, self.parked_deg - 350.0, self.parked_deg + 350.0, "deg")?;
-        range("position", self.position, 0.0, 1.0, "")?;
-        range("blade_width_m", self.blade_width_m, 0.0, 0.1, "m")
+        check_range("parked_deg", self.parked_deg, -360.0, 360.0, "deg")?;
+        check_range("far_deg", self.far_deg, self.parked_deg - 350.0, self.parked_deg + 350.0, "deg")?;
+        check_range("position", self.position, 0.0, 1.0, "")?;
+        check_range("blade_width_m", self.blade_width_m, 0.0, 0.1, "m")
     }
 
     /// The blade's angle at a place of the stroke, rad.
@@ -158,13 +157,16 @@ impl Windscreen {
             }
             Pane::WholeView(distance) => check_range("windscreen.distance_m", *distance, 0.1, 3.0, "m")?,
         }
-        for (i, v) in self.velocity_m_s.to_array().into_iter().enumerate() {
-            check_range(&format!("windscreen.velocity_m_s[{i}]"), v, -400.0, 400.0, "m/s")?;
+        let axes = ["windscreen.velocity_m_s[0]", "windscreen.velocity_m_s[1]", "windscreen.velocity_m_s[2]"];
+        for (name, v) in axes.iter().zip(self.velocity_m_s.to_array()) {
+            check_range(name, v, -400.0, 400.0, "m/s")?;
         }
         check_range("windscreen.airflow_m_s", self.airflow_m_s, -100.0, 100.0, "m/s")?;
         check_range("windscreen.exposed", self.exposed, 0.0, 1.0, "")?;
         check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
         check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
-        self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate(&format!("windscreen.arms[{i}]")))
+        // Names are put together for an error only: a host that drives sets its windscreen before every frame.
+        let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]."));
+        self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))
     }
 }

@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use welkin::{
+    context::RainSurface,
     frame::{FrameFlags, Stages},
     glass::{
-        Windscreen, WiperArm,
+        Pane, Windscreen, WiperArm,
         reference::Cells,
         step::{Acting, Tables, VOLUME_UNIT_M3},
     },
@@ -103,6 +104,33 @@ fn drops_arrive_as_the_flux_says() {
     let due = flux.rate_mm_h / 3.6e6 * area_s;
     // A drop's volume varies about 15 times as much as its mean.
     assert!((water / due - 1.0).abs() < 4.0 * 15.0 / expected.sqrt(), "{water} of {due} m^3, {hits} drops");
+}
+
+/// What the report counts is what a query for a surface in the pane's place answers.
+#[test]
+fn drops_land_on_the_pane_as_the_query_for_such_a_surface_says() {
+    let mut host = Host::new(FORMAT, SMALL, 12.0);
+    for (k, (speed, tilt)) in [(0.0, 0.0f64), (8.0, 0.3), (25.0, 0.6)].into_iter().enumerate() {
+        // The camera looks along y with z up; the pane leans back over it.
+        let (sin, cos) = tilt.sin_cos();
+        let corner = |x: f64, up: f64| DVec3::new(x, 0.6 * up * cos, -0.5 + 0.6 * up * sin);
+        let corners = [corner(-0.4, -0.5), corner(0.4, -0.5), corner(0.4, 0.5), corner(-0.4, 0.5)];
+        let velocity = DVec3::new(0.0, 0.0, -speed);
+        let screen = Windscreen { pane: Pane::Quad(corners), velocity_m_s: velocity, ..Windscreen::default() };
+        host.view.set_windscreen(Some(&screen)).unwrap();
+        host.at(k as f64 / 60.0, Stages::PREPARE, FrameFlags(FrameFlags::CUT.0)).unwrap();
+        let report = host.view.windscreen_report().unwrap().unwrap();
+        let surface = RainSurface {
+            position: DVec3::new(0.0, 0.0, 3.0),
+            normal: DVec3::new(0.0, cos, sin),
+            velocity_m_s: DVec3::new(0.0, speed, 0.0),
+            area_m2: 0.8 * 0.6,
+        };
+        let asked = host.context.rain_on(&surface, k as f64 / 60.0).unwrap();
+        assert!((report.drops_per_s - asked.drops_per_s).abs() <= 5e-3 * asked.drops_per_s, "{report:?} {asked:?}");
+        assert!((report.water_mm_h - asked.rate_mm_h).abs() <= 5e-3 * asked.rate_mm_h, "{report:?} {asked:?}");
+        assert!(speed == 0.0 || report.drops_per_s > 10.0, "{report:?}");
+    }
 }
 
 #[test]
