@@ -112,12 +112,14 @@ fn areas(bench: &mut Bench) -> Fallible<()> {
         ..RainArea::default()
     };
     let list: Vec<RainArea> = (0..16).map(area).collect();
+    let inside = [RainArea { center_m: [0.0; 3], ..list[0] }];
     let rim = [RainArea { center_m: [0.0, 650.0, 0.0], ..list[0] }];
     for (name, areas) in [
         ("1 rain area 5 km away adds", &list[..1]),
         ("4 add", &list[..4]),
         ("16 add", &list[..]),
-        ("the rim of one round the camera adds", &rim[..]),
+        ("one all round the camera adds", &inside[..]),
+        ("the rim of one all round it adds", &rim[..]),
     ] {
         let (a, b) =
             bench.compare(8, |s| Ok(s.context.set_rain_areas(&[])?), |s| Ok(s.context.set_rain_areas(areas)?))?;

@@ -152,7 +152,8 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     inner = clamp(inner, vec2f(begin), vec2f(end));
     let soft = clamp((top - columns.list[i].soft - origin.z) / up, begin, end);
     let cuts = vec3f(min(inner.x, soft), max(inner.x, min(soft, inner.y)), max(inner.y, soft));
-    var depth = 0.0;
+    var shared_own = 0.0;
+    var fell = 0.0;
     var s = begin;
     for (var k = 0u; k < 4u; k++) {
         var e = end;
@@ -161,16 +162,20 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
         }
         let z0 = origin.z + d.z * s;
         let z1 = origin.z + d.z * e;
-        let more = column_pattern(i, q, u, origin.z, d.z, s, e);
-        let own = shaft.own * ramp_mean(shaft.own_top, shaft.own_soft, z0, z1);
         let mean = piece_mean(i, origin, d, s, e);
-        depth += (e - s) * (columns.list[i].extinction * more * mean.y - own * mean.x);
+        shared_own += (e - s) * mean.x * ramp_mean(shaft.own_top, shaft.own_soft, z0, z1);
+        fell += (e - s) * mean.y;
         s = e;
     }
+    // The curtains that show first, and the rest.
+    let cut = min(begin + FRONT, end);
+    let front = column_pattern(i, q, u, origin.z, d.z, begin, cut);
+    let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
+    fell *= mix(rest, front, (cut - begin) / (end - begin));
+    var depth = columns.list[i].extinction * fell - shaft.own * shared_own;
     // What drops near the eye hide is drawn as drops.
     let near = min(range, frame.drops.y);
     depth -= (columns.list[i].near - shaft.own_near) * near * column_left(i, origin + d * (0.5 * near));
-    let front = column_pattern(i, q, u, origin.z, d.z, begin, min(end, begin + FRONT));
     return Met(depth, begin, end, front);
 }
 

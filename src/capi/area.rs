@@ -143,20 +143,16 @@ pub unsafe extern "C" fn wk_context_set_rain_areas(
     guard("wk_context_set_rain_areas", |call| {
         let object = call.get::<ContextObject>("context", context)?;
         let mut list = [RainArea::default(); MAX_AREAS];
-        let named = |i: usize| {
-            move |e: Error| Error::new(e.status, e.message.replacen("rain_area.", &format!("areas[{i}]."), 1))
-        };
         let mut take = |i: usize, c: wk_rain_area| {
-            let area = c.area();
-            area.validate().map_err(named(i))?;
-            list[i] = area;
+            list[i] = c.area();
             Ok(())
         };
         // SAFETY: the caller's promise about `areas`.
         unsafe {
             input::each("areas", areas, count as usize, stride as usize, MAX_AREAS, &mut take)?;
         }
-        object.write().set_rain_areas(&list[..count as usize])?;
+        let named = |e: Error| Error::new(e.status, e.message.replacen("rain_areas[", "areas[", 1));
+        object.write().set_rain_areas(&list[..count as usize]).map_err(named)?;
         Ok(Status::Ok)
     })
 }

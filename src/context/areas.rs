@@ -39,18 +39,24 @@ impl Context {
         if areas.len() > MAX_AREAS {
             return Err(Error::range("rain_areas", &format!("at most {MAX_AREAS}"), areas.len()));
         }
-        for area in areas {
-            area.validate()?;
-            self.desc.world.frame_at(DVec3::from(area.center_m)).place.validate()?;
-            let from = match area.motion {
-                AreaMotion::WithWind => self.timeline.known_from_s().max(-super::MAX_TIME_S),
-                AreaMotion::Own(_) => -super::MAX_TIME_S,
-            };
-            check_range("rain_area.at_s", area.at_s, from, super::MAX_TIME_S, "s")?;
+        for (i, area) in areas.iter().enumerate() {
+            let named =
+                |e: Error| Error::new(e.status, e.message.replacen("rain_area.", &format!("rain_areas[{i}]."), 1));
+            self.check_area(area).map_err(named)?;
         }
         self.areas.clear();
         self.areas.extend(areas.iter().map(|area| KeptArea { area: *area, carried_m: None }));
         self.keep_carried(self.time_s)
+    }
+
+    fn check_area(&self, area: &RainArea) -> Result<()> {
+        area.validate()?;
+        self.desc.world.frame_at(DVec3::from(area.center_m)).place.validate()?;
+        let from = match area.motion {
+            AreaMotion::WithWind => self.timeline.known_from_s().max(-super::MAX_TIME_S),
+            AreaMotion::Own(_) => -super::MAX_TIME_S,
+        };
+        check_range("rain_area.at_s", area.at_s, from, super::MAX_TIME_S, "s")
     }
 
     /// The regions with rain of their own, as they were set.

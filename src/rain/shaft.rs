@@ -2,8 +2,8 @@
 //!
 //! A column is the region's plan carried up to its cloud along the lean of the falling drops. A ray's way through it is
 //! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft top end;
-//! on each of the four pieces what falls is integrated by Gauss's four points, and the pattern of curtains, a sum of waves that
-//! fall as the drops do, exactly on its mean. Columns count by how much more they take than the weather's own
+//! on each of the four pieces what falls is integrated by Gauss's four points. The pattern of curtains, a sum of waves that fall
+//! as the drops do, multiplies it by its exact mean, of the first half kilometre and of the rest. Columns count by how much more they take than the weather's own
 //! rain, which is in the fog.
 
 use glam::{DMat3, DVec2, DVec3};
@@ -19,6 +19,8 @@ use crate::scene::depth::RANGE_SKY_M;
 pub(crate) const BELOW_M: f64 = 1000.0;
 /// Distance up to which drops are drawn in place of the veil, m.
 pub(crate) const NEAR_M: f64 = HIDDEN_M;
+/// Way into a dense column from which most of its light comes, m.
+const FRONT_M: f64 = 500.0;
 /// Gauss's four points in \[0, 1\], and their weights.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_7, 0.173_927_422_568_727),
@@ -337,7 +339,7 @@ impl AreaField {
         let [s0, s1] = c.chord(q, u, c.shaft.rim_m).unwrap_or([middle; 2]);
         let [s0, s1, soft] = [s0, s1, (c.top - c.shaft.soft_m() - origin.z) / up].map(|t| t.clamp(begin, end));
         let cuts = [begin, s0.min(soft), s0.max(soft.min(s1)), s1.max(soft), end];
-        let mut depth = 0.0;
+        let (mut shared, mut fell) = (0.0, 0.0);
         for piece in cuts.windows(2) {
             let (from, length) = (piece[0], piece[1] - piece[0]);
             if length <= 0.0 {
@@ -351,11 +353,17 @@ impl AreaField {
                 fallen += here * ((c.top - p.z) / c.shaft.soft_m()).clamp(0.0, 1.0);
             }
             let [z0, z1] = [piece[0], piece[1]].map(|t| origin.z + d.z * t);
-            let way = [piece[0], piece[1]];
-            let more = if patterned { c.pattern(&self.waves, q, u, (origin.z, d.z), way) } else { 1.0 };
-            let own = self.own.extinction_per_m * ramp_mean(self.own_top, self.own.soft_m, z0, z1);
-            depth += length * (c.extinction * more * fallen - own * share);
+            shared += length * share * ramp_mean(self.own_top, self.own.soft_m, z0, z1);
+            fell += length * fallen;
         }
+        if patterned {
+            // The curtains that show first, and the rest.
+            let cut = (begin + FRONT_M).min(end);
+            let [front, rest] = [[begin, cut], [cut, end]]
+                .map(|way| (way[1] - way[0]) * c.pattern(&self.waves, q, u, (origin.z, d.z), way));
+            fell *= (front + rest) / (end - begin);
+        }
+        let mut depth = c.extinction * fell - self.own.extinction_per_m * shared;
         // What drops near the eye hide is drawn as drops.
         let near = range.min(NEAR_M);
         let half = origin + d * (0.5 * near);

@@ -4,6 +4,7 @@
 //! `world` makes one live object of each kind; `handles` and `structs` hold one line a function and parameter, and fail
 //! if a function of the header has none.
 
+mod areas;
 mod handles;
 mod plan;
 mod queries;

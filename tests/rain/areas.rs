@@ -5,6 +5,7 @@ use glam::DVec3;
 use welkin::{
     context::{Context, GivenDirection, RainSurface},
     frame::Stages,
+    gpu::{Device, DeviceOptions},
     rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
 };
@@ -316,21 +317,21 @@ fn bad_areas_are_named_and_leave_the_running_ones() {
     let flat = AreaShape::Polygon([[0.0; 2]; MAX_CORNERS], 4);
     let good = shower(0.0, 20.0);
     for (bad, name) in [
-        (RainArea { shape: AreaShape::Ellipse([0.0, 500.0]), ..good }, "rain_area.semi_axes_m"),
-        (RainArea { shape: AreaShape::Ellipse([nan, 500.0]), ..good }, "rain_area.semi_axes_m"),
-        (RainArea { shape: flat, ..good }, "rain_area.corners_m"),
-        (RainArea { shape: star, ..good }, "rain_area.corners_m"),
-        (RainArea { shape: AreaShape::Polygon([[1.0; 2]; MAX_CORNERS], 9), ..good }, "rain_area.corner_count"),
-        (RainArea { rim_m: 0.0, ..good }, "rain_area.rim_m"),
-        (RainArea { rim_m: 1501.0, ..good }, "rain_area.rim_m"),
-        (RainArea { rate_mm_h: -1.0, ..good }, "rain_area.rate_mm_h"),
-        (RainArea { rate_mm_h: nan, ..good }, "rain_area.rate_mm_h"),
-        (RainArea { rate_mm_h: f64::INFINITY, ..good }, "rain_area.rate_mm_h"),
-        (RainArea { center_m: [nan, 0.0, 0.0], ..good }, "rain_area.center_m"),
-        (RainArea { top_m: 1e6, ..good }, "rain_area.top_m"),
-        (RainArea { motion: AreaMotion::Own([0.0, 900.0]), ..good }, "rain_area.velocity_m_s"),
-        (RainArea { heading_deg: 1e3, ..good }, "rain_area.heading_deg"),
-        (RainArea { at_s: nan, ..good }, "rain_area.at_s"),
+        (RainArea { shape: AreaShape::Ellipse([0.0, 500.0]), ..good }, "rain_areas[1].semi_axes_m"),
+        (RainArea { shape: AreaShape::Ellipse([nan, 500.0]), ..good }, "rain_areas[1].semi_axes_m"),
+        (RainArea { shape: flat, ..good }, "rain_areas[1].corners_m"),
+        (RainArea { shape: star, ..good }, "rain_areas[1].corners_m"),
+        (RainArea { shape: AreaShape::Polygon([[1.0; 2]; MAX_CORNERS], 9), ..good }, "rain_areas[1].corner_count"),
+        (RainArea { rim_m: 0.0, ..good }, "rain_areas[1].rim_m"),
+        (RainArea { rim_m: 1501.0, ..good }, "rain_areas[1].rim_m"),
+        (RainArea { rate_mm_h: -1.0, ..good }, "rain_areas[1].rate_mm_h"),
+        (RainArea { rate_mm_h: nan, ..good }, "rain_areas[1].rate_mm_h"),
+        (RainArea { rate_mm_h: f64::INFINITY, ..good }, "rain_areas[1].rate_mm_h"),
+        (RainArea { center_m: [nan, 0.0, 0.0], ..good }, "rain_areas[1].center_m"),
+        (RainArea { top_m: 1e6, ..good }, "rain_areas[1].top_m"),
+        (RainArea { motion: AreaMotion::Own([0.0, 900.0]), ..good }, "rain_areas[1].velocity_m_s"),
+        (RainArea { heading_deg: 1e3, ..good }, "rain_areas[1].heading_deg"),
+        (RainArea { at_s: nan, ..good }, "rain_areas[1].at_s"),
     ] {
         let e = host.context.set_rain_areas(&[good, bad]).unwrap_err();
         assert!(e.message.contains(name), "{}", e.message);
@@ -364,5 +365,35 @@ fn pictures_of_a_shaft_from_afar_at_its_edge_and_inside() {
             sky == "facing" || shaft < 0.98 * beside,
             "{sky}: a shaft is darker than the sky that it hangs before: {shaft} {beside}"
         );
+    }
+}
+
+/// The OpenGL driver, without compute shaders, draws what the Vulkan one does.
+#[test]
+fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
+    let mut beside = RainArea { center_m: [2600.0, 7500.0, 0.0], shape: square(1300.0), ..shower(0.0, 4.0) };
+    beside.heading_deg = 20.0;
+    let pictures: Vec<_> = [DeviceOptions::default().backends, wgpu::Backends::GL]
+        .into_iter()
+        .map(|backends| {
+            let options = DeviceOptions { backends, force_tier0: true, ..DeviceOptions::default() };
+            let mut host = Host::on(Device::headless(&options).unwrap(), (160, 90));
+            host.context.set_weather(&fair(6.0), 0.0, 0.0).unwrap();
+            let mut drawn = Vec::new();
+            for north_m in [6500.0, 1300.0] {
+                host.context.set_rain_areas(&[shower(north_m, 15.0), beside]).unwrap();
+                host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.0, 1.0, 0.1));
+                host.draw(|_, _| [600.0; 3]);
+                host.record(Stages::ALL).unwrap();
+                drawn.push(host.pixels());
+            }
+            drawn
+        })
+        .collect();
+    for (a, b) in pictures[0].iter().zip(&pictures[1]) {
+        let off = |(a, b): (&[f32; 4], &[f32; 4])| f64::from((a[1] - b[1]).abs());
+        let mean = a.iter().zip(b).map(off).sum::<f64>() / a.len() as f64;
+        let apart = a.iter().zip(b).filter(|p| off(*p) > 0.02).count();
+        assert!(mean < 2e-3 && apart < a.len() / 100, "{mean} on the mean, {apart} pixels");
     }
 }
