@@ -103,12 +103,18 @@ fn bead(cell: vec4u, q: vec2f) -> Water {
     let two = vec2f(d.x * d.x - d.y * d.y, 2.0 * d.x * d.y);
     let three = vec2f(d.x * two.x - d.y * two.y, d.x * two.y + d.y * two.x);
     let turn = vec2f(cos(shape), sin(shape));
-    let uneven = 1.0 + (1.0 - runs) * (0.10 * dot(two, turn) + 0.05 * dot(three, turn.yx));
+    // No two are alike: how far an outline strays goes with its own shape.
+    let stray = 0.6 + 0.8 * fract(shape * 2.7);
+    let uneven = 1.0 + (1.0 - runs) * stray * (0.17 * dot(two, turn) + 0.09 * dot(three, turn.yx));
     return cap(d, far / (radius * uneven), radius, lens.pixel);
 }
 
 // Small beads that sit in squares of their own, `per_cell` along a cell's edge: more of them the more drops have hit.
-fn fine(c: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
+fn fine(straight: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
+    // The squares lie askew and bent, so that no rows show.
+    let s = straight * per_cell;
+    let bent = 0.9 * vec2f(sin(0.83 * s.y + 0.29 * s.x), sin(0.71 * s.x - 0.37 * s.y));
+    let c = (vec2f(0.8 * s.x - 0.6 * s.y, 0.6 * s.x + 0.8 * s.y) + 0.35 * bent) / per_cell;
     let square = floor(c * per_cell);
     let h = hash(vec2i(square), key);
     let due = f32(h & 255u) * (patience / 255.0);
@@ -123,6 +129,8 @@ fn fine(c: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
     let far = max(length(q), 1e-6);
     let in_cells = radius / per_cell;
     var w = cap(q / far, far / radius, in_cells, lens.pixel);
+    // Out of the askew frame again.
+    w.slope = vec2f(0.8 * w.slope.x + 0.6 * w.slope.y, 0.8 * w.slope.y - 0.6 * w.slope.x);
     // A bead below a pixel covers its share of it.
     w.cover *= min(in_cells / lens.pixel * 2.0, 1.0);
     return w;
