@@ -50,8 +50,18 @@ fn on_cone(d: vec3f) -> OnCone {
     return OnCone(azimuth * 0.15915494, select(-latitude, latitude, c >= 0.0), sine);
 }
 
-// Optical depth over its mean of the set whose pattern has come so far, where `number` drops a steradian are to show.
-fn pattern(at: OnCone, shape: vec4f, moved: vec4f, number: f32) -> f32 {
+// Where the texture is looked at for a cone, without what moves its sets.
+struct Look {
+    uv: vec2f,
+    // Latitude of a tile.
+    tall: f32,
+    // Level of detail.
+    level: f32,
+    // Drops in a tile.
+    number: f32,
+}
+
+fn look_at(at: OnCone, shape: vec4f) -> Look {
     // Each halving of the sine halves the tiles; where exactly differs from column to column, so that no ring shows.
     let halvings = -log2(at.sine);
     let whole = floor(halvings);
@@ -60,14 +70,19 @@ fn pattern(at: OnCone, shape: vec4f, moved: vec4f, number: f32) -> f32 {
     let octave = whole + select(0.0, 1.0, halvings - whole > 0.25 + 0.75 * chance);
     let tiles = max(round(shape.x * exp2(-octave)), 1.0);
     let tall = max(shape.y, shape.w * exp2(octave));
-    let uv = vec2f(at.turn * tiles + moved.z + 0.37 * octave, (at.latitude + moved.x) / tall + moved.w + 0.61 * octave);
     // A pixel in texels.
     let pixel = rain.pixel_angle * CONE_SIDE / at.sine;
-    let size = pixel * max(tiles * 0.15915494, 1.0 / tall);
-    let seen = textureSampleLevel(streaks, streaks_sampler, uv, max(log2(size), 0.0));
+    let level = max(log2(pixel * max(tiles * 0.15915494, 1.0 / tall)), 0.0);
+    let uv = vec2f(at.turn * tiles + 0.37 * octave, at.latitude / tall + 0.61 * octave);
+    return Look(uv, tall, level, shape.z * at.sine * at.sine * 6.2831853 / tiles * tall);
+}
+
+// Optical depth over its mean of a set of so many drops a tile: how far it has come, its share, its offset.
+fn pattern(look: Look, moved: vec4f) -> f32 {
+    let uv = look.uv + vec2f(moved.z, moved.x / look.tall + moved.w);
+    let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
     // As many streaks as there are drops.
-    let tile = at.sine * at.sine * 6.2831853 / tiles * tall;
-    let wanted = number * tile;
+    let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
     let shown = clamp((vec4f(wanted) - before) / STREAKS, vec4f(1.0, 0.0, 0.0, 0.0), vec4f(1.0));
     let mean = dot(shown, STREAKS) / ALL_STREAKS;
@@ -79,6 +94,7 @@ fn rain_on_cones(d: vec3f, range: f32) -> vec4f {
     let at = on_cone(d);
     let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var seen = vec4f(0.0);
+    var light = drop_light(d, d);
     for (var j = 0u; j < CONES; j++) {
         let band = cones.bands[j];
         let before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
@@ -86,12 +102,16 @@ fn rain_on_cones(d: vec3f, range: f32) -> vec4f {
         if before <= 0.0 || (shelters.count > 0u && sheltered(p, velocity)) {
             continue;
         }
-        let shape = cones.shapes[j];
+        let look = look_at(at, cones.shapes[j]);
         let a = cones.sets[2u * j];
         let b = cones.sets[2u * j + 1u];
-        let depth = a.y * pattern(at, shape, a, shape.z * a.y) + b.y * pattern(at, shape, b, shape.z * b.y);
+        let depth = a.y * pattern(look, a) + b.y * pattern(look, b);
         let cover = (1.0 - exp(-band.w * before * depth)) * exp(-rain.extinction * band.z);
-        seen += vec4f(drop_light(p, d), 1.0) * (cover * (1.0 - seen.a));
+        // Only lamps light one band otherwise than another.
+        if lights.count > 0u {
+            light = drop_light(p, d);
+        }
+        seen += vec4f(light, 1.0) * (cover * (1.0 - seen.a));
     }
     return seen;
 }

@@ -36,7 +36,8 @@ impl ConePass {
             address_mode_v: wgpu::AddressMode::Repeat,
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            // Levels hardly change over a picture; looking at two of them would cost half as much again.
+            mipmap_filter: wgpu::MipmapFilterMode::Nearest,
             ..Default::default()
         });
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
