@@ -1,12 +1,15 @@
 //! Rain areas: what falls where, what a camera sees of it from outside, on the rim and inside, and that all of it moves and is
 //! kept as the weather is.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use welkin::{
-    context::{Context, GivenDirection, RainSurface},
-    frame::Stages,
+    context::{Context, ContextDesc, GivenDirection, RainSurface},
+    frame::{Shared, Stages},
     gpu::{Device, DeviceOptions},
     rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea},
+    scene::{Place, WorldFrame, WorldKind},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
 };
 
@@ -396,4 +399,27 @@ fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
         let apart = a.iter().zip(b).filter(|p| off(*p) > 0.02).count();
         assert!(mean < 2e-3 && apart < a.len() / 100, "{mean} on the mean, {apart} pixels");
     }
+}
+
+/// In Earth-centred coordinates an area lies on the round ground, goes along it, and is nowhere on the other side.
+#[test]
+fn areas_lie_on_a_round_planet_too() {
+    let host = Host::new((16, 16));
+    let world = WorldFrame { kind: WorldKind::Ecef, ..WorldFrame::default() };
+    let shared = Arc::new(Shared::new(&host.device).unwrap());
+    let desc = ContextDesc { world, ..ContextDesc::default() };
+    let mut context = Context::new(host.device.clone(), shared, desc).unwrap();
+    context.set_weather(&fair(0.0), 0.0, 0.0).unwrap();
+    let place =
+        |latitude_deg: f64, longitude_deg: f64| Place { latitude_deg, longitude_deg, altitude_m: 0.0 }.to_ecef();
+    let start = place(48.0, 11.0);
+    let area = RainArea { center_m: start.to_array(), motion: AreaMotion::Own([0.0, 20.0]), ..shower(0.0, 20.0) };
+    let equator = RainArea { center_m: place(0.0, 11.0).to_array(), ..shower(0.0, 20.0) };
+    context.set_rain_areas(&[area, equator]).unwrap();
+    let rate = |at: DVec3, time_s: f64| context.rain_at(at, time_s).unwrap().rate_mm_h;
+    assert!((rate(start, 0.0) - 20.0).abs() < 1e-3 && rate(place(48.03, 11.0), 0.0) == 0.0);
+    // 20 km to the north a quarter of an hour and more later.
+    assert!(rate(start, 1000.0) == 0.0 && (rate(place(48.18, 11.0), 1000.0) - 20.0).abs() < 1e-3);
+    assert!(rate(place(0.0, 11.0), 0.0) > 19.0);
+    assert_eq!(rate(place(0.0, -169.0), 0.0), 0.0, "straight below it");
 }
