@@ -1,4 +1,5 @@
-//! Rain: cost against the number of drops, what boxes that keep it off and lamps add, and that dry weather costs nothing.
+//! Rain: cost against the number of drops, what boxes and maps that keep it off and lamps add, and that dry weather costs
+//! nothing.
 
 use std::{sync::Arc, time::Instant};
 
@@ -7,7 +8,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    rain::{AreaMotion, AreaShape, RainArea, RainModel, RainSettings, Shelter},
+    rain::{AreaMotion, AreaShape, OccluderMap, RainArea, RainModel, RainSettings, Shelter, Taken},
     scene::{Camera, HostLight},
     weather::{Precipitation, PrecipitationKind, Weather},
 };
@@ -132,6 +133,58 @@ fn areas(bench: &mut Bench) -> Fallible<()> {
     Ok(bench.context.set_rain_areas(&[])?)
 }
 
+/// The map of a bridge over level ground, along the fall of the drops.
+fn map(bench: &Bench, side: u32) -> Fallible<(wgpu::Texture, Taken)> {
+    let fall = bench.context.rain_at(DVec3::ZERO, bench.context.time_s())?.fall_velocity_m_s.normalize();
+    let (eye, half, deep) = (DVec3::new(0.0, 8.0, 0.0) - fall * 60.0, 24.0, 120.0);
+    let taken = Taken::parallel(eye, fall, [half; 2], deep);
+    let from_clip = taken.clip_from_world.inverse();
+    let ndc = |i: u32| (f64::from(i) + 0.5) / f64::from(side) * 2.0 - 1.0;
+    let depth = |x: u32, y: u32| {
+        let p = (from_clip * glam::DVec4::new(ndc(x), -ndc(y), 1.0, 1.0)).truncate();
+        let at = |z: f64| (z - p.z) / fall.z;
+        let deck = p + fall * at(5.0);
+        let bridge = deck.x.abs() < 12.0 && (deck.y - 8.0).abs() < 3.0;
+        (1.0 - at(if bridge { 5.0 } else { 0.0 }) / deep) as f32
+    };
+    let texels: Vec<f32> = (0..side * side).map(|i| depth(i % side, i / side)).collect();
+    let texture = bench.device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    bench.device.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&texels),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * side), rows_per_image: None },
+        texture.size(),
+    );
+    Ok((texture, taken))
+}
+
+fn maps(bench: &mut Bench) -> Fallible<()> {
+    let (depth, taken) = map(bench, 512)?;
+    let map = [OccluderMap { depth: &depth, taken }];
+    let (a, b) =
+        bench.compare(12, |s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&map)?))?;
+    println!("  a map of 512 x 512 of what keeps it off adds {:.0} %", 100.0 * (b / a - 1.0));
+    let maps = [map[0]; 4];
+    let (a, b) =
+        bench.compare(8, |s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&maps)?))?;
+    println!("  four of them add {:.0} %", 100.0 * (b / a - 1.0));
+    bench.context.set_occluder_maps(&[])?;
+    let start = Instant::now();
+    bench.context.set_occluder_maps(&map)?;
+    bench.device.wait()?;
+    println!("  to take one over takes {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
+    Ok(bench.context.set_occluder_maps(&[])?)
+}
+
 pub fn run() -> Fallible<()> {
     let mut bench = Bench::new()?;
     println!("rain: {} at {} x {}", bench.device.caps().adapter_name, SIZE.width, SIZE.height);
@@ -175,6 +228,7 @@ pub fn run() -> Fallible<()> {
     let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
     println!("  16 boxes that keep rain off, 3 of them near, add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_shelters(&[])?;
+    maps(&mut bench)?;
     let lamp = HostLight {
         position_m: DVec3::new(0.0, 0.0, 3.0),
         direction: DVec3::Y,

@@ -4,9 +4,15 @@
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
 //!include "ground/normal.wgsl"
+//!include "rain/lights_binding.wgsl"
+//!include "rain/shelter.wgsl"
 
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;
+
+// Whether anything keeps rain off, and whether there are lamps of the host's.
+override SHELTER: bool = false;
+override LAMPS: bool = false;
 
 // The sky without its lamps, as it stands behind what lies on the ground.
 fn sky_without_lamps(d: vec3f) -> vec3f {
@@ -32,9 +38,9 @@ fn caught(up_cosine: f32) -> f32 {
 }
 
 // The ground's own colour, from its luminance and the light that falls on it.
-fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f) -> vec3f {
+fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f {
     let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
-    let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up));
+    let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up)) + lamps;
     return clamp(luminance * SKY_PI / max(light, vec3f(1e-9)), vec3f(0.0), vec3f(0.9));
 }
 
@@ -69,6 +75,50 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
+// Illuminance by the host's lamps.
+fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
+    var lux = vec3f(0.0);
+    if LAMPS {
+        for (var i = 0u; i < lights.count; i++) {
+            let to = at - lights.lamps[i].position;
+            let cosine = max(-dot(normal, to) * inverseSqrt(max(dot(to, to), 1e-6)), 0.0);
+            lux += light_at(lights.lamps[i], to) * cosine;
+        }
+    }
+    return lux / frame.exposure;
+}
+
+// Radius that a lamp of the host is taken to have, m.
+const LAMP_RADIUS: f32 = 0.1;
+
+// What a film mirrors of the host's lamps.
+fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
+    var light = vec3f(0.0);
+    if LAMPS {
+        for (var i = 0u; i < lights.count; i++) {
+            let to = at - lights.lamps[i].position;
+            let near = inverseSqrt(max(dot(to, to), 1e-4));
+            let to_lamp = -to * near;
+            let middle = normalize(to_eye + to_lamp);
+            let disc = 0.25 * (LAMP_RADIUS * near + frame.pixel_angle);
+            let share = glitter(film.slope, disc * disc, film.normal, middle, to_eye, to_lamp);
+            light += light_at(lights.lamps[i], to) * (share * fresnel_water(dot(middle, to_eye)));
+        }
+    }
+    return light / frame.exposure;
+}
+
+// Share of the rain's water that gets to a surface past what keeps it off.
+fn rained_on(at: vec3f, normal: vec3f, range: f32) -> f32 {
+    // As far off the surface as depth may be wrong.
+    let p = at + normal * (0.02 + 0.002 * range);
+    var share = 0.0;
+    for (var i = 0u; i < 3u; i++) {
+        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, ground.falls[i])));
+    }
+    return share;
+}
+
 // `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that is
 // known of the albedo.
 fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing: Facing) -> Veil {
@@ -79,7 +129,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let to_eye = -ray.direction;
     var albedo = clamp(host, vec3f(0.0), vec3f(0.9));
     if !albedo_known {
-        albedo = dry_albedo(host, facing.normal, up);
+        albedo = dry_albedo(host, facing.normal, up, host_lamps(at, facing.normal));
     }
     let below = wet_share(albedo, ground.entering);
 
@@ -91,10 +141,14 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let across = vec2f(-along.y, along.x) * side;
     let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
 
+    var gets = 1.0;
+    if SHELTER {
+        gets = rained_on(at, facing.normal, range);
+    }
     let bare = facing.sure * (1.0 - plants(albedo));
     let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && min(ground.level, ground.film_level) < 100.0);
     let hollow = hollow_depth(ground, place, across, along * (side / cosine), waves);
-    let pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * bare;
+    let pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * bare * gets;
     // A pixel too long to see rings sees a rougher surface.
     let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
     let rings = pool > 1e-3 && ground.ring_chance > 0.0 && seen > 0.0;
@@ -105,16 +159,17 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let film = Film(facing.normal, ground.film_slope * (1.2 - 0.4 * normal_share(hollow.x)));
 
     // Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
-    let soaked = ground.soaked * kept * (0.5 + 0.5 * bare);
+    let soaked = ground.soaked * kept * (0.5 + 0.5 * bare) * gets;
     let wet = mix(vec3f(1.0), below, soaked);
-    let cover = covered_share(hollow, ground.film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare;
+    let cover = covered_share(hollow, ground.film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
     let thin = mirror(film, to_eye);
     let deep = mirror(water, to_eye);
     let thin_share = thin.share * cover * (1.0 - pool);
     let deep_share = deep.share * pool;
     let both = max(thin_share + deep_share, 1e-6);
     let sky = mirrored_light(normalize(thin.direction * (thin_share / both) + deep.direction * (deep_share / both)));
-    let lamps = thin.lamp * (cover * (1.0 - pool)) + deep.lamp * pool;
+    let lamps = (thin.lamp + mirrored_lamps(film, at, to_eye)) * (cover * (1.0 - pool))
+        + (deep.lamp + mirrored_lamps(water, at, to_eye)) * pool;
     let through = mix(wet, below * ((1.0 - deep.share) / (1.0 - WATER_OUTSIDE)), pool);
     return Veil(min(sky * (thin_share + deep_share) + lamps, vec3f(ground.most)), through);
 }

@@ -50,6 +50,12 @@ struct GroundUniform {
     // (Radius of the lamp's disc / 4)^2, rad^2.
     disc2: f32,
     pad: f32,
+    // Of the air that carries the rain, m/s.
+    wind: vec3f,
+    pad1: f32,
+    // Fall speeds of the drops that bring a third of the water each, m/s.
+    falls: vec3f,
+    pad2: f32,
     // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.
     waves: array<vec4f, HOLLOW_WAVES>,
 }

@@ -1,7 +1,7 @@
 // Drops without a state: where each is follows from (seed, id, time) alone, and one quad draws its streak.
 // The f64 twin and the derivation are in src/rain/lattice.rs and src/rain/reference.rs.
 //!include "common/depth.wgsl"
-//!include "common/light.wgsl"
+//!include "rain/lights_binding.wgsl"
 //!include "rain/hash.wgsl"
 //!include "rain/shelter.wgsl"
 //!include "rain/phase.wgsl"
@@ -61,13 +61,7 @@ const LEAST_PIXELS: f32 = 1.2;
 // Drops nearer than this fade away: they would be blobs that no eye could focus on.
 const NEAREST: f32 = 0.25;
 
-struct Lights {
-    count: u32,
-    lamps: array<HostLight, MAX_LIGHTS>,
-}
-
 @group(0) @binding(0) var<uniform> rain: RainUniform;
-@group(0) @binding(4) var<uniform> lights: Lights;
 
 struct Drop {
     // Camera-relative, m.
@@ -139,6 +133,15 @@ struct RainVarying {
     @location(2) across: f32,
 }
 
+// Whether a line between two points, some pixels wide, can be in the picture.
+fn in_picture(a: vec3f, b: vec3f) -> bool {
+    let ends = array<vec4f, 2>(rain.clip * vec4f(a, 1.0), rain.clip * vec4f(b, 1.0));
+    let side = 0.05 + 1.02 * vec2f(ends[0].w, ends[1].w);
+    let x = vec2f(ends[0].x, ends[1].x);
+    let y = vec2f(ends[0].y, ends[1].y);
+    return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
+}
+
 @vertex
 fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
     let drop = drop_of(instance);
@@ -158,7 +161,8 @@ fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
     out.range = d;
     out.across = side;
     // What stretches beyond the eye cannot be drawn as a quad.
-    if drop.share <= 0.0 || abs(dot(half, toward)) > 0.6 * d || sheltered(drop.position + half, velocity) {
+    let shows = drop.share > 0.0 && abs(dot(half, toward)) <= 0.6 * d && in_picture(drop.position - half, drop.position + half);
+    if !shows || sheltered(drop.position + half, velocity, shows) {
         return out;
     }
     let pixel = max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6);

@@ -84,12 +84,17 @@ fn is_found(landing: Landing, surface: vec3f) -> bool {
     return length(surface.xy - landing.xy) < 0.03 + 0.01 * length(surface);
 }
 
+// As far above a surface as its depth may be wrong.
+fn above_ground(at: vec3f) -> vec3f {
+    return at + vec3f(0.0, 0.0, 0.02 + 0.004 * length(at));
+}
+
 // A corner of the crown: it rises, opens and falls (sizes in drop diameters after Yarin 2006, Drop Impact Dynamics).
 fn crown(landing: Landing, z: f32, corner: u32) -> RainVarying {
     var out: RainVarying;
     out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     let at = vec3f(landing.xy, z);
-    if sheltered(at, rain.wind - vec3f(0.0, 0.0, splash.speed)) {
+    if sheltered(above_ground(at), rain.wind - vec3f(0.0, 0.0, splash.speed), true) {
         return out;
     }
     let age = landing.age;

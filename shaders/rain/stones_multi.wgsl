@@ -13,7 +13,7 @@ fn depth_at(uv: vec2f) -> f32 {
 @vertex
 fn falling_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> StoneVarying {
     let stone = falling_stone(instance);
-    if sheltered(stone.position, stone.velocity) {
+    if sheltered(stone.position, stone.velocity, true) {
         return no_stone();
     }
     return stone_corner(stone, corner);
@@ -33,7 +33,7 @@ fn hopping_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i
         z = surface.z;
     }
     let fall = rain.wind - vec3f(0.0, 0.0, touch.kind.y * SPEED_UNIT);
-    if !is_found(touch.landing, surface) || sheltered(vec3f(touch.landing.xy, z), fall) {
+    if !is_found(touch.landing, surface) || sheltered(above_ground(vec3f(touch.landing.xy, z)), fall, true) {
         return no_stone();
     }
     return stone_corner(hopping_stone(touch, z), corner);

@@ -55,6 +55,8 @@ pub mod area;
 
 pub mod wind_grid;
 
+pub mod occluder;
+
 pub mod light;
 
 pub mod windscreen;

@@ -134,6 +134,8 @@ pub const WK_STRUCT_TYPE_RAINFALL: wk_struct_type = 41;
 pub const WK_STRUCT_TYPE_RAIN_AREA: wk_struct_type = 42;
 /// wk_wind_grid
 pub const WK_STRUCT_TYPE_WIND_GRID: wk_struct_type = 43;
+/// wk_occluder_map
+pub const WK_STRUCT_TYPE_OCCLUDER_MAP: wk_struct_type = 44;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -35,7 +35,7 @@ use crate::{
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
     ground::Hollows,
-    rain::{MAX_SHELTERS, Shelter},
+    rain::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
         Planet, SkySettings,
@@ -128,6 +128,7 @@ pub struct Context {
     fog_law: Option<Law>,
     shelters: Vec<Shelter>,
     areas: Vec<areas::KeptArea>,
+    maps: Option<Box<OccluderMaps>>,
     lights: Vec<HostLight>,
     wind_grid: Option<Arc<WindGrid>>,
     time_s: f64,
@@ -164,6 +165,7 @@ impl Context {
             fog_law: None,
             shelters: Vec::new(),
             areas: Vec::new(),
+            maps: None,
             lights: Vec::new(),
             wind_grid: None,
             time_s: 0.0,
@@ -259,6 +261,45 @@ impl Context {
         self.shelters.clear();
         self.shelters.extend(shelters);
         Ok(())
+    }
+
+    /// What keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes them away. What
+    /// they show is taken over in a submission of its own, after what is submitted already: the host may then draw into them
+    /// again. At most [`crate::rain::MAX_OCCLUDER_MAPS`]. Best taken along [`RainAt::fall_velocity_m_s`].
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] or [`Status::Unsupported`] naming the map and its field, [`Status::DeviceLost`]; nothing
+    /// changes then.
+    pub fn set_occluder_maps(&mut self, maps: &[OccluderMap<'_>]) -> Result<()> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
+        let mut encoder = device.device.create_command_encoder(&label);
+        self.record_occluder_maps(maps, &mut encoder)?;
+        device.submit(encoder);
+        device.check()
+    }
+
+    /// As [`Context::set_occluder_maps`], into an encoder that is submitted before the next frame.
+    pub(crate) fn record_occluder_maps(
+        &mut self,
+        maps: &[OccluderMap<'_>],
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<()> {
+        let device = self.device.clone();
+        let mut held = match self.maps.take() {
+            Some(held) => held,
+            None if maps.is_empty() => return Ok(()),
+            None => Box::new(OccluderMaps::new(&device)?),
+        };
+        let outcome = held.set(&device, encoder, maps);
+        self.maps = Some(held);
+        outcome
+    }
+
+    /// The maps of what keeps rain off.
+    pub(crate) fn occluder_maps(&self) -> Option<&OccluderMaps> {
+        self.maps.as_deref()
     }
 
     /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving lamp is

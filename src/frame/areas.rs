@@ -283,7 +283,7 @@ impl AreaPass {
         }
         let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
         let composite = shared.composite()?;
-        let [_, sky] = composite.layouts(kind.multi);
+        let [_, sky, _] = composite.layouts(kind.multi);
         let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("rain areas"),
             bind_group_layouts: &[Some(&self.layouts[usize::from(kind.multi)]), Some(sky)],

@@ -14,6 +14,7 @@ use crate::{
         pass::{self, FullscreenDesc},
     },
     ground::GroundUniform,
+    rain::{Present, around_layout},
     sky::SkyVolume,
 };
 
@@ -31,6 +32,8 @@ pub(super) struct Variant {
     pub depth_kinds: u32,
     /// The sky is marched per pixel instead of looked up.
     pub march: bool,
+    /// What the host has told of that keeps the ground dry or lights it.
+    pub around: Present,
     /// Air between and clear sky are drawn at all.
     pub air: bool,
     pub sky: bool,
@@ -44,12 +47,12 @@ impl Variant {
 
     /// Those of [`Variant::constants`] that shaders of the veil alone have.
     pub fn veil_constants(&self) -> [(&'static str, f64); 9] {
-        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, f0, f1, f2, f3, f4] = self.constants();
+        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, f0, f1, f2, f3, f4] = self.constants();
         [march, fog, kinds, air, f0, f1, f2, f3, f4]
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 17] {
+    pub fn constants(&self) -> [(&'static str, f64); 20] {
         let yes = |b: bool| f64::from(u8::from(b));
         let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
@@ -65,6 +68,9 @@ impl Variant {
             ("HAS_MASK", yes(self.has_mask)),
             ("AIR", yes(self.air)),
             ("CLEAR_SKY", yes(self.sky)),
+            ("SHELTER", yes(self.around.shelter)),
+            ("MAPS", yes(self.around.maps)),
+            ("LAMPS", yes(self.around.lamps)),
             f0,
             f1,
             f2,
@@ -79,6 +85,7 @@ pub(super) struct Composite {
     layout_single: wgpu::BindGroupLayout,
     layout_multi: wgpu::BindGroupLayout,
     layout_sky: wgpu::BindGroupLayout,
+    layout_around: wgpu::BindGroupLayout,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     none: wgpu::TextureView,
     reads_samples: bool,
@@ -152,6 +159,7 @@ impl Composite {
             layout_single: layout(&device.device, false),
             layout_multi: layout(&device.device, true),
             layout_sky: SkyVolume::view_layout(device),
+            layout_around: around_layout(&device.device),
             pipelines: HashMap::new(),
             none: none(&device.device, 1),
             reads_samples: multi,
@@ -169,9 +177,9 @@ impl Composite {
         if multi { &self.layout_multi } else { &self.layout_single }
     }
 
-    /// Layouts of the groups of every shader that composes: the frame's, the sky's.
-    pub fn layouts(&self, multi: bool) -> [&wgpu::BindGroupLayout; 2] {
-        [self.layout(multi), &self.layout_sky]
+    /// Layouts of the groups of every shader that composes: the frame's, the sky's, that of what is around.
+    pub fn layouts(&self, multi: bool) -> [&wgpu::BindGroupLayout; 3] {
+        [self.layout(multi), &self.layout_sky, &self.layout_around]
     }
 
     /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, and the drops before

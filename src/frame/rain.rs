@@ -14,14 +14,14 @@ use crate::{
     error::Result,
     gpu::Device,
     rain::{
-        Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shelter, Shot, Splashes, Stepped, StoneDraw,
+        Air, AreaField, Around, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
+        RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw,
         cones::{BANDS_M, CONES},
         drops,
         lattice::{HIDDEN_M, REACH_M, SHELLS},
-        pattern,
+        pattern, splash,
     },
-    scene::{LightUniform, ViewRays},
+    scene::ViewRays,
     sky::SkyVolume,
     weather::Falling,
 };
@@ -37,8 +37,6 @@ pub(super) struct Rain {
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
     ice: Ice,
-    boxes: Vec<[[f32; 4]; 4]>,
-    lights: Vec<LightUniform>,
 }
 
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
@@ -57,8 +55,6 @@ impl Rain {
             local: None,
             areas: None,
             ice: Ice::default(),
-            boxes: Vec::new(),
-            lights: Vec::new(),
         }
     }
 
@@ -114,6 +110,14 @@ impl Rain {
             RainModel::Veil => 0.0,
             _ => 0.5 * self.classes(device, scene, falling).extinction_per_m,
         }
+    }
+
+    /// Fall speed of the slowest of what is drawn, m/s, and how far from the camera any of it is, m.
+    pub fn slowest_and_reach(&mut self, device: &Device, scene: &Scene) -> (f64, f64) {
+        let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
+        let reach = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
+        // The smallest stones are a tenth slower than the smallest drops.
+        (0.9 * self.classes(device, scene, &scene.conditions.precipitation).flux[0].1, reach)
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
@@ -189,7 +193,7 @@ impl Rain {
         device: &Arc<Device>,
         (encoder, frame, color): To<'_, '_>,
         (context, scene, rays): (&Context, &Scene, &ViewRays),
-        (exposure, over): (f64, bool),
+        (exposure, over, told): (f64, bool, &Around),
     ) -> Result<u32> {
         if !self.falls_here() {
             return Ok(0);
@@ -225,16 +229,6 @@ impl Rain {
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
-        let eye = frame.camera.position;
-        self.boxes.clear();
-        // The smallest stones are a tenth slower than the smallest drops.
-        let slowest = 0.9 * classes.flux[0].1;
-        let reach = stones.map_or(REACH_M, |s| s.reach_m().max(REACH_M));
-        let matters = |s: &&Shelter| s.matters(eye, scene.world_to_enu, air.velocity_m_s, slowest, reach);
-        let near = context.shelters().iter().filter(matters);
-        self.boxes.extend(near.map(|s| s.rows(eye, scene.world_to_enu)));
-        self.lights.clear();
-        self.lights.extend(context.lights().iter().map(|l| l.uniform(eye, scene.world_to_enu, exposure)));
         let carried = |from, to| context.carried(from, to);
         let cones = on_cones.then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &carried));
         let around = context.wind_grid().map(|g| {
@@ -254,8 +248,8 @@ impl Rain {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
-            shelters: &self.boxes,
-            lights: &self.lights,
+            around: told,
+            maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
             splash: &splashes.uniform(shot.position_m, height_m, air.time_s),
             splashes: splashes.instances(),
             local: local.as_ref(),

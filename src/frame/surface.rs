@@ -3,8 +3,10 @@
 use super::Frame;
 use crate::{
     context::{Context, Scene},
+    error::Result,
     fog::{FogKind, FogModel, reference::layer_depth_above},
     ground::{GroundUniform, Seen},
+    rain::{Told, lattice::REACH_M},
     scene::WorldKind,
 };
 
@@ -35,7 +37,8 @@ pub(super) fn uniform(
     context: &Context,
     scene: &Scene,
     fog: &FogModel,
-) -> GroundUniform {
+) -> Result<GroundUniform> {
+    let sheltered = !context.shelters().is_empty() || context.occluder_maps().is_some_and(|m| m.ranges().is_some());
     let (width, height) = (f64::from(color.width()), f64::from(color.height()));
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
     let seen = Seen {
@@ -60,6 +63,29 @@ pub(super) fn uniform(
         pixel: [2.0 / width, down / height],
         depth_rounding: frame.depth.map_or([0.0; 2], rounding),
         most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,
+        wind_m_s: sheltered.then(|| context.carrying_wind(context.time_s())).transpose()?,
     };
-    seen.uniform()
+    Ok(seen.uniform())
+}
+
+/// What the host has told of the world round the camera; `(slowest, exposure)`: the slowest drops' speed, m/s, and what
+/// the drops are exposed by.
+pub(super) fn around<'a>(
+    context: &'a Context,
+    scene: &Scene,
+    frame: &Frame<'_>,
+    (slowest_m_s, exposure): (f64, f64),
+) -> Result<Told<'a>> {
+    Ok(Told {
+        shelters: context.shelters(),
+        maps: context.occluder_maps(),
+        lights: context.lights(),
+        eye: frame.camera.position,
+        to_enu: scene.world_to_enu,
+        time_s: context.time_s(),
+        wind_m_s: context.carrying_wind(context.time_s())?,
+        slowest_m_s,
+        reach_m: REACH_M,
+        exposure,
+    })
 }

@@ -26,7 +26,7 @@ use crate::{
     gpu::Device,
     ground::GroundUniform,
     plan::{Planner, Present, Situation},
-    rain::RainSettings,
+    rain::{Around, RainSettings},
     scene::{Camera, ViewRays},
     sky::SkyVolume,
 };
@@ -53,6 +53,7 @@ pub struct View {
     pub(super) sky: SkyVolume,
     froxels: Option<Froxels>,
     rain: Rain,
+    around: Around,
     pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
@@ -84,6 +85,7 @@ impl View {
         let sky = SkyVolume::new(&*context.sky()?)?;
         let planner = Planner::new(sky.settings());
         let rain = Rain::new(&device, RainSettings::default());
+        let around = Around::new(&device.device);
         device.check()?;
         drop(_entered);
         Ok(Self {
@@ -98,6 +100,7 @@ impl View {
             sky,
             froxels: None,
             rain,
+            around,
             planner,
             planned_for: None,
             light_scale: 0.0,
@@ -319,7 +322,7 @@ impl View {
         let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
         let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
-        let variant = Variant {
+        let mut variant = Variant {
             stages: stages.without(Stages::PREPARE.with(Stages::LENS)),
             format: color.format(),
             samples: color.sample_count(),
@@ -330,6 +333,7 @@ impl View {
                 .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
             depth_kinds: rays.depth_kinds(),
             march: context.marches_sky(),
+            around: Default::default(),
             air: true,
             sky: true,
         };
@@ -365,17 +369,26 @@ impl View {
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
         }
+        if variant.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
+            let slowest_m_s = self.rain.slowest_m_s(&self.device, scene);
+            let told = surface::around(context, scene, frame, (slowest_m_s, exposure))?;
+            self.around.follow(&self.device, &told);
+            if variant.stages.has(Stages::SURFACE) {
+                variant.around = told.present();
+            }
+        }
         if variant.stages.has(Stages::PARTICLES) {
             let (shared, blocks) = ((&self.device, &*self.shared), [&self.uniform, &self.fog]);
             let constants = variant.reduced(drawn).veil_constants();
             let layer = (&mut *to.encoder, frame, color);
             let over = self.rain.draw_areas(shared, layer, (context, scene), (blocks, &self.sky), &constants)?;
             let at = (context, scene, rays);
-            self.report.drops = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, (exposure, over))?;
+            let with = (exposure, over, &self.around);
+            self.report.drops = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, with)?;
             self.report.passes += 1 + u32::from(over);
         }
         if variant.stages.has(Stages::SURFACE) {
-            let block = surface::uniform(frame, color, context, scene, &fog);
+            let block = surface::uniform(frame, color, context, scene, &fog)?;
             self.device.queue.write_buffer(&self.ground, 0, bytemuck::bytes_of(&block));
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
@@ -386,7 +399,7 @@ impl View {
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
         let pipeline = composite.pipeline(&self.device, least)?;
-        let groups = [group, self.sky.bind_group()];
+        let groups = [group, self.sky.bind_group(), self.around.bind_group()];
         crate::gpu::pass::draw(to.encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
         if variant.stages.has(Stages::MEDIUM)

@@ -9,7 +9,14 @@ use super::{
     hollows::{PERIOD_M, WAVES, pattern_axes},
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
 };
-use crate::{context::Scene, weather::SurfaceCover};
+use crate::{
+    context::Scene,
+    rain::{
+        drops::factor_in,
+        sizes::{DropSizes, SMALLEST_MM, Weight},
+    },
+    weather::SurfaceCover,
+};
 
 /// Twins of the constants of `shaders/ground/hollows.wgsl`.
 const RING_CELL_M: f64 = 0.2;
@@ -56,6 +63,10 @@ pub(crate) struct GroundUniform {
     pub ring_slope2: f32,
     pub disc2: f32,
     pub pad: f32,
+    pub wind: [f32; 3],
+    pub pad1: f32,
+    pub falls: [f32; 3],
+    pub pad2: f32,
     pub waves: [[f32; 4]; WAVES],
 }
 
@@ -79,6 +90,8 @@ pub(crate) struct Seen<'a> {
     pub depth_rounding: [f64; 2],
     /// Most light that a pixel holds, cd/m^2.
     pub most_cd_m2: f64,
+    /// Of the air that carries the rain, (east, north, up), where anything keeps rain off.
+    pub wind_m_s: Option<DVec3>,
 }
 
 fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
@@ -90,6 +103,17 @@ fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
 fn level_of(covered: f64) -> f32 {
     // Where there is no water no hollow holds any, however rare.
     if covered <= 0.0 { 1e3 } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
+}
+
+/// Speeds of the drops in the middle of each third of the water that falls; without rain, those of steady rain.
+fn falls_m_s(scene: &Scene) -> [f64; 3] {
+    let c = &scene.conditions;
+    let mut falling = c.precipitation;
+    if falling.rain_mm_h + falling.drizzle_mm_h <= 0.0 {
+        falling.rain_mm_h = 3.0;
+    }
+    let sizes = DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m));
+    sizes.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]).map(|d| sizes.speed_m_s(d))
 }
 
 impl Seen<'_> {
@@ -140,6 +164,10 @@ impl Seen<'_> {
             ring_slope2: (RING_SLOPE2_PER_MM_H * rain.min(50.0)) as f32,
             disc2: (lamp.angular_radius / 4.0).powi(2) as f32,
             pad: 0.0,
+            wind: self.wind_m_s.map_or([0.0; 3], |w| w.as_vec3().to_array()),
+            pad1: 0.0,
+            falls: self.wind_m_s.map_or([0.0; 3], |_| falls_m_s(scene).map(|v| v as f32)),
+            pad2: 0.0,
             waves: self.hollows.seen_from(at),
         }
     }
@@ -186,7 +214,7 @@ mod tests {
             axis_u
         );
         same!(place_u, axis_v, place_v, cell, slot, slot_share, film_slope, water_slope, ring_chance, most, pixel);
-        same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, waves);
+        same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, wind, falls, waves);
     }
 
     #[test]

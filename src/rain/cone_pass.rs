@@ -17,7 +17,7 @@ pub(super) struct ConePass {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     bytes: u64,
-    pipelines: [Option<wgpu::RenderPipeline>; 4],
+    pipelines: [Option<wgpu::RenderPipeline>; 8],
 }
 
 impl ConePass {
@@ -49,7 +49,7 @@ impl ConePass {
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&sampler) },
             ],
         });
-        Self { block, layout, group, bytes, pipelines: [const { None }; 4] }
+        Self { block, layout, group, bytes, pipelines: [const { None }; 8] }
     }
 
     /// Bytes of GPU memory held.
@@ -57,7 +57,7 @@ impl ConePass {
         self.bytes
     }
 
-    /// Brings the block up and makes the pipeline for a kind of depth, if it is not there.
+    /// Brings the block up and makes the pipeline for a kind of depth, with or without occluder maps, if it is not there.
     ///
     /// # Errors
     /// A missing shader file.
@@ -65,25 +65,25 @@ impl ConePass {
         &mut self,
         device: &Arc<Device>,
         block: &ConeUniform,
-        frame: &wgpu::BindGroupLayout,
-        (multi, has_depth): (bool, bool),
+        [frame, around]: [&wgpu::BindGroupLayout; 2],
+        (multi, has_depth, maps): (bool, bool, bool),
     ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
-        let slot = &mut self.pipelines[usize::from(multi) * 2 + usize::from(has_depth)];
+        let slot = &mut self.pipelines[key((multi, has_depth, maps))];
         if slot.is_none() {
             *slot = Some(fullscreen(
                 device,
                 &FullscreenDesc {
                     shader: if multi { "rain/cones_multi.wgsl" } else { "rain/cones_single.wgsl" },
                     entry: "cones_fragment",
-                    layouts: &[frame, &self.layout],
+                    layouts: &[frame, &self.layout, around],
                     targets: &[wgpu::ColorTargetState {
                         format: super::passes::FORMAT,
                         // Columns of rain areas may lie in the layer.
                         blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
-                    constants: &[("HAS_DEPTH", f64::from(u8::from(has_depth)))],
+                    constants: &[("HAS_DEPTH", f64::from(u8::from(has_depth))), ("MAPS", f64::from(u8::from(maps)))],
                     samples: 1,
                 },
             )?);
@@ -91,14 +91,19 @@ impl ConePass {
         Ok(())
     }
 
-    /// Draws what was prepared; the frame's group is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, (multi, has_depth): (bool, bool)) {
-        if let Some(pipeline) = &self.pipelines[usize::from(multi) * 2 + usize::from(has_depth)] {
+    /// Draws what was prepared; the other groups are set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool)) {
+        if let Some(pipeline) = &self.pipelines[key(kind)] {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.group, &[]);
             pass.draw(0..3, 0..1);
         }
     }
+}
+
+/// Which pipeline draws: for depth of several samples, for depth at all, for occluder maps.
+fn key((multi, has_depth, maps): (bool, bool, bool)) -> usize {
+    usize::from(maps) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

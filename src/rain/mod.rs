@@ -7,6 +7,7 @@
 //! a column of rain, whose drops fall thinned by the area's rim near the camera and as a veil beyond.
 
 mod area;
+mod around;
 pub mod candidates;
 mod cone_pass;
 pub mod cones;
@@ -16,6 +17,8 @@ pub mod ice;
 pub mod integrated;
 pub mod lattice;
 mod local;
+mod occluder;
+mod occluder_maps;
 mod passes;
 pub mod probe;
 mod settings;
@@ -23,20 +26,23 @@ mod shaft;
 pub mod shelter;
 pub mod sizes;
 pub mod source;
-mod splash;
+pub mod splash;
 mod step_pass;
 mod stone_pass;
 mod stones;
 mod uniforms;
 
 pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
+pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use settings::{RainModel, RainSettings};
 pub use shelter::{MAX_SHELTERS, Shelter};
 
 pub(crate) use area::Shaft;
+pub(crate) use around::{Around, Present, Told, layout as around_layout};
 pub(crate) use cones::ConeUniform;
 pub(crate) use curtain::{WAVES, pattern};
 pub(crate) use local::{Local, LocalUniform};
+pub(crate) use occluder_maps::OccluderMaps;
 pub(crate) use passes::{Drawn, RainLayer};
 pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform, OwnRain};
 pub(crate) use splash::Splashes;

@@ -4,20 +4,16 @@ use std::sync::Arc;
 
 use super::{
     LocalUniform, StoneDraw,
+    around::{self, Around},
     cone_pass::ConePass,
     cones::ConeUniform,
     lattice::SHELLS,
-    shelter::MAX_SHELTERS,
     splash::SplashUniform,
     step_pass::{StepPass, Stepped},
     stone_pass::StonePass,
     uniforms::RainUniform,
 };
-use crate::{
-    error::Result,
-    gpu::Device,
-    scene::{LightUniform, MAX_LIGHTS},
-};
+use crate::{error::Result, gpu::Device};
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -29,8 +25,9 @@ pub(crate) struct RainLayer {
     staged: Vec<u8>,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
-    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near.
-    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
+    around: wgpu::BindGroupLayout,
+    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps.
+    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
     cones: Option<ConePass>,
     stepped: Option<StepPass>,
     /// Hail and pellets, when some fell.
@@ -47,10 +44,10 @@ pub(crate) struct Drawn<'a> {
     pub cones: Option<&'a ConeUniform>,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
-    /// Rows and velocities of the boxes that keep rain off ([`super::Shelter`]).
-    pub shelters: &'a [[[f32; 4]; 4]],
-    /// The host's lamps.
-    pub lights: &'a [LightUniform],
+    /// What keeps rain off, and lamps.
+    pub around: &'a Around,
+    /// Whether maps are among it.
+    pub maps: bool,
     /// Splashes, and how many slots of them there are.
     pub splash: &'a SplashUniform,
     pub splashes: u32,
@@ -88,29 +85,21 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
                 },
                 count: None,
             },
-            uniform(2, SHELTER_BYTES),
             uniform(3, size_of::<SplashUniform>()),
-            uniform(4, LIGHT_BYTES),
             uniform(7, COLUMNS_BYTES),
             uniform(8, size_of::<LocalUniform>() - COLUMNS_BYTES),
         ],
     })
 }
 
-/// A count, and the boxes after it.
-pub(super) const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
-/// Likewise.
-const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
 /// The columns of [`LocalUniform`], which are a block of their own.
 const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
-/// Where each block begins: rain, splashes, shelters, lights, columns of areas, drops of areas; and the end.
-pub(super) const STARTS: [usize; 7] = {
+/// Where each block begins: rain, splashes, columns of areas, drops of areas; and the end.
+pub(super) const STARTS: [usize; 5] = {
     let splash = size_of::<RainUniform>().next_multiple_of(256);
-    let shelters = splash + size_of::<SplashUniform>().next_multiple_of(256);
-    let lights = shelters + SHELTER_BYTES.next_multiple_of(256);
-    let columns = lights + LIGHT_BYTES.next_multiple_of(256);
+    let columns = splash + size_of::<SplashUniform>().next_multiple_of(256);
     let local = columns + COLUMNS_BYTES.next_multiple_of(256);
-    [0, splash, shelters, lights, columns, local, local + size_of::<LocalUniform>() - COLUMNS_BYTES]
+    [0, splash, columns, local, local + size_of::<LocalUniform>() - COLUMNS_BYTES]
 };
 
 impl RainLayer {
@@ -118,13 +107,14 @@ impl RainLayer {
         Self {
             blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain"),
-                size: STARTS[6] as u64,
+                size: STARTS[4] as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            staged: vec![0; STARTS[6]],
+            staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            pipelines: [const { [None, None] }; 8],
+            around: around::layout(&device.device),
+            pipelines: [const { [None, None] }; 16],
             cones: None,
             stepped: None,
             stones: None,
@@ -182,16 +172,17 @@ impl RainLayer {
         let multi = depth.is_some_and(|d| d.sample_count() > 1);
         self.bind(device, depth, multi);
         self.view(device, color.size());
-        let kind = (multi, depth.is_some());
+        let kind = (multi, depth.is_some(), drawn.maps);
         let areas = drawn.local.is_some();
-        let key = usize::from(areas) * 4 + usize::from(multi) * 2 + usize::from(depth.is_some());
-        let layout = &self.layouts[usize::from(multi)];
+        let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
+        let over = (drawn.over, drawn.around.bind_group());
+        let frame = [&self.layouts[usize::from(multi)], &self.around];
         if let Some(stones) = &drawn.stones {
-            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, layout, FORMAT, kind)?;
+            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
         }
         if let Some(block) = drawn.cones {
-            self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, layout, kind)?;
-            self.draw_into(encoder, drawn.over, |pass, layer| {
+            self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
+            self.draw_into(encoder, over, |pass, layer| {
                 layer.cones.iter().for_each(|c| c.draw(pass, kind));
                 layer.draw_stones(pass, kind, drawn);
             });
@@ -199,15 +190,15 @@ impl RainLayer {
         }
         if let Some(stepped) = drawn.stepped {
             let pass = self.stepped.get_or_insert_with(|| StepPass::new(device));
-            pass.prepare_draw(device, layout, kind, areas)?;
+            pass.prepare_draw(device, frame, kind, areas)?;
             pass.step(device, encoder, &self.blocks, stepped)?;
         }
         for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
             if slot.is_none() {
-                *slot = Some(pipeline(device, layout, vertex, multi, [depth.is_some(), areas])?);
+                *slot = Some(pipeline(device, frame, vertex, kind, areas)?);
             }
         }
-        self.draw_into(encoder, drawn.over, |pass, layer| {
+        self.draw_into(encoder, over, |pass, layer| {
             let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
             match (&layer.stepped, drawn.stepped) {
                 (Some(stepped), Some(_)) => stepped.draw(pass, kind, areas),
@@ -225,7 +216,7 @@ impl RainLayer {
         Ok(())
     }
 
-    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool), drawn: &Drawn<'_>) {
+    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), drawn: &Drawn<'_>) {
         if let (Some(stones), Some(own)) = (&drawn.stones, &self.stones) {
             own.draw(pass, kind, stones);
         }
@@ -235,7 +226,7 @@ impl RainLayer {
     fn draw_into(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        over: bool,
+        (over, around): (bool, &wgpu::BindGroup),
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self),
     ) {
         let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return };
@@ -253,27 +244,22 @@ impl RainLayer {
             ..Default::default()
         });
         pass.set_bind_group(0, group, &[]);
+        pass.set_bind_group(2, around, &[]);
         draw(&mut pass, self);
     }
 
     fn write(&mut self, device: &Device, drawn: &Drawn<'_>) {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
-        let boxes = &drawn.shelters[..drawn.shelters.len().min(MAX_SHELTERS)];
-        let lights = &drawn.lights[..drawn.lights.len().min(MAX_LIGHTS)];
         put(STARTS[0], bytemuck::bytes_of(drawn.rain));
         put(STARTS[1], bytemuck::bytes_of(drawn.splash));
-        put(STARTS[2], &(boxes.len() as u32).to_ne_bytes());
-        put(STARTS[2] + 16, bytemuck::cast_slice(boxes));
-        put(STARTS[3], &(lights.len() as u32).to_ne_bytes());
-        put(STARTS[3] + 16, bytemuck::cast_slice(lights));
-        // What lies behind the last lamp is not read, if no rim of an area is near.
-        let mut end = STARTS[3] + 16 + size_of_val(lights);
+        // What lies behind them is not read, if no rim of an area is near.
+        let mut end = STARTS[2];
         if let Some(local) = drawn.local {
             let (columns, counts) = bytemuck::bytes_of(local).split_at(COLUMNS_BYTES);
-            put(STARTS[4], columns);
-            put(STARTS[5], counts);
-            end = STARTS[6];
+            put(STARTS[2], columns);
+            put(STARTS[3], counts);
+            end = STARTS[4];
         }
         device.queue.write_buffer(&self.blocks, 0, &self.staged[..end]);
     }
@@ -305,11 +291,9 @@ impl RainLayer {
                     binding: 1,
                     resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(none)),
                 },
-                block(2, STARTS[2], SHELTER_BYTES),
                 block(3, STARTS[1], size_of::<SplashUniform>()),
-                block(4, STARTS[3], LIGHT_BYTES),
-                block(7, STARTS[4], COLUMNS_BYTES),
-                block(8, STARTS[5], size_of::<LocalUniform>() - COLUMNS_BYTES),
+                block(7, STARTS[2], COLUMNS_BYTES),
+                block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
             ],
         });
         self.bound = Some((depth.cloned(), multi, group));
@@ -333,20 +317,20 @@ fn nothing(device: &wgpu::Device) -> wgpu::TextureView {
 
 fn pipeline(
     device: &Device,
-    layout: &wgpu::BindGroupLayout,
+    [frame, around]: [&wgpu::BindGroupLayout; 2],
     vertex: &str,
-    multi: bool,
-    [has_depth, areas]: [bool; 2],
+    (multi, has_depth, maps): (bool, bool, bool),
+    areas: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("drops"),
-        bind_group_layouts: &[Some(layout)],
+        bind_group_layouts: &[Some(frame), None, Some(around)],
         immediate_size: 0,
     });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     // Mixtures take each column by itself: what lies over what is in their order.
-    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0)];
+    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("drops"),
         layout: Some(&layout),

@@ -67,7 +67,7 @@ impl Shelter {
     }
 
     /// The box as shaders test it, for a camera at `eye` whose axes `to_enu` turns: rows from camera-relative east, north,
-    /// up into the box's own space, where it reaches from -1 to 1, and its velocity.
+    /// up into the box's own space, where it reaches from -1 to 1, and its velocity and whether it has any.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
         let axes = to_enu * self.axes;
         let center = to_enu * (self.center_m - eye);
@@ -76,7 +76,8 @@ impl Shelter {
             [n.x as f32, n.y as f32, n.z as f32, -n.dot(center) as f32]
         };
         let v = to_enu * self.velocity_m_s;
-        [row(0), row(1), row(2), [v.x as f32, v.y as f32, v.z as f32, 0.0]]
+        let moves = f32::from(u8::from(v.length() > 0.1));
+        [row(0), row(1), row(2), [v.x as f32, v.y as f32, v.z as f32, moves]]
     }
 }
 

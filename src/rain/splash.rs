@@ -1,19 +1,22 @@
 //! Splashes: slots of a grid on the ground, each of which takes one drop after the other, as many as the flux brings.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::uniforms::Classes;
+use super::{
+    lattice::{random3, short_seed},
+    uniforms::Classes,
+};
 
 /// Side of a cell of the grid, m.
 const SIDE_M: f64 = 0.5;
 /// Cells along one side of the square round the camera.
 const CELLS: u32 = 40;
 /// Time that a crown stands, s: some milliseconds per millimetre of drop, and its droplets' flight.
-const LIFE_S: f64 = 0.08;
+pub const LIFE_S: f64 = 0.08;
 /// Most slots of a cell.
 const MOST_SLOTS: u32 = 8;
 /// Drops below this diameter make no crown that could be seen, mm.
-const LEAST_MM: f64 = 1.2;
+pub const LEAST_MM: f64 = 1.2;
 
 /// `SplashUniform` of `shaders/rain/splash.wgsl`, which explains the fields.
 #[repr(C)]
@@ -35,9 +38,18 @@ pub(crate) struct SplashUniform {
     pub pad: f32,
 }
 
+/// A splash that stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// From the camera, east and north, m.
+    pub xy_m: DVec2,
+    /// 0 when it has landed, 1 when it is gone.
+    pub age: f64,
+}
+
 /// How many splash, and of what size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Splashes {
+pub struct Splashes {
     /// Splashes a second and m^2 of level ground that are drawn.
     pub drawn_per_m2_s: f64,
     /// And those that the slots have no room for: the smallest.
@@ -73,8 +85,29 @@ impl Splashes {
     }
 
     /// Slots that are looked at in one draw.
-    pub fn instances(&self) -> u32 {
+    pub(crate) fn instances(&self) -> u32 {
         CELLS * CELLS * self.slots()
+    }
+
+    /// What has landed and stands at `time_s` round a camera at `position_m` (east, north, up of a point fixed to the world),
+    /// ten metres to either side: the twin of `landing_of` in `shaders/rain/splash.wgsl`, whatever lies below.
+    pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
+        let (u, seed) = (self.uniform(position_m, 0.0, time_s), short_seed(seed));
+        let unit = |v: u32| f64::from(v >> 8) / 16_777_216.0;
+        (0..self.instances()).filter_map(move |instance| {
+            let (slot, index) = (instance % u.slots, instance / u.slots);
+            let half = (u.cells / 2) as i32;
+            let step = [(index % u.cells) as i32 - half, (index / u.cells) as i32 - half];
+            let key = [0, 1].map(|i| u.cell[i].wrapping_add(step[i]) as u32);
+            let time = f64::from(u.part) + unit(random3([key[0], key[1], seed ^ slot])[0]);
+            let turn = u.tick.wrapping_add(u32::from(time >= 1.0));
+            let chance =
+                random3([key[0] ^ turn.wrapping_mul(0x9e37_79b9), key[1], seed.wrapping_add(77u32.wrapping_mul(slot))]);
+            let side = f64::from(u.side);
+            let at = |i: usize| (f64::from(step[i]) + unit(chance[i])) * side - f64::from(u.place[i]);
+            let landing = Landing { xy_m: DVec2::new(at(0), at(1)), age: time.fract() };
+            (unit(chance[2]) < f64::from(u.share)).then_some(landing)
+        })
     }
 
     fn slots(&self) -> u32 {
@@ -82,7 +115,7 @@ impl Splashes {
     }
 
     /// For a camera at `position_m` (east, north, up of a point fixed to the world) `height_m` above the ground.
-    pub fn uniform(&self, position_m: DVec3, height_m: f64, time_s: f64) -> SplashUniform {
+    pub(crate) fn uniform(&self, position_m: DVec3, height_m: f64, time_s: f64) -> SplashUniform {
         let cell = |x: f64| (x / SIDE_M).floor();
         let turns = time_s / LIFE_S;
         let part = turns - turns.floor();

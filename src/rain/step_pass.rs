@@ -6,7 +6,7 @@ use super::{
     Classes,
     integrated::{Around, Left, StepUniform},
     lattice::SHELLS,
-    passes::{FORMAT, SHELTER_BYTES, STARTS},
+    passes::{FORMAT, STARTS},
     uniforms::{Air, RainUniform, Shot},
 };
 use crate::{error::Result, gpu::Device, wind::WindGrid};
@@ -27,8 +27,8 @@ pub(crate) struct StepPass {
     layouts: [wgpu::BindGroupLayout; 3],
     /// With and without a grid.
     steps: [Option<wgpu::ComputePipeline>; 2],
-    /// For each kind of depth, with and without rims of areas near.
-    draws: [Option<wgpu::RenderPipeline>; 8],
+    /// For each kind of depth, with and without rims of areas near, and occluder maps.
+    draws: [Option<wgpu::RenderPipeline>; 16],
     groups: Option<[wgpu::BindGroup; 3]>,
 }
 
@@ -67,7 +67,7 @@ fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
     };
     [
-        make("step frame", &[uniform(0, compute, size_of::<RainUniform>()), uniform(2, compute, SHELTER_BYTES)]),
+        make("step frame", &[uniform(0, compute, size_of::<RainUniform>())]),
         make(
             "step",
             &[
@@ -115,7 +115,7 @@ impl StepPass {
             }),
             layouts: layouts(&device.device),
             steps: [None, None],
-            draws: [const { None }; 8],
+            draws: [const { None }; 16],
             groups: None,
         }
     }
@@ -183,20 +183,20 @@ impl StepPass {
     pub fn prepare_draw(
         &mut self,
         device: &Arc<Device>,
-        frame: &wgpu::BindGroupLayout,
-        (multi, has_depth): (bool, bool),
+        [frame, around]: [&wgpu::BindGroupLayout; 2],
+        kind: (bool, bool, bool),
         areas: bool,
     ) -> Result<()> {
-        let slot = &mut self.draws[key(multi, has_depth, areas)];
+        let slot = &mut self.draws[key(kind, areas)];
         if slot.is_none() {
-            *slot = Some(draw_pipeline(device, [frame, &self.layouts[2]], multi, [has_depth, areas])?);
+            *slot = Some(draw_pipeline(device, [frame, &self.layouts[2], around], kind, areas)?);
         }
         Ok(())
     }
 
-    /// Draws what was stepped; the frame's group is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, (multi, has_depth): (bool, bool), areas: bool) {
-        let pipeline = &self.draws[key(multi, has_depth, areas)];
+    /// Draws what was stepped; the other groups are set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), areas: bool) {
+        let pipeline = &self.draws[key(kind, areas)];
         let (Some(pipeline), Some(groups), Some((capacity, states)), Some(left)) =
             (pipeline, &self.groups, &self.states, &self.left)
         else {
@@ -240,13 +240,7 @@ impl StepPass {
         };
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         self.groups = Some([
-            group(
-                &self.layouts[0],
-                &[
-                    entry(0, part(blocks, STARTS[0], size_of::<RainUniform>())),
-                    entry(2, part(blocks, STARTS[2], SHELTER_BYTES)),
-                ],
-            ),
+            group(&self.layouts[0], &[entry(0, part(blocks, STARTS[0], size_of::<RainUniform>()))]),
             group(
                 &self.layouts[1],
                 &[
@@ -261,8 +255,8 @@ impl StepPass {
     }
 }
 
-fn key(multi: bool, has_depth: bool, areas: bool) -> usize {
-    usize::from(areas) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
+fn key((multi, has_depth, maps): (bool, bool, bool), areas: bool) -> usize {
+    [areas, maps, multi, has_depth].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
 }
 
 fn wind_texture(device: &Device, nodes: [u32; 3], velocities: &[[f32; 3]]) -> wgpu::TextureView {
@@ -312,9 +306,9 @@ fn step_pipeline(
 
 fn draw_pipeline(
     device: &Arc<Device>,
-    layouts: [&wgpu::BindGroupLayout; 2],
-    multi: bool,
-    [has_depth, areas]: [bool; 2],
+    layouts: [&wgpu::BindGroupLayout; 3],
+    (multi, has_depth, maps): (bool, bool, bool),
+    areas: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let vertex = device.shader("rain/integrated.wgsl")?;
     let fragment = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
@@ -324,7 +318,7 @@ fn draw_pipeline(
         immediate_size: 0,
     });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
-    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0)];
+    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     let attribute = |shader_location, offset, format| wgpu::VertexAttribute { format, offset, shader_location };
     let attributes = [attribute(0, 0, wgpu::VertexFormat::Uint32x4), attribute(1, 16, wgpu::VertexFormat::Float32x4)];
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -24,14 +24,14 @@ pub(super) struct StonePass {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     /// Falling and hopping, for each kind of depth.
-    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 4],
+    pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
 }
 
-/// The kind of depth that a pass has: several samples, any at all.
-pub(super) type Depth = (bool, bool);
+/// The kind of depth that a pass has: several samples, any at all; and whether there are occluder maps.
+pub(super) type Depth = (bool, bool, bool);
 
-fn key((multi, any): Depth) -> usize {
-    usize::from(multi) * 2 + usize::from(any)
+fn key((multi, any, maps): Depth) -> usize {
+    usize::from(maps) * 4 + usize::from(multi) * 2 + usize::from(any)
 }
 
 impl StonePass {
@@ -61,11 +61,11 @@ impl StonePass {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() }],
         });
-        Self { block, layout, group, pipelines: [const { [None, None] }; 4] }
+        Self { block, layout, group, pipelines: [const { [None, None] }; 8] }
     }
 
-    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` is the layout of the
-    /// drops' own group, `format` that of their layer.
+    /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are the
+    /// layouts of the drops' own groups, `format` that of their layer.
     ///
     /// # Errors
     /// A missing shader file.
@@ -73,14 +73,14 @@ impl StonePass {
         &mut self,
         device: &Device,
         drawn: &StoneDraw,
-        rain: &wgpu::BindGroupLayout,
+        [rain, around]: [&wgpu::BindGroupLayout; 2],
         format: wgpu::TextureFormat,
         depth: Depth,
     ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&drawn.block));
         for (slot, vertex) in self.pipelines[key(depth)].iter_mut().zip(["falling_vertex", "hopping_vertex"]) {
             if slot.is_none() {
-                *slot = Some(pipeline(device, &[Some(rain), Some(&self.layout)], format, vertex, depth)?);
+                *slot = Some(pipeline(device, &[Some(rain), Some(&self.layout), Some(around)], format, vertex, depth)?);
             }
         }
         Ok(())
@@ -104,7 +104,7 @@ fn pipeline(
     layouts: &[Option<&wgpu::BindGroupLayout>],
     format: wgpu::TextureFormat,
     vertex: &str,
-    (multi, has_depth): Depth,
+    (multi, has_depth, maps): Depth,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/stones_multi.wgsl" } else { "rain/stones_single.wgsl" })?;
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -113,13 +113,14 @@ fn pipeline(
         immediate_size: 0,
     });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let near = [("MAPS", f64::from(u8::from(maps)))];
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("stones"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some(vertex),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },

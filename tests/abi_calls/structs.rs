@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, opengl::*, plan::*,
-    query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    weather::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, occluder::*,
+    opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
+    vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -106,6 +106,9 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_rain_area", "areas[0]", true, move |p| unsafe {
             wk_context_set_rain_areas(context, p.cast(), 1, 1 << 24)
+        }),
+        case("wk_occluder_map", "maps[0]", true, move |p| unsafe {
+            wk_context_set_occluder_maps(context, p.cast(), 1, 1 << 24)
         }),
         case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),

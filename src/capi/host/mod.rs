@@ -9,7 +9,8 @@ pub(super) mod vulkan;
 use std::ffi::c_void;
 
 use super::{
-    boundary::Call, device_cell::DeviceCell, frame::wk_frame, layout, status::wk_struct_type, view::ViewObject,
+    boundary::Call, context::ContextObject, device_cell::DeviceCell, frame::wk_frame, layout,
+    occluder::wk_occluder_map, status::wk_struct_type, view::ViewObject,
 };
 use crate::{
     error::{Error, Result},
@@ -85,6 +86,28 @@ pub(super) unsafe fn record(call: &mut Call, object: &ViewObject, frame: &wk_fra
         #[cfg(not(any(target_os = "macos", target_os = "ios")))]
         // SAFETY: the caller's promise.
         Host::Vulkan(host) => unsafe { vulkan::record(host, object, frame, stages) },
+    }
+}
+
+/// Takes over the occluder maps of a context from the images of the device's kind of host.
+///
+/// # Safety
+/// The images of `maps` are live and truly described.
+///
+/// # Errors
+/// The first wrong field by name; the maps before stay.
+pub(super) unsafe fn set_occluder_maps<'a>(
+    call: &mut Call,
+    object: &ContextObject,
+    maps: impl Iterator<Item = &'a wk_occluder_map> + Clone,
+) -> Result<()> {
+    match &*object.cell.host() {
+        Host::Own => own::set_occluder_maps(call, object, maps),
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        Host::OpenGl(host) => opengl::set_occluder_maps(host, object, maps),
+        #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+        // SAFETY: the caller's promise.
+        Host::Vulkan(host) => unsafe { vulkan::set_occluder_maps(host, object, maps) },
     }
 }
 

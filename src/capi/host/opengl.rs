@@ -5,14 +5,17 @@ use wgpu::hal::{api::Gles, gles::TextureInner};
 use super::{Host, in_frame, target};
 use crate::{
     capi::{
+        context::ContextObject,
         device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
         frame::{self, Images, wk_frame},
+        occluder::wk_occluder_map,
         opengl::*,
         view::ViewObject,
     },
     error::{Error, Result, Status},
     frame::Stages,
     gpu::gl::{GlHost, GlHostDesc, GlImage, GlMode, GlTargetDesc, Handover, Multisample, adopt},
+    rain::OccluderMap,
 };
 
 /// # Safety
@@ -50,6 +53,31 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
         frame.mask = images.mask.as_ref();
     }
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+pub(in crate::capi) fn set_occluder_maps<'a>(
+    host: &GlHost,
+    object: &ContextObject,
+    maps: impl Iterator<Item = &'a wk_occluder_map> + Clone,
+) -> Result<()> {
+    let gpu = object.cell.gpu();
+    let _entered = gpu.enter()?;
+    let mut images = Vec::new();
+    for (i, map) in maps.clone().enumerate() {
+        let named = |e: Error| {
+            Error::new(
+                e.status,
+                e.message.replace("target.depth", "target").replace("target", &format!("maps[{i}].opengl")),
+            )
+        };
+        let none = || {
+            Error::new(Status::InvalidArgument, format!("maps[{i}].opengl must be given on an OpenGL host's device"))
+        };
+        let depth = image(&map.opengl).ok_or_else(none)?;
+        images.push(host.depth(&gpu.device, depth, (map.width, map.height), map.generation).map_err(named)?);
+    }
+    let list: Vec<_> = maps.zip(&images).map(|(c, depth)| OccluderMap { depth, taken: c.taken(true) }).collect();
+    object.write().set_occluder_maps(&list)
 }
 
 /// The target as the Rust side takes it; `None` without a colour image.

@@ -6,15 +6,18 @@ use super::{in_frame, target};
 use crate::{
     capi::{
         boundary::Call,
+        context::ContextObject,
         device_cell::DeviceCell,
         frame::{self, Images, wk_frame, wk_own_target},
         handles::Object,
+        occluder::wk_occluder_map,
         surface::SurfaceObject,
         texture::TextureObject,
         view::ViewObject,
     },
     error::{Error, Result, Status},
     frame::Stages,
+    rain::OccluderMap,
 };
 
 /// # Safety
@@ -37,6 +40,23 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref() };
     let frame = frame::from_c(c, images, false)?;
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+pub(in crate::capi) fn set_occluder_maps<'a>(
+    call: &mut Call,
+    object: &ContextObject,
+    maps: impl Iterator<Item = &'a wk_occluder_map> + Clone,
+) -> Result<()> {
+    let mut textures = Vec::new();
+    for (i, map) in maps.clone().enumerate() {
+        let param = format!("maps[{i}].texture");
+        let found = of_device::<TextureObject>(call, &object.cell, &param, map.texture)?;
+        let none = || Error::new(Status::InvalidArgument, format!("{param} must not be NULL on an own device"));
+        textures.push(found.ok_or_else(none)?);
+    }
+    let list: Vec<_> =
+        maps.zip(&textures).map(|(c, t)| OccluderMap { depth: &t.texture, taken: c.taken(false) }).collect();
+    object.write().set_occluder_maps(&list)
 }
 
 /// An object of this device, or nothing for NULL.

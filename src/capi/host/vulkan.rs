@@ -7,16 +7,19 @@ use ash::vk::{self, Handle};
 use super::{Host, in_frame, target};
 use crate::{
     capi::{
+        context::ContextObject,
         device::{self, wk_device},
         device_cell::DeviceCell,
         frame::{self, Images, wk_frame},
         input, layout,
+        occluder::wk_occluder_map,
         view::ViewObject,
         vulkan::*,
     },
     error::{Error, Result, Status},
     frame::Stages,
     gpu::vulkan::{EnabledFeatures, HandOver, HostImage, HostSemaphore, ImageRole, VulkanHost, VulkanHostDesc, adopt},
+    rain::OccluderMap,
 };
 
 /// Most extension names in a list; there are about 400 device extensions.
@@ -153,6 +156,39 @@ pub(in crate::capi) unsafe fn record(
         Status::InvalidArgument => e.within("frame.target."),
         _ => e,
     })
+}
+
+/// # Safety
+/// The images of `maps` are live and truly described.
+pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
+    host: &VulkanHost,
+    object: &ContextObject,
+    maps: impl Iterator<Item = &'a wk_occluder_map> + Clone,
+) -> Result<()> {
+    let mut images = Vec::new();
+    for (i, map) in maps.clone().enumerate() {
+        let param = format!("maps[{i}].vulkan");
+        // SAFETY: the caller's promise.
+        let found = unsafe { import(host, &param, map.vulkan, ImageRole::Depth)? };
+        let none =
+            || Error::new(Status::InvalidArgument, format!("{param} must not be NULL on a Vulkan host's device"));
+        images.push(found.ok_or_else(none)?);
+    }
+    let list: Vec<_> =
+        maps.zip(&images).map(|(c, i)| OccluderMap { depth: &i.texture, taken: c.taken(false) }).collect();
+    let gpu = object.cell.gpu();
+    let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
+    let mut encoder = gpu.device.create_command_encoder(&label);
+    object.write().record_occluder_maps(&list, &mut encoder)?;
+    // One image may show in several maps.
+    let mut lent: Vec<(HostImage, ImageRole, &wgpu::Texture)> = Vec::new();
+    for i in &images {
+        if lent.iter().all(|l| l.0.image != i.image.image) {
+            lent.push((i.image, i.role, &i.texture));
+        }
+    }
+    // SAFETY: as above; the queue is used by the header's contract.
+    unsafe { host.submit(encoder, &HandOver { images: &lent, wait: &[], signal: &[] }) }
 }
 
 /// # Safety

@@ -91,6 +91,9 @@ impl Workshop<'_> {
     }
 
     fn assemble(&self, desc: GlTargetDesc, id: u64, made: &mut Made) -> Result<(GlTarget, Vec<Part>)> {
+        if desc.depth == Some(desc.color) && !matches!(desc.color, GlImage::Framebuffer { .. }) {
+            return self.only_depth(desc, id, made);
+        }
         let mut parts = vec![self.part(desc, desc.color, Side::Color)?];
         if let Some(image) = desc.depth {
             parts.push(self.part(desc, image, Side::Depth)?);
@@ -127,6 +130,28 @@ impl Workshop<'_> {
             None => None,
         };
         Ok((GlTarget { id, color, color_read, depth, depth_read, mask, samples }, parts))
+    }
+
+    /// A target that is only read: its depth stands for its colour too.
+    fn only_depth(&self, desc: GlTargetDesc, id: u64, made: &mut Made) -> Result<(GlTarget, Vec<Part>)> {
+        let mut part = self.part(desc, desc.color, Side::Depth)?;
+        if part.facts.samples != 1 {
+            return Err(Error::range("target.depth", "an image of one sample", part.facts.samples));
+        }
+        self.provide_copy(&mut part, false, 1, made)?;
+        let object =
+            part.readable(1).ok_or_else(|| Error::unsupported("target.depth must be an image that can be read"))?;
+        let texture = self.wrap(object, part.format()?, part.facts, 1, READ)?;
+        let target = GlTarget {
+            id,
+            color: texture.clone(),
+            color_read: None,
+            depth: None,
+            depth_read: Some(texture),
+            mask: None,
+            samples: 1,
+        };
+        Ok((target, vec![part]))
     }
 
     /// Asks about the mask.

@@ -15,7 +15,7 @@ use super::{
     mark::Mark,
     names::*,
     state::HostState,
-    target::{Entry, GlTarget, GlTargetDesc},
+    target::{Entry, GlTarget, GlTargetDesc, Multisample},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -170,6 +170,37 @@ impl GlHost {
             return Err(Error::new(Status::WrongOrder, "the OpenGL host must be entered before its target is used"));
         }
         self.inner().target(&self.info, device, desc)
+    }
+}
+
+impl GlHost {
+    /// A depth texture or renderbuffer of the host's by itself, to read, as [`GlHost::target`] would give it; one sample.
+    ///
+    /// # Errors
+    /// As [`GlHost::target`].
+    pub fn depth(
+        &self,
+        device: &wgpu::Device,
+        image: GlImage,
+        (width, height): (u32, u32),
+        generation: u64,
+    ) -> Result<wgpu::Texture> {
+        if matches!(image, GlImage::Framebuffer { .. }) {
+            return Err(Error::unsupported("target.depth must be a texture or a renderbuffer here, not a framebuffer"));
+        }
+        // Depth as its own colour: there is nothing to draw into.
+        let multisample = Multisample::Each;
+        let desc = GlTargetDesc {
+            color: image,
+            depth: Some(image),
+            mask: None,
+            width,
+            height,
+            generation,
+            multisample,
+            write_depth: false,
+        };
+        Ok(self.target(device, &desc)?.color.clone())
     }
 }
 

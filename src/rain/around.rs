@@ -1,0 +1,210 @@
+//! What the host tells of the world round a camera: what keeps rain off, and its lamps. One bind group (2) for all shaders that
+//! read it, one upload a frame, none where there is nothing of it.
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    OccluderMaps, Shelter,
+    occluder::{MAX_OCCLUDER_MAPS, OccluderUniform},
+    shelter::MAX_SHELTERS,
+};
+use crate::{
+    gpu::Device,
+    scene::{HostLight, LightUniform, MAX_LIGHTS},
+};
+
+/// Two counts, and the boxes after them.
+const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
+/// A count, where the cells begin, and the maps.
+const MAP_BYTES: usize = 16 + MAX_OCCLUDER_MAPS * size_of::<OccluderUniform>();
+/// A count, and the lamps.
+const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
+/// Where each block begins; and the end.
+const STARTS: [usize; 4] = {
+    let maps = SHELTER_BYTES.next_multiple_of(256);
+    let lights = maps + MAP_BYTES.next_multiple_of(256);
+    [0, maps, lights, lights + LIGHT_BYTES.next_multiple_of(256)]
+};
+
+/// Blocks and bind group of one view.
+pub(crate) struct Around {
+    layout: wgpu::BindGroupLayout,
+    buffer: wgpu::Buffer,
+    staged: Vec<u8>,
+    /// Whether the buffer says that there is something.
+    told: bool,
+    none: wgpu::TextureView,
+    bound: (Option<wgpu::Texture>, wgpu::BindGroup),
+}
+
+/// What there is, for shaders' variants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub(crate) struct Present {
+    /// Anything that keeps rain off.
+    pub shelter: bool,
+    /// Maps among it.
+    pub maps: bool,
+    /// Lamps.
+    pub lamps: bool,
+}
+
+/// What a host has told, as a camera at `eye` whose axes `to_enu` turns needs it.
+pub(crate) struct Told<'a> {
+    pub shelters: &'a [Shelter],
+    pub maps: Option<&'a OccluderMaps>,
+    pub lights: &'a [HostLight],
+    pub eye: DVec3,
+    pub to_enu: DMat3,
+    pub time_s: f64,
+    /// Of the air, in the camera's axes.
+    pub wind_m_s: DVec3,
+    /// Fall speed of the slowest drops, and how far from the camera any are drawn.
+    pub slowest_m_s: f64,
+    pub reach_m: f64,
+    /// Exposure that lies on the drops.
+    pub exposure: f64,
+}
+
+impl Told<'_> {
+    /// What there is of it.
+    pub fn present(&self) -> Present {
+        let maps = self.maps.is_some_and(|m| m.ranges().is_some());
+        Present { shelter: maps || !self.shelters.is_empty(), maps, lamps: !self.lights.is_empty() }
+    }
+}
+
+/// Layout of group 2 of drops and composition.
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let block = |binding, size: usize| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: both,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        },
+        count: None,
+    };
+    let table = wgpu::BindGroupLayoutEntry {
+        binding: 2,
+        visibility: both,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("around"),
+        entries: &[block(0, SHELTER_BYTES), block(1, MAP_BYTES), table, block(3, LIGHT_BYTES)],
+    })
+}
+
+impl Around {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let none = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("no map"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R8Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let none = none.create_view(&Default::default());
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("around"),
+            size: STARTS[3] as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = layout(device);
+        let bound = (None, group(device, &layout, &buffer, &none));
+        Self { layout, buffer, staged: vec![0; STARTS[3]], told: false, none, bound }
+    }
+
+    /// Brings the blocks up to date for a frame.
+    pub fn follow(&mut self, device: &Device, told: &Told<'_>) {
+        let present = told.present();
+        if present != Present::default() || self.told {
+            let end = self.stage(told);
+            device.queue.write_buffer(&self.buffer, 0, &self.staged[..end]);
+        }
+        self.told = present != Present::default();
+        let ranges = told.maps.and_then(|m| m.ranges());
+        if self.bound.0.as_ref() != ranges {
+            let view = ranges.map(|t| t.create_view(&Default::default()));
+            let view = view.as_ref().unwrap_or(&self.none);
+            self.bound = (ranges.cloned(), group(&device.device, &self.layout, &self.buffer, view));
+        }
+    }
+
+    /// Writes the blocks; answers where what is read of them ends.
+    fn stage(&mut self, told: &Told<'_>) -> usize {
+        let staged = &mut self.staged;
+        let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
+        let matters = |s: &Shelter| s.matters(told.eye, told.to_enu, told.wind_m_s, told.slowest_m_s, told.reach_m);
+        let boxes = &told.shelters[..told.shelters.len().min(MAX_SHELTERS)];
+        let mut i = 0;
+        let mut near = 0u32;
+        for first in [true, false] {
+            for shelter in boxes.iter().filter(|s| matters(s) == first) {
+                put(STARTS[0] + 16 + 64 * i, bytemuck::cast_slice(&shelter.rows(told.eye, told.to_enu)));
+                i += 1;
+            }
+            near = if first { i as u32 } else { near };
+        }
+        put(STARTS[0], bytemuck::cast_slice(&[near, i as u32]));
+        let mut maps = 0u32;
+        if let Some(m) = told.maps {
+            for uniform in m.uniforms(told.eye, told.to_enu, told.time_s) {
+                put(STARTS[1] + 16 + maps as usize * size_of::<OccluderUniform>(), bytemuck::bytes_of(&uniform));
+                maps += 1;
+            }
+            put(STARTS[1] + 8, bytemuck::cast_slice(&m.cells_at()));
+        }
+        put(STARTS[1], &maps.to_ne_bytes());
+        let lights = &told.lights[..told.lights.len().min(MAX_LIGHTS)];
+        put(STARTS[2], &(lights.len() as u32).to_ne_bytes());
+        for (i, light) in lights.iter().enumerate() {
+            let uniform = light.uniform(told.eye, told.to_enu, told.exposure);
+            put(STARTS[2] + 16 + i * size_of::<LightUniform>(), bytemuck::bytes_of(&uniform));
+        }
+        // What lies behind the last lamp is not read.
+        STARTS[2] + 16 + size_of::<LightUniform>() * lights.len()
+    }
+
+    /// The bind group.
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.bound.1
+    }
+}
+
+fn group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    buffer: &wgpu::Buffer,
+    table: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    let block = |binding, at: usize, size: usize| wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset: at as u64,
+            size: wgpu::BufferSize::new(size as u64),
+        }),
+    };
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("around"),
+        layout,
+        entries: &[
+            block(0, STARTS[0], SHELTER_BYTES),
+            block(1, STARTS[1], MAP_BYTES),
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(table) },
+            block(3, STARTS[2], LIGHT_BYTES),
+        ],
+    })
+}

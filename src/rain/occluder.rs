@@ -1,0 +1,237 @@
+//! What keeps rain off, as the host's own pictures of it: up to four depth textures, from any direction.
+//!
+//! A drop is gone where its own slanted path back crosses a surface that a map shows: `shaders/rain/occluders.wgsl`. A map
+//! knows nothing of what its surfaces hide; taken along the drops' own direction ([`crate::context::RainAt`]) it hides nothing
+//! that matters, whatever the wind.
+
+use glam::{DMat3, DMat4, DVec3, DVec4};
+
+use crate::{
+    error::{Error, Result},
+    scene::{Camera, ClipSpace, DepthKind, DepthMapping, ViewRays},
+};
+
+/// Most maps at a time.
+pub const MAX_OCCLUDER_MAPS: usize = 4;
+/// Least and most texels of a map along either side.
+pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
+
+/// A depth texture of what keeps rain off, and where it was taken from.
+#[derive(Clone, Copy, Debug)]
+pub struct OccluderMap<'a> {
+    /// Its depth: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with TEXTURE_BINDING;
+    /// from 8 to 4096 texels along either side. What it shows is taken over when it is set; it may be drawn anew after that.
+    pub depth: &'a wgpu::Texture,
+    /// From where in the world, and how that is seen.
+    pub taken: Taken,
+}
+
+/// How a map was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taken {
+    /// From the host's world to clip space: parallel rays or perspective, from any direction.
+    pub clip_from_world: DMat4,
+    /// Whether 1 is near and 0 far.
+    pub reversed: bool,
+    /// What clip z runs over.
+    pub clip: ClipSpace,
+    /// Row 0 of the texture lies at clip y = -1, as OpenGL draws.
+    pub first_row_at_minus_y: bool,
+    /// Simulation time of what it shows, s.
+    pub time_s: f64,
+    /// Velocity of what it shows, in the host's world, m/s, at most 2000 in all: a truck's own map need not be taken anew every
+    /// frame. 0 for what stands still.
+    pub velocity_m_s: DVec3,
+}
+
+/// [`Taken`], checked, in the form that shaders and f64 share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Occluder {
+    /// From the world relative to `origin_m` to clip x, y and w, and to the distance from the map's plane, m.
+    rows: [DVec4; 4],
+    /// On the middle of its near plane.
+    origin_m: DVec3,
+    /// Rays and depth of the map relative to it.
+    pub rays: ViewRays,
+    pub y_sign: f64,
+    time_s: f64,
+    velocity_m_s: DVec3,
+}
+
+/// `Occluder` of `shaders/rain/occluders.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct OccluderUniform {
+    pub x: [f32; 4],
+    pub y: [f32; 4],
+    pub w: [f32; 4],
+    pub distance: [f32; 4],
+    pub velocity: [f32; 4],
+    pub part: [f32; 4],
+}
+
+impl Taken {
+    /// A map with parallel rays (`half_m`: half its width, half its height) or of what lies below `eye`, reversed depth: a
+    /// helper for hosts without matrices of their own. It looks along `forward` over `depth_m`.
+    pub fn parallel(eye: DVec3, forward: DVec3, half_m: [f64; 2], depth_m: f64) -> Self {
+        let f = forward.normalize();
+        let right = f.cross(f.any_orthonormal_vector()).normalize();
+        let up = right.cross(f);
+        let row = |v: DVec3, scale: f64, at: f64| (v * scale).extend(at - scale * v.dot(eye));
+        let rows =
+            [row(right, 1.0 / half_m[0], 0.0), row(up, 1.0 / half_m[1], 0.0), row(f, -1.0 / depth_m, 1.0), DVec4::W];
+        Self {
+            clip_from_world: DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose(),
+            reversed: true,
+            clip: ClipSpace::ZeroToOne,
+            first_row_at_minus_y: false,
+            time_s: 0.0,
+            velocity_m_s: DVec3::ZERO,
+        }
+    }
+
+    /// Refuses what is no view of the world, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field.
+    pub(crate) fn check(&self) -> Result<Occluder> {
+        let m = self.clip_from_world;
+        let bad = || Error::range("clip_from_world", "finite and invertible", m);
+        if !m.is_finite() {
+            return Err(bad());
+        }
+        let speed = self.velocity_m_s.length();
+        if speed.is_nan() || speed > 2000.0 {
+            return Err(Error::range("velocity_m_s", "a vector of at most 2000 m/s", self.velocity_m_s));
+        }
+        if !(self.time_s.is_finite() && self.time_s.abs() <= 1e10) {
+            return Err(Error::range("time_s", "in [-1e10, 1e10] s", self.time_s));
+        }
+        let near = match (self.reversed, self.clip) {
+            (true, _) => 1.0,
+            (false, ClipSpace::ZeroToOne) => 0.0,
+            (false, ClipSpace::MinusOneToOne) => -1.0,
+        };
+        let h = m.inverse() * DVec4::new(0.0, 0.0, near, 1.0);
+        let origin_m = h.truncate() / h.w;
+        if !(origin_m.is_finite() && origin_m.length() <= 1e12) {
+            return Err(bad());
+        }
+        let local = m * DMat4::from_translation(origin_m);
+        let camera = Camera { position: DVec3::ZERO, view: DMat4::IDENTITY, projection: local };
+        let kind = if camera.is_orthographic() { DepthKind::Orthographic } else { DepthKind::Perspective };
+        let mapping = DepthMapping { kind, reversed: self.reversed, clip: self.clip };
+        let rays = ViewRays::new(&camera, &mapping)
+            .map_err(|e| Error::new(e.status, e.message.replacen("camera.projection", "clip_from_world", 1)))?;
+        let w = local.row(3);
+        let parallel = kind == DepthKind::Orthographic;
+        let distance =
+            if parallel { rays.view_ray(glam::DVec2::ZERO).direction.extend(0.0) } else { w / w.truncate().length() };
+        Ok(Occluder {
+            rows: [local.row(0), local.row(1), w, distance],
+            origin_m,
+            rays,
+            y_sign: if self.first_row_at_minus_y { -1.0 } else { 1.0 },
+            time_s: self.time_s,
+            velocity_m_s: self.velocity_m_s,
+        })
+    }
+}
+
+impl Occluder {
+    /// For a camera at `eye` whose axes `to_enu` turns, at a time; `part`: where the map lies in the table, texels, and its
+    /// size.
+    pub fn uniform(&self, eye: DVec3, to_enu: DMat3, time_s: f64, part: [[u32; 2]; 2]) -> OccluderUniform {
+        let [low, size] = part.map(|p| p.map(f64::from));
+        let moved = eye - self.origin_m - self.velocity_m_s * (time_s - self.time_s);
+        let [x, y, w, distance] = self.rows.map(|r| (to_enu * r.truncate()).extend(r.truncate().dot(moved) + r.w));
+        let across = x * (0.5 * size[0]) + w * (0.5 * size[0] + low[0]);
+        let down = y * (-0.5 * size[1] * self.y_sign) + w * (0.5 * size[1] + low[1]);
+        let row = |v: DVec4| v.as_vec4().to_array();
+        let moves = f64::from(u8::from(self.velocity_m_s.length() > 0.1));
+        OccluderUniform {
+            x: row(across),
+            y: row(down),
+            w: row(w),
+            distance: row(distance),
+            velocity: row((to_enu * self.velocity_m_s).extend(moves)),
+            part: [low[0], low[1], low[0] + size[0], low[1] + size[1]].map(|v| v as f32),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::shader;
+
+    fn taken() -> Taken {
+        Taken::parallel(DVec3::new(100.0, 50.0, 60.0), DVec3::new(0.3, 0.0, -1.0), [40.0, 20.0], 120.0)
+    }
+
+    #[test]
+    fn offsets_are_those_of_the_shader() {
+        let text = shader::assemble("rain/occluders.wgsl").unwrap();
+        let (size, members) = shader::struct_layout(&text, "Occluder").unwrap();
+        assert_eq!(size as usize, size_of::<OccluderUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(members.contains(&(stringify!($field).into(), offset_of!(OccluderUniform, $field) as u32)));)*
+            };
+        }
+        same!(x, y, w, distance, velocity, part);
+    }
+
+    #[test]
+    fn a_point_is_found_in_the_map_whatever_the_convention() {
+        let t = taken();
+        let eye = DVec3::new(1e7, 3.0, 2.0);
+        let shift = DMat4::from_translation(-(eye - DVec3::new(90.0, 48.0, 10.0)));
+        let f = DVec3::new(0.3, 0.0, -1.0).normalize();
+        // (maker, its clip space, reversed): the same picture.
+        let flip = DMat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 1., 1.]);
+        let wide = DMat4::from_cols_array(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 2., 0., 0., 0., -1., 1.]);
+        for (m, reversed, clip) in [
+            (t.clip_from_world, true, ClipSpace::ZeroToOne),
+            (flip * t.clip_from_world, false, ClipSpace::ZeroToOne),
+            (wide * flip * t.clip_from_world, false, ClipSpace::MinusOneToOne),
+        ] {
+            let moved = Taken { clip_from_world: m * shift, reversed, clip, ..t };
+            let o = moved.check().unwrap();
+            let u = o.uniform(eye, DMat3::IDENTITY, 0.0, [[64, 0], [256, 128]]);
+            let p = DVec3::new(3.0, 1.0, -4.0);
+            let world = p + DVec3::new(90.0, 48.0, 10.0) - DVec3::new(100.0, 50.0, 60.0);
+            let at = |row: [f32; 4]| glam::Vec4::from_array(row).as_dvec4().dot(p.extend(1.0));
+            assert!((at(u.distance) - world.dot(f)).abs() < 1e-4, "{} {}", at(u.distance), world.dot(f));
+            let ndc = t.clip_from_world * (world + DVec3::new(100.0, 50.0, 60.0)).extend(1.0);
+            let want = [64.0 + 128.0 * (1.0 + ndc.x), 64.0 * (1.0 - ndc.y)];
+            assert!((at(u.x) - want[0]).abs() < 1e-2 && (at(u.y) - want[1]).abs() < 1e-2, "{} {want:?}", at(u.x));
+        }
+    }
+
+    #[test]
+    fn a_moving_map_goes_along() {
+        let o = Taken { velocity_m_s: DVec3::X * 10.0, time_s: 2.0, ..taken() }.check().unwrap();
+        let at = |x: f64, t: f64| o.uniform(DVec3::new(x, 0.0, 0.0), DMat3::IDENTITY, t, [[0, 0], [64, 64]]);
+        for (a, b) in at(30.0, 5.0).x.iter().zip(at(0.0, 2.0).x) {
+            assert!((a - b).abs() < 1e-4, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_view_is_refused_by_name() {
+        let seen = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 1.0, 1.0, 0.1).projection;
+        for (bad, name) in [
+            (Taken { clip_from_world: DMat4::ZERO, ..taken() }, "clip_from_world"),
+            (Taken { clip_from_world: taken().clip_from_world * f64::NAN, ..taken() }, "clip_from_world"),
+            (Taken { clip_from_world: seen, reversed: false, ..taken() }, "depth"),
+            (Taken { velocity_m_s: DVec3::X * 3e3, ..taken() }, "velocity_m_s"),
+            (Taken { time_s: f64::INFINITY, ..taken() }, "time_s"),
+        ] {
+            let e = bad.check().unwrap_err();
+            assert!(e.message.contains(name), "{}", e.message);
+        }
+    }
+}

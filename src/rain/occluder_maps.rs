@@ -1,0 +1,378 @@
+//! The maps on the GPU: one table of the ranges of distances that their texels span, and cells of 8 and 64 texels beside them.
+
+use std::sync::Arc;
+
+use super::occluder::{MAX_OCCLUDER_MAPS, OCCLUDER_MAP_TEXELS, Occluder, OccluderMap, OccluderUniform};
+use crate::{
+    error::{Error, Result},
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+    scene::DepthUniform,
+};
+
+/// The bits of two floats: not all drivers draw into floats of 32 bits.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// Of a texel of nothing, which no path meets: those of 1e12 and of -1e12.
+const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
+
+/// `MapUniform` of `shaders/rain/occluder_map.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MapUniform {
+    depth: DepthUniform,
+    origin: [f32; 2],
+    size: [f32; 2],
+    y_sign: f32,
+    pad: [f32; 3],
+}
+
+/// Room of one map's block.
+const BLOCK: u64 = 256;
+
+/// The table, and finer to coarser what it is made of.
+struct Table {
+    /// Texels and cells.
+    ranges: wgpu::Texture,
+    /// Texels without their cells: (width, height), multiples of 64.
+    size: [u32; 2],
+    fine: wgpu::Texture,
+    cells: [wgpu::Texture; 2],
+}
+
+/// One map in the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Placed {
+    occluder: Occluder,
+    /// Where it lies there, texels, and its size.
+    part: [[u32; 2]; 2],
+}
+
+/// The occluder maps of a context.
+pub(crate) struct OccluderMaps {
+    layouts: [wgpu::BindGroupLayout; 2],
+    pipelines: [wgpu::RenderPipeline; 2],
+    blocks: wgpu::Buffer,
+    table: Option<Table>,
+    list: Vec<Placed>,
+}
+
+fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 2] {
+    let block = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size_of::<MapUniform>() as u64),
+        },
+        count: None,
+    };
+    let make = |label, entries: &[_]| {
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    };
+    let depth = wgpu::TextureSampleType::Float { filterable: false };
+    [
+        make("occluder map", &[block, texture_entry(1, depth)]),
+        make("occluder cells", &[texture_entry(0, wgpu::TextureSampleType::Uint)]),
+    ]
+}
+
+fn pipeline(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    [shader, entry]: [&str; 2],
+) -> Result<wgpu::RenderPipeline> {
+    let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+    pass::fullscreen(
+        device,
+        &FullscreenDesc { shader, entry, layouts: &[layout], targets: &[target], constants: &[], samples: 1 },
+    )
+}
+
+/// Where maps of these sizes lie in a table: two beside each other and two below, and how large it is.
+fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
+    let up = |v: u32| v.next_multiple_of(64);
+    let most = |axis: usize, which: fn(usize) -> usize, n: usize| {
+        sizes.iter().enumerate().filter(|(i, _)| which(*i) == n).map(|(_, s)| up(s[axis])).max().unwrap_or(0)
+    };
+    let (column, row): (fn(usize) -> usize, fn(usize) -> usize) = (|i| i % 2, |i| i / 2);
+    let (wide, high) = (most(0, column, 0), most(1, row, 0));
+    let places = (0..sizes.len()).map(|i| [column(i) as u32 * wide, row(i) as u32 * high]).collect();
+    (places, [wide + most(0, column, 1), high + most(1, row, 1)])
+}
+
+impl Table {
+    fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        use wgpu::TextureUsages as U;
+        let make = |label, [width, height]: [u32; 2], usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
+        let part = |n: u32| size.map(|v| v / n);
+        Self {
+            ranges: make("occluder ranges", [size[0], size[1] + size[1] / 8], U::TEXTURE_BINDING | U::COPY_DST),
+            size,
+            fine: make("occluder texels", size, drawn),
+            cells: [8, 64].map(|n| make("occluder cells", part(n), drawn)),
+        }
+    }
+
+    /// Where the cells of 64 and of 8 texels begin in `ranges`.
+    fn cells_at(&self) -> [u32; 2] {
+        [self.size[0] / 8, self.size[1]]
+    }
+
+    fn gather(&self, encoder: &mut wgpu::CommandEncoder) {
+        let [x, y] = self.cells_at();
+        for (from, at) in [(&self.fine, [0, 0]), (&self.cells[0], [0, y]), (&self.cells[1], [x, y])] {
+            let to = wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: at[0], y: at[1], z: 0 },
+                ..self.ranges.as_image_copy()
+            };
+            encoder.copy_texture_to_texture(from.as_image_copy(), to, from.size());
+        }
+    }
+}
+
+/// Refuses a texture that is no map, by name.
+fn check_depth(depth: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    let format = depth.format();
+    if !matches!(
+        format,
+        F::Depth16Unorm
+            | F::Depth24Plus
+            | F::Depth24PlusStencil8
+            | F::Depth32Float
+            | F::Depth32FloatStencil8
+            | F::R32Float
+    ) {
+        return Err(Error::unsupported(format!(
+            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
+        )));
+    }
+    let (least, most) = OCCLUDER_MAP_TEXELS;
+    for (name, v) in [("depth.width", depth.width()), ("depth.height", depth.height())] {
+        if !(least..=most).contains(&v) {
+            return Err(Error::range(name, &format!("in [{least}, {most}] texels"), v));
+        }
+    }
+    if depth.sample_count() > 1 || depth.depth_or_array_layers() > 1 {
+        return Err(Error::range("depth", "of one sample and one layer", depth.sample_count()));
+    }
+    if !depth.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return Err(Error::range("depth.usage", "one with TEXTURE_BINDING", format!("{:?}", depth.usage())));
+    }
+    Ok(())
+}
+
+impl OccluderMaps {
+    /// # Errors
+    /// A missing shader file.
+    pub fn new(device: &Device) -> Result<Self> {
+        let layouts = layouts(&device.device);
+        let pipelines = [
+            pipeline(device, &layouts[0], ["rain/occluder_map.wgsl", "occluder_map"])?,
+            pipeline(device, &layouts[1], ["rain/occluder_cells.wgsl", "occluder_cells"])?,
+        ];
+        let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("occluder maps"),
+            size: MAX_OCCLUDER_MAPS as u64 * BLOCK,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Ok(Self { layouts, pipelines, blocks, table: None, list: Vec::new() })
+    }
+
+    /// Takes over what `maps` show, in place of those before: records it.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; nothing changes
+    /// then.
+    pub fn set(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        maps: &[OccluderMap<'_>],
+    ) -> Result<()> {
+        if maps.len() > MAX_OCCLUDER_MAPS {
+            return Err(Error::range("maps' count", &format!("at most {MAX_OCCLUDER_MAPS}"), maps.len()));
+        }
+        let mut list = Vec::with_capacity(maps.len());
+        for (i, map) in maps.iter().enumerate() {
+            let named = |e: Error| e.within(&format!("maps[{i}]."));
+            check_depth(map.depth).map_err(named)?;
+            list.push(map.taken.check().map_err(named)?);
+        }
+        let sizes: Vec<_> = maps.iter().map(|m| [m.depth.width(), m.depth.height()]).collect();
+        let (places, size) = placed(&sizes);
+        let whole = |(occluder, (place, size))| Placed { occluder, part: [place, size] };
+        self.list = list.into_iter().zip(places.into_iter().zip(sizes)).map(whole).collect();
+        if maps.is_empty() {
+            return Ok(());
+        }
+        let table = match self.table.take() {
+            Some(table) if table.size == size => table,
+            _ => Table::new(&device.device, size),
+        };
+        self.draw_texels(device, encoder, &table, maps);
+        for (from, to) in [(&table.fine, &table.cells[0]), (&table.cells[0], &table.cells[1])] {
+            self.draw_cells(device, encoder, from, to);
+        }
+        table.gather(encoder);
+        self.table = Some(table);
+        Ok(())
+    }
+
+    fn draw_texels(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        table: &Table,
+        maps: &[OccluderMap<'_>],
+    ) {
+        let view = table.fine.create_view(&Default::default());
+        let mut pass = begin(encoder, &view);
+        pass.set_pipeline(&self.pipelines[0]);
+        for (i, (map, placed)) in maps.iter().zip(&self.list).enumerate() {
+            let [origin, size] = placed.part.map(|p| p.map(|v| v as f32));
+            let block = MapUniform {
+                depth: placed.occluder.rays.uniform(),
+                origin,
+                size,
+                y_sign: placed.occluder.y_sign as f32,
+                pad: [0.0; 3],
+            };
+            let at = i as u64 * BLOCK;
+            device.queue.write_buffer(&self.blocks, at, bytemuck::bytes_of(&block));
+            let whole = map.depth.format().has_depth_aspect();
+            let aspect = if whole { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
+            let depth = map.depth.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
+            let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("occluder map"),
+                layout: &self.layouts[0],
+                entries: &[
+                    wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                            buffer: &self.blocks,
+                            offset: at,
+                            size: wgpu::BufferSize::new(size_of::<MapUniform>() as u64),
+                        }),
+                    },
+                    wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&depth) },
+                ],
+            });
+            let [[x, y], [w, h]] = placed.part;
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_scissor_rect(x, y, w, h);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    fn draw_cells(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        from: &wgpu::Texture,
+        to: &wgpu::Texture,
+    ) {
+        let [from, to] = [from, to].map(|t| t.create_view(&Default::default()));
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("occluder cells"),
+            layout: &self.layouts[1],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&from) }],
+        });
+        let mut pass = begin(encoder, &to);
+        pass.set_pipeline(&self.pipelines[1]);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// The table, if there are maps.
+    pub fn ranges(&self) -> Option<&wgpu::Texture> {
+        if self.list.is_empty() { None } else { self.table.as_ref().map(|t| &t.ranges) }
+    }
+
+    /// Where the cells of 64 and of 8 texels begin in it.
+    pub fn cells_at(&self) -> [u32; 2] {
+        self.table.as_ref().map_or([0; 2], Table::cells_at)
+    }
+
+    /// The maps as shaders read them, for a camera at `eye` whose axes `to_enu` turns.
+    pub fn uniforms(
+        &self,
+        eye: glam::DVec3,
+        to_enu: glam::DMat3,
+        time_s: f64,
+    ) -> impl Iterator<Item = OccluderUniform> {
+        self.list.iter().map(move |p| p.occluder.uniform(eye, to_enu, time_s, p.part))
+    }
+}
+
+fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("occluder maps"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(NOTHING), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_far_away_on_both_sides() {
+        let bits = |v: f64| f32::from_bits(v as u32);
+        assert_eq!((bits(NOTHING.r), bits(NOTHING.g)), (1e12, -1e12));
+    }
+
+    #[test]
+    fn maps_of_any_sizes_lie_beside_each_other_on_whole_cells() {
+        for sizes in [
+            vec![[100, 50]],
+            vec![[512, 512], [64, 1000]],
+            vec![[100, 50], [300, 20], [65, 65], [8, 4096]],
+            vec![[4096, 4096]; 4],
+        ] {
+            let (places, whole) = placed(&sizes);
+            let ends: Vec<_> = places.iter().zip(&sizes).map(|(p, s)| [p[0] + s[0], p[1] + s[1]]).collect();
+            for (i, (p, e)) in places.iter().zip(&ends).enumerate() {
+                assert!(p.iter().all(|v| v % 64 == 0) && e[0] <= whole[0] && e[1] <= whole[1], "{p:?} {whole:?}");
+                for (q, f) in places.iter().zip(&ends).skip(i + 1) {
+                    assert!(e[0] <= q[0] || f[0] <= p[0] || e[1] <= q[1] || f[1] <= p[1], "{p:?} {q:?}");
+                }
+            }
+        }
+    }
+}

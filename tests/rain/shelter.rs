@@ -1,0 +1,244 @@
+//! What keeps rain off, against f64 rays through the true geometry: by the host's own maps of it, moving things included.
+
+use glam::{DMat4, DVec2, DVec3};
+use welkin::{
+    context::GivenDirection,
+    frame::Stages,
+    rain::{Classes, OccluderMap, RainSettings, Shelter, Taken, lattice, shelter::sheltered, splash::Splashes},
+    scene::{Camera, DepthKind, DepthMapping, ViewRays},
+    weather::derive,
+};
+
+use crate::scene::{Host, rain, upright};
+
+/// Radiance of the host's picture: far above what drops send at night, within half floats.
+const WHITE: f64 = 3e4;
+
+/// A bridge, a roof on posts and a tunnel on level ground.
+pub fn standing() -> Vec<Shelter> {
+    let mut all = vec![
+        upright([0.0, 9.0, 5.2], [12.0, 3.0, 0.4]),
+        upright([-9.0, 9.0, 2.4], [0.6, 3.0, 2.4]),
+        upright([9.0, 9.0, 2.4], [0.6, 3.0, 2.4]),
+        upright([-7.0, 2.0, 3.0], [2.5, 2.0, 0.1]),
+        upright([6.0, 0.5, 3.6], [2.2, 5.0, 0.2]),
+        upright([3.9, 0.5, 1.7], [0.1, 5.0, 1.7]),
+        upright([8.1, 0.5, 1.7], [0.1, 5.0, 1.7]),
+    ];
+    all.extend([-9.3, -4.7].iter().flat_map(|x| [0.2, 3.8].map(|y| upright([*x, y, 1.45], [0.05, 0.05, 1.45]))));
+    all
+}
+
+/// A truck: bed, cab.
+pub fn truck(at: DVec3, velocity_m_s: DVec3) -> Vec<Shelter> {
+    [([0.0, 0.0, 0.9], [1.2, 2.6, 0.3]), ([0.0, 2.1, 2.0], [1.2, 0.8, 1.0])]
+        .map(|(c, h)| Shelter { velocity_m_s, ..upright((at + DVec3::from(c)).to_array(), h) })
+        .to_vec()
+}
+
+/// Distance along a ray to the boxes or the ground.
+pub fn cast(boxes: &[Shelter], eye: DVec3, d: DVec3) -> Option<f64> {
+    let mut best = (d.z < -1e-9).then(|| -eye.z / d.z).filter(|t| *t > 0.0);
+    for b in boxes {
+        let own = |v: DVec3| b.axes.transpose() * v / b.half_size_m;
+        let (o, e) = (own(eye - b.center_m), own(d));
+        let (mut near, mut far) = (0.0f64, f64::INFINITY);
+        for i in 0..3 {
+            let (a, c) = ((-1.0 - o[i]) / e[i], (1.0 - o[i]) / e[i]);
+            (near, far) = (near.max(a.min(c)), far.min(a.max(c)));
+        }
+        if far > near && near > 0.0 && best.is_none_or(|t| near < t) {
+            best = Some(near);
+        }
+    }
+    best
+}
+
+/// The map of `boxes`, cast texel by texel.
+pub fn map(host: &Host, boxes: &[Shelter], taken: &Taken, size: (u32, u32)) -> wgpu::Texture {
+    let camera = Camera { position: DVec3::ZERO, view: DMat4::IDENTITY, projection: taken.clip_from_world };
+    let kind = if camera.is_orthographic() { DepthKind::Orthographic } else { DepthKind::Perspective };
+    let rays = ViewRays::new(&camera, &DepthMapping { kind, reversed: taken.reversed, clip: taken.clip }).unwrap();
+    let up = if taken.first_row_at_minus_y { -1.0 } else { 1.0 };
+    let mut depths = Vec::new();
+    for y in 0..size.1 {
+        for x in 0..size.0 {
+            let uv = DVec2::new((f64::from(x) + 0.5) / f64::from(size.0), (f64::from(y) + 0.5) / f64::from(size.1));
+            let ndc = DVec2::new(2.0 * uv.x - 1.0, up * (1.0 - 2.0 * uv.y));
+            let clip = taken.clip_from_world.inverse();
+            let near = clip * ndc.extend(if taken.reversed { 1.0 } else { 0.0 }).extend(1.0);
+            let eye = near.truncate() / near.w;
+            let d = rays.view_ray(ndc).direction;
+            let depth = cast(boxes, eye, d).map_or(if taken.reversed { 0.0 } else { 1.0 }, |t| {
+                let p = taken.clip_from_world * (eye + d * t).extend(1.0);
+                p.z / p.w
+            });
+            depths.push(depth as f32);
+        }
+    }
+    let texture = host.device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    host.device.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&depths),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.0), rows_per_image: None },
+        texture.size(),
+    );
+    texture
+}
+
+/// A host at night whose whole picture is white: each pixel says what drops and splashes let through.
+pub fn white(size: (u32, u32)) -> Host {
+    let mut host = Host::new(size);
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+    host
+}
+
+/// The host's boxes, and walls behind all.
+pub fn through(host: &mut Host, boxes: &[Shelter]) -> Vec<f64> {
+    host.boxes = boxes.to_vec();
+    for [x, y] in [[400.0, 0.0], [-400.0, 0.0], [0.0, 400.0], [0.0, -400.0]] {
+        host.boxes.push(upright([x, y, 0.0], [401.0 - f64::abs(x), 401.0 - f64::abs(y), 2000.0]));
+    }
+    host.draw(|_, _| [WHITE; 3]);
+    host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
+    host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
+}
+
+/// Whether the way of what came to `p` with `velocity` met any of the boxes, if that does not hang on where within `slack_m`
+/// `p` is.
+fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<bool> {
+    let hit = |p: DVec3| boxes.iter().any(|b| sheltered(b, p, velocity));
+    let first = hit(p);
+    let f = velocity.normalize();
+    let (a, b) = f.any_orthonormal_pair();
+    let round = (0..8).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4).map(|w| a * w.cos() + b * w.sin());
+    let all = round.flat_map(|d| [d * slack_m, d * (0.5 * slack_m)]).chain([f * slack_m, -f * slack_m]);
+    all.map(|d| hit(p + d)).all(|h| h == first).then_some(first)
+}
+
+/// One picture against the truth: every drop whose way is surely free is there, and nothing is dark but by such drops.
+/// Answers how many drops were surely kept off and how many were drawn.
+fn check(host: &mut Host, boxes: &[Shelter], classes: &Classes, slack_m: f64, what: &str) -> (u32, u32) {
+    let pixels = through(host, boxes);
+    let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
+    let (w, h) = (f64::from(host.size.0), f64::from(host.size.1));
+    let t = host.context.time_s();
+    let wind = host.context.carrying_wind(t).unwrap();
+    let moved = host.context.wind_displacement(t).unwrap();
+    let eye = host.camera.position;
+    let mut allowed = vec![false; pixels.len()];
+    let size = host.size;
+    let mark = |allowed: &mut [bool], at: (f64, f64), reach: i32| {
+        for (x, y) in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (at.0 as i32 + x, at.1 as i32 + y))) {
+            if x >= 0 && y >= 0 && x < size.0 as i32 && y < size.1 as i32 {
+                allowed[(y as u32 * size.0 + x as u32) as usize] = true;
+            }
+        }
+    };
+    let (mut dry, mut drawn, mut suspects) = (0, 0, Vec::new());
+    let splashes = Splashes::new(classes);
+    let splash_velocity = wind - DVec3::Z * splashes.speed_m_s;
+    for at in splashes.landings(11, eye, t).map(|l| l.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0)) {
+        let tops = boxes.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
+        for z in tops.map(|b| b.center_m.z + b.half_size_m.z).chain([0.0]) {
+            let p = at + DVec3::Z * z;
+            let seen = clip * (p - eye).extend(1.0);
+            if seen.w > 0.1 && surely(boxes, p + DVec3::Z * 0.02, splash_velocity, slack_m) != Some(true) {
+                let at = ((seen.x / seen.w * 0.5 + 0.5) * w, (0.5 - seen.y / seen.w * 0.5) * h);
+                mark(&mut allowed, at, (w / seen.w * 0.03).ceil() as i32 + 3);
+            }
+        }
+    }
+    for drop in lattice::drops(classes, 11, eye, moved, t) {
+        let p = clip * drop.position_m.extend(1.0);
+        let ndc = DVec2::new(p.x, p.y) / p.w;
+        if drop.share <= 0.0 || p.w < 0.05 || ndc.abs().max_element() > 1.2 {
+            continue;
+        }
+        let speed = f64::from(classes.table[drop.id.1 as usize][1]) * lattice::SPEED_UNIT;
+        let free = surely(boxes, eye + drop.position_m, wind - DVec3::Z * speed, slack_m);
+        let at = ((ndc.x * 0.5 + 0.5) * w, (0.5 - ndc.y * 0.5) * h);
+        let range = cast(boxes, eye, drop.position_m.normalize()).unwrap_or(1e9);
+        let seen = drop.position_m.length() < range - 0.3;
+        if free == Some(true) {
+            dry += u32::from(seen && ndc.abs().max_element() < 1.0);
+            if seen {
+                suspects.push((at, drop));
+            }
+            continue;
+        }
+        if free == Some(false) && seen && drop.share > 0.3 && p.w > 0.5 && ndc.abs().max_element() < 0.98 {
+            let mut least = 1.0f64;
+            for (x, y) in (-2..=2).flat_map(|y| (-2..=2).map(move |x| (at.0 as i32 + x, at.1 as i32 + y))) {
+                if x >= 0 && y >= 0 && x < w as i32 && y < h as i32 {
+                    least = least.min(pixels[(y as u32 * host.size.0 + x as u32) as usize]);
+                }
+            }
+            assert!(least < 1.0 - 1e-4, "{what}: {:?} at {:?} is not drawn", drop.id, eye + drop.position_m);
+            drawn += 1;
+        }
+        mark(&mut allowed, at, (w / p.w * 0.03).ceil().min(w) as i32 + 3);
+    }
+    for (i, v) in pixels.iter().enumerate() {
+        if *v > 0.97 || allowed[i] {
+            continue;
+        }
+        let at = DVec2::new(f64::from(i as u32 % host.size.0), f64::from(i as u32 / host.size.0));
+        let who = suspects.iter().min_by(|a, b| {
+            let d = |s: &&((f64, f64), lattice::Drop)| (DVec2::new(s.0.0, s.0.1) - at).length();
+            d(a).total_cmp(&d(b))
+        });
+        panic!(
+            "{what}: pixel {at} is dark ({v}); nearest drop that is kept off: {:?}",
+            who.map(|(a, d)| (a, d.id, eye + d.position_m))
+        );
+    }
+    (dry, drawn)
+}
+
+#[test]
+fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
+    let mut host = white((480, 270));
+    // Few drops, with no splashes among them: what can be seen of them is their discs.
+    host.view.set_rain(RainSettings { shutter_s: 1e-3, most_drops: Some(4000), ..RainSettings::default() }).unwrap();
+    let side = (512, 512);
+    for (i, wind) in [0.0, 5.0, 12.0, 25.0].into_iter().enumerate() {
+        let t = 10.0 * (i + 1) as f64;
+        let weather = rain(10.0, wind);
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        host.context.update(t + 3.0).unwrap();
+        let classes = Classes::new(&derive(&weather).unwrap().precipitation, 1.0, 4000);
+        let eye = DVec3::new(0.5, -4.0, 1.7);
+        let fall = host.context.rain_at(eye, t + 3.0).unwrap().fall_velocity_m_s;
+        let half = 20.0;
+        let slack = 2.0 * (2.0 * half / f64::from(side.0));
+        let boxes = standing();
+        // Along the median drops, and along slower ones: what stands below a deck is hidden from one of them.
+        let falls = [fall.z, -3.4, -2.1].map(|z| DVec3::new(fall.x, fall.y, z).normalize());
+        let taken = falls.map(|f| Taken::parallel(DVec3::new(0.0, 4.0, 0.0) - f * 60.0, f, [half; 2], 120.0));
+        let textures = taken.map(|t| map(&host, &boxes, &t, side));
+        let maps = [0, 1, 2].map(|i| OccluderMap { depth: &textures[i], taken: taken[i] });
+        host.context.set_occluder_maps(&maps).unwrap();
+        let (mut dry, mut drawn) = (0, 0);
+        for (from, to) in [
+            (eye, DVec3::new(0.0, 13.0, 1.0)),
+            (eye, DVec3::new(6.0, 4.0, 0.5)),
+            (DVec3::new(0.0, 6.5, 2.0), DVec3::new(-8.0, 1.0, 1.0)),
+        ] {
+            host.look(from, to);
+            let (a, b) = check(&mut host, &boxes, &classes, slack, &format!("wind {wind}"));
+            (dry, drawn) = (dry + a, drawn + b);
+        }
+        println!("wind {wind}: {dry} drops kept off, {drawn} drawn");
+        assert!(dry > 30 && drawn > 30, "wind {wind}: {dry} {drawn}");
+    }
+}
