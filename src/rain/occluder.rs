@@ -115,7 +115,8 @@ impl Taken {
         let h = m.inverse() * DVec4::new(0.0, 0.0, near, 1.0);
         let origin_m = h.truncate() / h.w;
         if !(origin_m.is_finite() && origin_m.length() <= 1e12) {
-            return Err(bad());
+            let accepted = "one whose near plane lies within 1e12 m, of the depth's direction (reversed or not)";
+            return Err(Error::range("clip_from_world", accepted, m));
         }
         let local = m * DMat4::from_translation(origin_m);
         let camera = Camera { position: DVec3::ZERO, view: DMat4::IDENTITY, projection: local };
@@ -226,7 +227,7 @@ mod tests {
         for (bad, name) in [
             (Taken { clip_from_world: DMat4::ZERO, ..taken() }, "clip_from_world"),
             (Taken { clip_from_world: taken().clip_from_world * f64::NAN, ..taken() }, "clip_from_world"),
-            (Taken { clip_from_world: seen, reversed: false, ..taken() }, "depth"),
+            (Taken { clip_from_world: seen, reversed: false, ..taken() }, "reversed or not"),
             (Taken { velocity_m_s: DVec3::X * 3e3, ..taken() }, "velocity_m_s"),
             (Taken { time_s: f64::INFINITY, ..taken() }, "time_s"),
         ] {
