@@ -251,6 +251,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_RAIN_AREA 42
 /** wk_wind_grid */
 #define WK_STRUCT_TYPE_WIND_GRID 43
+/** wk_occluder_map */
+#define WK_STRUCT_TYPE_OCCLUDER_MAP 44
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -4052,6 +4054,106 @@ wk_status wk_context_set_wind_grid(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Maps of what keeps rain off
+ *
+ * What is more than some boxes is told as pictures: up to four depth images that the host takes of its world, standing or
+ * moving things, from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
+ *
+ * A map knows nothing of what its surfaces hide. Take it along wk_rainfall.fall_velocity_m_s: then nothing that matters is
+ * hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) a second map
+ * along the slowest drops, the same wind with a fall of 2 m/s, closes what is left. What it shows is exact to two texels.
+ *
+ * What a map shows is taken over during the call: what the host has submitted to the queue before counts as drawn (an OpenGL host has
+ * issued it), and afterwards the image is the host's again.
+ * ====================================================================================================
+ */
+
+/** Flags of a map. */
+typedef uint32_t wk_occluder_map_flags;
+
+/** Its depth is reversed: 1 is near, 0 is far. */
+#define WK_OCCLUDER_MAP_DEPTH_REVERSED 1
+/** The first row of the image lies at clip y = -1: always so in OpenGL (there it need not be set). */
+#define WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y 2
+
+/** A depth image of what keeps rain off: one sample, from 8 to 4096 texels along either side. */
+typedef struct wk_occluder_map {
+    /** sizeof(wk_occluder_map) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_OCCLUDER_MAP. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * From the host's world to clip space, invertible: parallel rays or perspective, column-major. Default identity.
+     */
+    double clip_from_world[16];
+    /** Default 0. */
+    wk_occluder_map_flags flags;
+    /** Default WK_CLIP_ZERO_TO_ONE. */
+    wk_clip_space clip_space;
+    /** Simulation time of what it shows, s. Default 0. */
+    double time_s;
+    /**
+     * Velocity of what it shows, m/s, at most 2000 in all: a truck's own map need not be taken anew each frame. Default 0, 0,
+     * 0.
+     */
+    double velocity_m_s[3];
+    /** The image on an own device. Default NULL. */
+    const wk_texture *texture;
+    /** The image of a Vulkan host. Default NULL. */
+    const wk_vulkan_image *vulkan;
+    /** The image of an OpenGL host: a depth texture or renderbuffer. Default none. */
+    wk_opengl_image opengl;
+    /** Texels of an OpenGL host's image; must be its own. Default 0. */
+    uint32_t width;
+    /** Texels of an OpenGL host's image; must be its own. Default 0. */
+    uint32_t height;
+    /** Of an OpenGL host's image: raise it when an object is made anew under an old name. Default 0. */
+    uint64_t generation;
+} wk_occluder_map;
+
+/** Every field of `wk_occluder_map` at its default. */
+#define WK_OCCLUDER_MAP_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_occluder_map), \
+    /* struct_type */ WK_STRUCT_TYPE_OCCLUDER_MAP, \
+    /* next */ NULL, \
+    /* clip_from_world */ { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0 }, \
+    /* flags */ 0, \
+    /* clip_space */ WK_CLIP_ZERO_TO_ONE, \
+    /* time_s */ 0.0, \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* texture */ NULL, \
+    /* vulkan */ NULL, \
+    /* opengl */ WK_OPENGL_IMAGE_INIT, \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* generation */ UINT64_C(0) \
+}
+
+/**
+ * Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
+ * after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
+ * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
+ */
+WK_API
+wk_status wk_context_set_occluder_maps(wk_context *context,
+                                       const wk_occluder_map *maps,
+                                       uint32_t count,
+                                       uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_OCCLUDER_MAP_INIT`. `struct_size` is `sizeof(wk_occluder_map)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_occluder_map_init(wk_occluder_map *out,
+                               uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -6,7 +6,7 @@ use crate::{
     error::Result,
     fog::{FogKind, FogModel, reference::layer_depth_above},
     ground::{GroundUniform, Seen},
-    rain::{Told, lattice::REACH_M},
+    rain::{Told, cones::BANDS_M, lattice, splash},
     scene::WorldKind,
 };
 
@@ -85,7 +85,7 @@ pub(super) fn around<'a>(
         time_s: context.time_s(),
         wind_m_s: context.carrying_wind(context.time_s())?,
         slowest_m_s,
-        reach_m: REACH_M,
+        reach_m: BANDS_M.into_iter().fold(lattice::REACH_M.max(splash::REACH_M), f64::max),
         exposure,
     })
 }

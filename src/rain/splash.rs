@@ -13,6 +13,8 @@ const SIDE_M: f64 = 0.5;
 const CELLS: u32 = 40;
 /// Time that a crown stands, s: some milliseconds per millimetre of drop, and its droplets' flight.
 pub const LIFE_S: f64 = 0.08;
+/// Distance at which splashes have faded, m.
+pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
 /// Most slots of a cell.
 const MOST_SLOTS: u32 = 8;
 /// Drops below this diameter make no crown that could be seen, mm.
@@ -133,7 +135,7 @@ impl Splashes {
             diameter: (self.diameter_mm * 1e-3) as f32,
             speed: self.speed_m_s as f32,
             ground: -height_m as f32,
-            reach: (0.5 * SIDE_M * f64::from(CELLS)) as f32,
+            reach: REACH_M as f32,
             pad: 0.0,
         }
     }

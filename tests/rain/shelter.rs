@@ -29,13 +29,6 @@ pub fn standing() -> Vec<Shelter> {
     all
 }
 
-/// A truck: bed, cab.
-pub fn truck(at: DVec3, velocity_m_s: DVec3) -> Vec<Shelter> {
-    [([0.0, 0.0, 0.9], [1.2, 2.6, 0.3]), ([0.0, 2.1, 2.0], [1.2, 0.8, 1.0])]
-        .map(|(c, h)| Shelter { velocity_m_s, ..upright((at + DVec3::from(c)).to_array(), h) })
-        .to_vec()
-}
-
 /// Distance along a ray to the boxes or the ground.
 pub fn cast(boxes: &[Shelter], eye: DVec3, d: DVec3) -> Option<f64> {
     let mut best = (d.z < -1e-9).then(|| -eye.z / d.z).filter(|t| *t > 0.0);
@@ -148,8 +141,10 @@ fn check(host: &mut Host, boxes: &[Shelter], classes: &Classes, slack_m: f64, wh
     let splashes = Splashes::new(classes);
     let splash_velocity = wind - DVec3::Z * splashes.speed_m_s;
     for at in splashes.landings(11, eye, t).map(|l| l.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0)) {
-        let tops = boxes.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
-        for z in tops.map(|b| b.center_m.z + b.half_size_m.z).chain([0.0]) {
+        let near = boxes.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
+        // On tops, and where a side is all that the picture shows.
+        let heights = near.flat_map(|b| (0..=20).map(|i| b.center_m.z + b.half_size_m.z * (0.1 * f64::from(i) - 1.0)));
+        for z in heights.chain([0.0]) {
             let p = at + DVec3::Z * z;
             let seen = clip * (p - eye).extend(1.0);
             if seen.w > 0.1 && surely(boxes, p + DVec3::Z * 0.02, splash_velocity, slack_m) != Some(true) {
@@ -241,4 +236,80 @@ fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
         println!("wind {wind}: {dry} drops kept off, {drawn} drawn");
         assert!(dry > 30 && drawn > 30, "wind {wind}: {dry} {drawn}");
     }
+}
+
+#[test]
+fn a_cab_that_drives_stays_dry_inside() {
+    let mut host = white((320, 180));
+    let speed = DVec3::Y * 25.0;
+    let (mut seen, mut t) = (0, 10.0);
+    host.context.set_weather(&rain(60.0, 8.0), t, 0.0).unwrap();
+    for k in 0..4 {
+        t += 0.37;
+        host.context.update(t).unwrap();
+        let eye = DVec3::Y * (25.0 * t) + DVec3::new(0.0, 0.0, 2.0);
+        host.look(eye, DVec3::new(0.1 * f64::from(k), 1.0, -0.1));
+        host.velocity_m_s = speed;
+        let cab = Shelter { velocity_m_s: speed, ..upright(eye.to_array(), [1.5, 1.9, 1.5]) };
+        host.context.set_shelters(&[cab]).unwrap();
+        // Walls of the cab, open to the front.
+        let wall = |c: [f64; 3], h: [f64; 3]| upright((eye + DVec3::from(c)).to_array(), h);
+        let walls = [
+            wall([0.0, 0.0, -1.15], [1.3, 1.6, 0.05]),
+            wall([-1.25, 0.0, -0.6], [0.05, 1.6, 0.6]),
+            wall([1.25, 0.0, -0.6], [0.05, 1.6, 0.6]),
+            wall([0.0, 1.55, -0.75], [1.2, 0.05, 0.4]),
+        ];
+        let pixels = through(&mut host, &walls);
+        for (i, v) in pixels.iter().enumerate() {
+            let at = DVec2::new(f64::from(i as u32 % 320) + 0.5, f64::from(i as u32 / 320) + 0.5);
+            let ndc = DVec2::new(at.x / 160.0 - 1.0, 1.0 - at.y / 90.0);
+            let inside = host.cast(ndc).is_some_and(|(p, _)| p.abs().cmplt(DVec3::new(1.3, 1.65, 1.25)).all());
+            assert!(!inside || *v == 1.0, "{at}: {v}");
+            seen += u32::from(!inside && *v < 0.99);
+        }
+    }
+    assert!(seen > 200, "it rains outside: {seen}");
+}
+
+#[test]
+fn what_is_no_map_is_named_and_the_maps_before_stay() {
+    let mut host = white((160, 90));
+    host.context.set_weather(&rain(60.0, 3.0), 10.0, 0.0).unwrap();
+    host.context.update(11.0).unwrap();
+    let roof = [upright([0.0, 0.0, 6.0], [40.0, 40.0, 0.2])];
+    let taken = Taken::parallel(DVec3::new(0.0, 0.0, 30.0), DVec3::NEG_Z, [38.0; 2], 60.0);
+    let good = map(&host, &roof, &taken, (256, 256));
+    let one = OccluderMap { depth: &good, taken };
+    let open = through(&mut host, &[]);
+    host.context.set_occluder_maps(&[one]).unwrap();
+    let kept = through(&mut host, &[]);
+    assert!(open.iter().any(|v| *v < 0.99) && kept.iter().all(|v| *v == 1.0), "the map keeps the rain off");
+    let texture = |w: u32, format| {
+        host.device.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: w, height: w, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+    };
+    let colour = texture(64, wgpu::TextureFormat::Rgba8Unorm);
+    let small = texture(4, wgpu::TextureFormat::R32Float);
+    let no_number = Taken { clip_from_world: taken.clip_from_world * f64::NAN, ..taken };
+    for (maps, name) in [
+        (vec![one; 5], "at most 4"),
+        (vec![one, OccluderMap { depth: &colour, taken }], "maps[1].depth format Rgba8Unorm"),
+        (vec![OccluderMap { depth: &small, taken }], "maps[0].depth.width"),
+        (vec![one, one, OccluderMap { depth: &good, taken: no_number }], "maps[2].clip_from_world"),
+    ] {
+        let e = host.context.set_occluder_maps(&maps).unwrap_err();
+        assert!(e.message.contains(name), "{}", e.message);
+        assert_eq!(through(&mut host, &[]), kept, "the map before stays: {name}");
+    }
+    host.context.set_occluder_maps(&[]).unwrap();
+    assert!(through(&mut host, &[]).iter().any(|v| *v < 0.99), "it rains again");
 }
