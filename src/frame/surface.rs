@@ -6,7 +6,7 @@ use crate::{
     error::Result,
     fog::{FogKind, FogModel, reference::layer_depth_above},
     ground::{GroundUniform, Seen},
-    rain::{Told, cones::BANDS_M, lattice, splash},
+    rain::Told,
     scene::WorldKind,
 };
 
@@ -68,13 +68,14 @@ pub(super) fn uniform(
     Ok(seen.uniform())
 }
 
-/// What the host has told of the world round the camera; `(slowest, exposure)`: the slowest drops' speed, m/s, and what
-/// the drops are exposed by.
+/// What the host has told of the world round the camera. `near`: fall speed of the slowest of what is drawn, m/s, and how
+/// far off any of it is, m; `exposure`: what it is exposed by.
 pub(super) fn around<'a>(
     context: &'a Context,
     scene: &Scene,
     frame: &Frame<'_>,
-    (slowest_m_s, exposure): (f64, f64),
+    near: (f64, f64),
+    exposure: f64,
 ) -> Result<Told<'a>> {
     Ok(Told {
         shelters: context.shelters(),
@@ -84,8 +85,8 @@ pub(super) fn around<'a>(
         to_enu: scene.world_to_enu,
         time_s: context.time_s(),
         wind_m_s: context.carrying_wind(context.time_s())?,
-        slowest_m_s,
-        reach_m: BANDS_M.into_iter().fold(lattice::REACH_M.max(splash::REACH_M), f64::max),
+        slowest_m_s: near.0,
+        reach_m: near.1,
         exposure,
     })
 }

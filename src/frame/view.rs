@@ -370,8 +370,8 @@ impl View {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
         }
         if variant.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            let slowest_m_s = self.rain.slowest_m_s(&self.device, scene);
-            let told = surface::around(context, scene, frame, (slowest_m_s, exposure))?;
+            let near = self.rain.slowest_and_reach(&self.device, scene);
+            let told = surface::around(context, scene, frame, near, exposure)?;
             self.around.follow(&self.device, &told);
             if variant.stages.has(Stages::SURFACE) {
                 variant.around = told.present();
