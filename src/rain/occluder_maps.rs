@@ -107,10 +107,11 @@ fn pipeline(
 /// Where maps of these sizes lie in a table: two beside each other and two below, and how large it is.
 fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
     let up = |v: u32| v.next_multiple_of(64);
-    let most = |axis: usize, which: fn(usize) -> usize, n: usize| {
+    type Line = fn(usize) -> usize;
+    let most = |axis: usize, which: Line, n: usize| {
         sizes.iter().enumerate().filter(|(i, _)| which(*i) == n).map(|(_, s)| up(s[axis])).max().unwrap_or(0)
     };
-    let (column, row): (fn(usize) -> usize, fn(usize) -> usize) = (|i| i % 2, |i| i / 2);
+    let (column, row): (Line, Line) = (|i| i % 2, |i| i / 2);
     let (wide, high) = (most(0, column, 0), most(1, row, 0));
     let places = (0..sizes.len()).map(|i| [column(i) as u32 * wide, row(i) as u32 * high]).collect();
     (places, [wide + most(0, column, 1), high + most(1, row, 1)])

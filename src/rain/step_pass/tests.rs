@@ -50,7 +50,7 @@ impl Bench {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: STARTS[6] as u64,
+            size: STARTS[4] as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
