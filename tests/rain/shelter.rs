@@ -4,6 +4,7 @@ use glam::{DMat4, DVec2, DVec3};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
+    gpu::{Device, DeviceOptions},
     rain::{Classes, OccluderMap, RainSettings, Shelter, Taken, lattice, shelter::sheltered, splash::Splashes},
     scene::{Camera, DepthKind, DepthMapping, ViewRays},
     weather::derive,
@@ -312,4 +313,27 @@ fn what_is_no_map_is_named_and_the_maps_before_stay() {
     }
     host.context.set_occluder_maps(&[]).unwrap();
     assert!(through(&mut host, &[]).iter().any(|v| *v < 0.99), "it rains again");
+}
+
+/// On OpenGL as on Vulkan, without compute shaders: a map over half of the place keeps that half of the picture dry.
+#[test]
+fn maps_keep_rain_off_on_both_drivers() {
+    for backends in [DeviceOptions::default().backends, wgpu::Backends::GL] {
+        let options = DeviceOptions { backends, force_tier0: true, ..DeviceOptions::default() };
+        let mut host = Host::on(Device::headless(&options).unwrap(), (160, 90));
+        host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+        host.context.set_weather(&rain(100.0, 0.0), 10.0, 0.0).unwrap();
+        host.context.update(11.0).unwrap();
+        let west = [upright([-20.0, 0.0, 6.0], [20.0, 40.0, 0.2])];
+        let taken = Taken::parallel(DVec3::new(0.0, 0.0, 30.0), DVec3::NEG_Z, [42.0; 2], 60.0);
+        let depth = map(&host, &west, &taken, (512, 512));
+        host.context.set_occluder_maps(&[OccluderMap { depth: &depth, taken }]).unwrap();
+        let pixels = through(&mut host, &[]);
+        let dark = |columns: std::ops::Range<usize>| {
+            pixels.iter().enumerate().filter(|(i, v)| columns.contains(&(i % 160)) && **v < 0.99).count()
+        };
+        // Two texels are 0.33 m: some columns in the middle may see either.
+        let (dry, wet) = (dark(0..40), dark(120..160));
+        assert!(dry == 0 && wet > 50, "{backends:?}: {dry} {wet}");
+    }
 }
