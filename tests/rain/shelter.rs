@@ -5,7 +5,12 @@ use welkin::{
     context::GivenDirection,
     frame::Stages,
     gpu::{Device, DeviceOptions},
-    rain::{Classes, OccluderMap, RainSettings, Shelter, Taken, lattice, shelter::sheltered, splash::Splashes},
+    rain::{
+        Classes, OccluderMap, RainSettings, Shelter, Taken, drops, lattice,
+        shelter::sheltered,
+        sizes::{DropSizes, SMALLEST_MM, Weight},
+        splash::{self, Splashes},
+    },
     scene::{Camera, DepthKind, DepthMapping, ViewRays},
     weather::derive,
 };
@@ -335,5 +340,99 @@ fn maps_keep_rain_off_on_both_drivers() {
         // Two texels are 0.33 m: some columns in the middle may see either.
         let (dry, wet) = (dark(0..40), dark(120..160));
         assert!(dry == 0 && wet > 50, "{backends:?}: {dry} {wet}");
+    }
+}
+
+/// Drops few enough to be told apart.
+fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
+    host.view.set_rain(RainSettings { shutter_s: 1e-3, most_drops: Some(4000), ..RainSettings::default() }).unwrap();
+    let weather = rain(rate, wind);
+    host.context.set_weather(&weather, t, 0.0).unwrap();
+    host.context.update(t + 3.0).unwrap();
+    Classes::new(&derive(&weather).unwrap().precipitation, 1.0, 4000)
+}
+
+#[test]
+fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
+    let mut host = white((480, 270));
+    let classes = few(&mut host, 3.0, 0.0, 10.0);
+    host.view.set_rain(RainSettings { shutter_s: 1e-4, most_drops: Some(1000), ..RainSettings::default() }).unwrap();
+    let splashes = Splashes::new(&classes);
+    let eye = DVec3::new(0.2, 0.3, 2.0);
+    host.look(eye, DVec3::new(0.0, 1.0, -0.8));
+    let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
+    let flux: f64 = classes.flux.iter().filter(|f| f.0 >= splash::LEAST_MM).map(|f| f.2).sum();
+    assert!(
+        (splashes.drawn_per_m2_s / flux - 1.0).abs() < 1e-9 && splashes.left_out_per_m2_s == 0.0,
+        "{} {flux} {}",
+        splashes.drawn_per_m2_s,
+        splashes.left_out_per_m2_s
+    );
+    let (mut standing, mut visible, mut found) = (0.0, 0u32, 0u32);
+    let times = 12;
+    for k in 0..times {
+        // Far apart: no splash is counted twice.
+        let t = 20.0 + 0.31 * f64::from(k);
+        host.context.update(t).unwrap();
+        let pixels = through(&mut host, &[]);
+        for l in splashes.landings(11, eye, t).filter(|l| l.xy_m.abs().max_element() < 4.0) {
+            standing += 1.0;
+            let p = clip * l.xy_m.extend(-eye.z).extend(1.0);
+            let at = DVec2::new((p.x / p.w * 0.5 + 0.5) * 480.0, (0.5 - p.y / p.w * 0.5) * 270.0);
+            if l.age < 0.6 && at.cmpgt(DVec2::splat(4.0)).all() && at.cmplt(DVec2::new(476.0, 266.0)).all() {
+                visible += 1;
+                let near = (-2..=2).flat_map(|y| (-2..=2).map(move |x| (at.x as i32 + x, at.y as i32 + y)));
+                let least = near.map(|(x, y)| pixels[(y * 480 + x) as usize]).fold(1.0, f64::min);
+                found += u32::from(least < 0.999);
+            }
+        }
+    }
+    // Counting error of 64 m^2 at twelve times.
+    let want = flux * splash::LIFE_S * 64.0 * f64::from(times);
+    println!("{standing} splashes stand, flux x area says {want:.0}; {found} of {visible} are seen");
+    assert!((standing - want).abs() < 4.0 * want.sqrt(), "{standing} {want}");
+    assert!(visible > 100 && f64::from(found) > 0.97 * f64::from(visible), "{found} of {visible}");
+}
+
+#[test]
+fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
+    let mut host = Host::new((320, 180));
+    let deck = [upright([0.0, 0.0, 5.2], [12.0, 3.0, 0.4])];
+    for (i, wind) in [3.0, 5.0].into_iter().enumerate() {
+        let t = 10.0 * (i + 1) as f64;
+        let mut weather = rain(10.0, wind);
+        weather.wind.from_deg = 180.0;
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        host.context.update(t + 1.0).unwrap();
+        let c = derive(&weather).unwrap();
+        let sizes = DropSizes::new(&c.precipitation, drops::factor_in(&c.air, 30.0));
+        let thirds = sizes.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]);
+        let air = host.context.carrying_wind(t + 1.0).unwrap();
+        let falls = thirds.map(|d| air - DVec3::Z * sizes.speed_m_s(d));
+        let taken = falls.map(|f| Taken::parallel(-f.normalize() * 60.0, f, [16.0; 2], 120.0));
+        let textures = taken.map(|k| map(&host, &deck, &k, (512, 512)));
+        let maps = [0, 1, 2].map(|k| OccluderMap { depth: &textures[k], taken: taken[k] });
+        host.context.set_occluder_maps(&maps).unwrap();
+        // Straight down on the ground; the deck itself is not in the picture.
+        host.look(DVec3::new(0.0, 6.0, 30.0), DVec3::new(0.0, 1e-3, -1.0));
+        host.draw(|_, _| [500.0; 3]);
+        host.record(Stages::PREPARE.with(Stages::SURFACE)).unwrap();
+        let pixels = host.pixels();
+        let (mut dry, mut want, mut wedge, mut below) = (0u32, 0u32, 0u32, 0u32);
+        for (i, p) in pixels.iter().enumerate() {
+            let at = DVec2::new(f64::from(i as u32 % 320) + 0.5, f64::from(i as u32 / 320) + 0.5);
+            let (at, _) = host.cast(DVec2::new(at.x / 160.0 - 1.0, 1.0 - at.y / 90.0)).unwrap();
+            let at = at + host.camera.position;
+            let kept = (p[1] - 500.0).abs() < 0.5;
+            let truth = falls.iter().all(|v| sheltered(&deck[0], at, *v));
+            (dry, want) = (dry + u32::from(kept), want + u32::from(truth));
+            // The wet wedge lies below the deck, on its windward side.
+            let under = at.x.abs() < 11.5 && at.y.abs() < 3.0;
+            (wedge, below) = (wedge + u32::from(under && !kept), below + u32::from(under && !truth));
+        }
+        println!("wind {wind}: dry {dry} of {want} pixels, wet wedge {wedge} of {below}");
+        assert!(below > 200 && want > 200, "{below} {want}");
+        assert!((f64::from(dry) / f64::from(want) - 1.0).abs() < 0.05, "wind {wind}: dry {dry} {want}");
+        assert!((f64::from(wedge) / f64::from(below) - 1.0).abs() < 0.05, "wind {wind}: wedge {wedge} {below}");
     }
 }
