@@ -155,6 +155,24 @@ pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
     check_usage("mask", texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
+/// A texture like the host's colour, to read while the host's is written.
+pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
+    let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    if color.sample_count() > 1 {
+        usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
+    }
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("color copy"),
+        size: color.size(),
+        mip_level_count: 1,
+        sample_count: color.sample_count(),
+        dimension: wgpu::TextureDimension::D2,
+        format: color.format(),
+        usage,
+        view_formats: &[],
+    })
+}
+
 fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages) -> Result<()> {
     if texture.usage().contains(needed) {
         return Ok(());

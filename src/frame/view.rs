@@ -15,7 +15,7 @@ use super::{
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Stages, check_color, check_depth, check_mask},
+    target::{ColorSpace, Stages, check_color, check_depth, check_mask, color_copy},
     uniform::{FrameUniform, is_float, uniform},
 };
 use crate::{
@@ -490,22 +490,4 @@ fn effect_of(stages: Stages) -> Effect {
         Stages::TONE => Effect::Tone,
         _ => Effect::Composition,
     }
-}
-
-/// A texture like the host's colour, to read while the host's is written.
-fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
-    let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    if color.sample_count() > 1 {
-        usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
-    }
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("color copy"),
-        size: color.size(),
-        mip_level_count: 1,
-        sample_count: color.sample_count(),
-        dimension: wgpu::TextureDimension::D2,
-        format: color.format(),
-        usage,
-        view_formats: &[],
-    })
 }
