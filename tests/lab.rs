@@ -23,6 +23,8 @@ mod picture;
 mod plot;
 #[path = "../examples/lab/quadrature.rs"]
 mod quadrature;
+#[path = "../examples/lab/rain.rs"]
+mod rain;
 #[path = "../examples/lab/report.rs"]
 mod report;
 #[path = "../examples/lab/scenes.rs"]

@@ -5,17 +5,18 @@ use std::sync::Arc;
 use welkin::Result;
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::plan::front::pareto;
-use welkin::plan::{Candidate, Difference, Effect, Price, candidates, difference};
+use welkin::plan::{Candidate, Difference, Effect, Method, Price, candidates, difference, difference::percentile};
+use welkin::rain::{RainModel, RainSettings, candidates::RainMethod};
 
 use crate::command::Options;
 use crate::picture::{Figures, Picture};
 use crate::plot::{Point, Titles, scatter, short};
 use crate::store::{Journal, Table};
 use crate::timing::{Baseline, Ratio, interleaved};
-use crate::{fog, page, quadrature, scenes, sky};
+use crate::{fog, page, quadrature, rain, scenes, sky};
 
 /// What can be charted.
-pub const CHARTS: [&str; 3] = ["sky", "fog", "quadrature"];
+pub const CHARTS: [&str; 4] = ["sky", "fog", "rain", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -82,6 +83,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
     match what {
         "sky" => sky_chart(&lab, options)?,
         "fog" => fog_chart(&lab, options)?,
+        "rain" => rain_chart(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }
     page::write(&options.out)
@@ -281,6 +283,99 @@ fn fog_chart(lab: &Lab, options: &Options) -> Result<()> {
         ),
     };
     plot(&table, "cost", &titles, &options.out.join("fog"))
+}
+
+fn rain_chart(lab: &Lab, options: &Options) -> Result<()> {
+    let list = scenes::rain();
+    let names: Vec<String> = list.iter().map(|s| format!("p95_{}", s.name)).collect();
+    let columns: Vec<&str> =
+        COLUMNS.iter().copied().chain(names.iter().map(String::as_str)).chain(["units", "date"]).collect();
+    let mut journal = Journal::open(&options.out, "rain", &lab.note("rain", options), &columns, options.fresh)?;
+    let all = candidates(Effect::Rain);
+    if all.iter().all(|c| journal.has(c.name)) && journal.has("truth-again") {
+        return rain_plots(journal, options, list.len());
+    }
+    let mut hosts = list.iter().map(|s| rain::Host::new(&lab.device, s, rain::SIZE)).collect::<Result<Vec<_>>>()?;
+    let mut truths = Vec::new();
+    for (host, scene) in hosts.iter_mut().zip(&list) {
+        eprintln!("  truth of {} ..", scene.name);
+        truths.push(host.truth(1)?);
+    }
+    // Timed in steady rain and in a cloudburst.
+    let mut timed =
+        [1, 3].map(|i| rain::Host::new(&lab.device, &list[i], (640, 360))).into_iter().collect::<Result<Vec<_>>>()?;
+    let mut cost = |settings: RainSettings| {
+        timed.iter_mut().try_for_each(|h| h.set(settings))?;
+        interleaved(&lab.baseline, lab.rounds, |_| timed.iter_mut().map(rain::Host::timed).sum())
+    };
+    for (i, c) in all.iter().enumerate() {
+        if journal.has(c.name) {
+            continue;
+        }
+        eprintln!("  {}/{} {} ..", i + 1, all.len(), c.name);
+        let Method::Rain(method) = c.method else { continue };
+        let mut blocks = Vec::new();
+        for host in &mut hosts {
+            blocks.push(match method {
+                RainMethod::Offered(settings) => host.blocks(settings)?,
+                RainMethod::Source(lod) => host.source(&lod)?,
+            });
+        }
+        let settings = match method {
+            RainMethod::Offered(settings) => settings,
+            // As many quads as it draws.
+            RainMethod::Source(lod) => {
+                RainSettings { model: RainModel::Drops, most_drops: Some(lod.drawn()), ..RainSettings::default() }
+            }
+        };
+        let units = format!("{:.4e}", c.work.frame(640 * 360, true).at(&Price::default()));
+        journal.push(rain_row(c.name, c.is_default(), &cost(settings)?, (&blocks, &truths), units)?)?;
+    }
+    if !journal.has("truth-again") {
+        // How far all drops are from all drops elsewhere: less cannot be asked.
+        let again = hosts.iter_mut().map(|h| Ok(h.truth(2)?.0)).collect::<Result<Vec<_>>>()?;
+        journal.push(rain_row("truth-again", false, &Ratio::default(), (&again, &truths), "0".into())?)?;
+    }
+    rain_plots(journal, options, list.len())
+}
+
+fn rain_row(
+    name: &str,
+    default: bool,
+    cost: &Ratio,
+    (drawn, truths): (&[rain::Blocks], &[(rain::Blocks, f64)]),
+    units: String,
+) -> Result<Vec<String>> {
+    let (mut all, mut each) = (Vec::new(), Vec::new());
+    for (blocks, (truth, white)) in drawn.iter().zip(truths) {
+        let mut errors = blocks.errors(truth, *white);
+        errors.sort_by(f64::total_cmp);
+        each.push(format!("{:.6e}", percentile(&errors, 0.95)));
+        all.extend(errors);
+    }
+    all.sort_by(f64::total_cmp);
+    let at = |share| percentile(&all, share);
+    let error = Difference { median: at(0.5), p95: at(0.95), worst: at(1.0) };
+    let end = name.find('-').unwrap_or(name.len());
+    let mut row = first_fields(name, &name[..end], default, cost, &error);
+    row.extend(each);
+    row.extend([units, today()]);
+    Ok(row)
+}
+
+fn rain_plots(journal: Journal, options: &Options, scenes: usize) -> Result<()> {
+    let (mut table, old) = journal.finish()?;
+    say_what_moved(&table, old.as_ref());
+    let titles = Titles {
+        title: "Rain: what a frame costs against how far it is from all drops drawn",
+        x: "cost of fog and rain in steady rain and in a cloudburst, 640x360, over the baseline's",
+        y: "95th percentile of the relative error of blocks: mean, and contrast of two sizes",
+        note: &format!(
+            "{scenes} scenes from light rain to head lights at night; line: nothing is both cheaper and better"
+        ),
+    };
+    table.rows.retain(|r| r[0] != "truth-again");
+    plot(&table, "cost", &titles, &options.out.join("rain"))
 }
 
 /// The points of a table: cost by the column `cost` with its quarters.

@@ -7,7 +7,7 @@ use welkin::{Error, Result, Status};
 
 use crate::{chart, compare, growth, report, stability};
 
-const USAGE: &str = "usage: lab chart [sky|fog|quadrature]    cost against error, with plots
+const USAGE: &str = "usage: lab chart [sky|fog|rain|quadrature]    cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
        lab compare A B [--scene NAME]     two candidates' pictures side by side
@@ -64,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let (words, options) = parse(arguments)?;
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["chart"] => ["quadrature", "fog", "sky"].iter().try_for_each(|c| chart::run(c, &options)),
+        ["chart"] => ["quadrature", "fog", "rain", "sky"].iter().try_for_each(|c| chart::run(c, &options)),
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
         ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
         ["growth"] => growth::run(&options),

@@ -8,6 +8,7 @@ use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::Device;
 use welkin::plan::front::growth;
 use welkin::plan::{Effect, Method, candidate};
+use welkin::rain::{RainModel, RainSettings};
 use welkin::scene::Camera;
 use welkin::sky::{SkySettings, SkyTables, SkyVolume};
 use welkin::weather::{CloudLayer, Weather, derive};
@@ -18,7 +19,7 @@ use crate::command::Options;
 use crate::plot::{Line, Titles, lines, short};
 use crate::store::{Journal, Table};
 use crate::timing::{interleaved, target, timed};
-use crate::{fog, page, scenes, sky};
+use crate::{fog, page, rain, scenes, sky};
 
 /// Exponents above this are named: linear with the fit's own error.
 pub const LINEAR: f64 = 1.1;
@@ -40,6 +41,7 @@ pub fn run(options: &Options) -> Result<()> {
     sky_tables(&mut series)?;
     views(&mut series)?;
     clouds(&mut series)?;
+    drops(&mut series)?;
     let (table, old) = series.journal.finish()?;
     say_what_moved(&table, old.as_ref());
     draw(&table, options)?;
@@ -227,6 +229,20 @@ fn clouds(series: &mut Series<'_>) -> Result<()> {
                 Ok(start.elapsed().as_secs_f64() * 1e3)
             };
             Ok((work, 0.0))
+        })?;
+    }
+    Ok(())
+}
+
+/// Drops of rain that are drawn: in a cloudburst, of which there are more than that.
+fn drops(series: &mut Series<'_>) -> Result<()> {
+    let scene = scenes::RainScene { rate_mm_h: 400.0, ..scenes::rain()[3] };
+    for count in [50_000u32, 100_000, 200_000, 400_000, 800_000] {
+        let device = series.lab.device.clone();
+        series.point(("rain", "drops", f64::from(count)), || {
+            let mut host = rain::Host::new(&device, &scene, (320, 180))?;
+            host.set(RainSettings { model: RainModel::Drops, most_drops: Some(count), ..RainSettings::default() })?;
+            Ok((move |_: usize| host.timed(), 0.0))
         })?;
     }
     Ok(())

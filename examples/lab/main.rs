@@ -13,6 +13,7 @@ mod page;
 mod picture;
 mod plot;
 mod quadrature;
+mod rain;
 mod report;
 mod scenes;
 mod sky;

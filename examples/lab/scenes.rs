@@ -117,6 +117,43 @@ pub fn fog() -> Vec<FogScene> {
     ]
 }
 
+/// A camera 12 m above ground before a wall, half dark and half light, with sky above it, under rain.
+#[derive(Clone, Copy, Debug)]
+pub struct RainScene {
+    pub name: &'static str,
+    pub rate_mm_h: f64,
+    pub wind_m_s: f64,
+    pub driving_m_s: f64,
+    pub sun_deg: f64,
+    /// From north, which is ahead.
+    pub sun_azimuth_deg: f64,
+    /// Two head lights beside the camera.
+    pub lamps: bool,
+}
+
+/// From a drizzle's rate to a cloudburst's, from noon to a night with head lights.
+pub fn rain() -> Vec<RainScene> {
+    let scene = |name, rate_mm_h, wind_m_s, driving_m_s| RainScene {
+        name,
+        rate_mm_h,
+        wind_m_s,
+        driving_m_s,
+        sun_deg: 40.0,
+        sun_azimuth_deg: 140.0,
+        lamps: false,
+    };
+    vec![
+        scene("light", 1.0, 2.0, 0.0),
+        scene("steady", 6.0, 5.0, 0.0),
+        scene("shower", 25.0, 8.0, 0.0),
+        scene("cloudburst", 100.0, 5.0, 0.0),
+        scene("driving", 10.0, 5.0, 25.0),
+        scene("storm", 25.0, 20.0, 0.0),
+        RainScene { sun_deg: 12.0, sun_azimuth_deg: 10.0, ..scene("towards-the-sun", 6.0, 3.0, 0.0) },
+        RainScene { sun_deg: -20.0, lamps: true, ..scene("head-lights", 10.0, 3.0, 0.0) },
+    ]
+}
+
 /// A scene's index by name.
 ///
 /// # Errors

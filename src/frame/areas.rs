@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{Shared, rain::light};
+use super::Shared;
 use crate::{
     context::Scene,
     error::Result,
     gpu::Device,
-    rain::{AreaField, BELOW_M, Column, ColumnUniform, MAX_AREAS, WAVES},
+    rain::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS, WAVES},
     sky::SkyVolume,
 };
 
@@ -146,7 +146,7 @@ impl Columns<'_> {
             *to = column.uniform();
         }
         // The pass puts the exposure on.
-        let light = light(self.scene, 1.0);
+        let light = DropLight::of(self.scene);
         let v = |d: DVec3| d.as_vec3().to_array();
         let s = &mut blocks.shaft;
         (s.above, s.below, s.sun, s.to_sun) = (v(light.above), v(light.below), v(light.sun), v(light.to_sun));

@@ -1,6 +1,6 @@
 //! The rain of a view: what it draws of what falls, from scene and camera.
 
-use std::{f64::consts::PI, sync::Arc};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
@@ -224,7 +224,7 @@ impl Rain {
             time_s: context.time_s(),
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
-        let block = RainUniform::new(context.seed(), &classes, &light(scene, exposure), &shot, &air);
+        let block = RainUniform::new(context.seed(), &classes, &DropLight::of(scene).exposed(exposure), &shot, &air);
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
@@ -259,21 +259,5 @@ impl Rain {
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
         Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 } + stones.map_or(0, |s| s.drawn))
-    }
-}
-
-/// What a drop passes on: the mean of the sky and of the ground it hangs over, and sun or moon.
-pub(super) fn light(scene: &Scene, exposure: f64) -> DropLight {
-    let light = scene.brighter();
-    let g = &scene.ground;
-    let lux = if light == &scene.sun { g.sun_lux } else { g.moon_lux };
-    let level = light.direction.z.max(0.0);
-    let albedo = scene.planet.ground_albedo;
-    let below = [0, 1, 2].map(|i| albedo[i] * (g.sky_lux[i] + lux[i] * level) / PI);
-    DropLight {
-        above: DVec3::from(g.sky_lux) * (exposure / PI),
-        below: DVec3::from(below) * exposure,
-        sun: DVec3::from(lux) * exposure,
-        to_sun: light.direction,
     }
 }

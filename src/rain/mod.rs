@@ -16,6 +16,7 @@ pub mod drops;
 pub mod ice;
 pub mod integrated;
 pub mod lattice;
+pub mod light;
 mod local;
 mod occluder;
 mod occluder_maps;
@@ -34,6 +35,7 @@ mod uniforms;
 
 pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
 pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
+pub use light::DropLight;
 pub use settings::{RainModel, RainSettings};
 pub use shelter::{MAX_SHELTERS, Shelter};
 
@@ -50,4 +52,4 @@ pub(crate) use step_pass::{STATE_BYTES, Stepped};
 pub(crate) use stone_pass::StoneDraw;
 pub use stones::Stones;
 pub use uniforms::Classes;
-pub(crate) use uniforms::{Air, DropLight, RainUniform, Shot};
+pub(crate) use uniforms::{Air, RainUniform, Shot};

@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::{
     lattice::{CLASSES, FADE, Moment, SHELLS, SIDE_M, SPEED_UNIT, short_seed, side_m},
+    light::DropLight,
     sizes::DropSizes,
 };
 use crate::{
@@ -80,19 +81,6 @@ impl Classes {
         });
         Self { table, per_shell: upto as u32, weight: 1.0 / share, extinction_per_m: extinction, flux }
     }
-}
-
-/// What lights the drops, in the units of the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DropLight {
-    /// Mean radiance of the sky and of the ground.
-    pub above: DVec3,
-    /// See `above`.
-    pub below: DVec3,
-    /// Irradiance of the sun or moon, and where it stands.
-    pub sun: DVec3,
-    /// See `sun`.
-    pub to_sun: DVec3,
 }
 
 /// A camera among drops.

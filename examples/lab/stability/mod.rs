@@ -371,7 +371,7 @@ const SAYS: [(&str, &str); 13] = [
     ),
     (
         "drag",
-        "A drop that starts at rest, after many steps: explicit Euler swings above dt = v/g and diverges above twice that; the exact exponential is right for any step. Welkin's particles, when they come, take the second.",
+        "A drop that starts at rest, after many steps: explicit Euler swings above dt = v/g and diverges above twice that; the exact exponential is right for any step. Drops that are stepped through a wind that varies in space take the second.",
     ),
     (
         "over-relaxation",
