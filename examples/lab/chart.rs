@@ -295,6 +295,7 @@ fn rain_chart(lab: &Lab, options: &Options) -> Result<()> {
     if all.iter().all(|c| journal.has(c.name)) && journal.has("truth-again") {
         return rain_plots(journal, options, list.len());
     }
+
     let mut hosts = list.iter().map(|s| rain::Host::new(&lab.device, s, rain::SIZE)).collect::<Result<Vec<_>>>()?;
     let mut truths = Vec::new();
     for (host, scene) in hosts.iter_mut().zip(&list) {

@@ -217,7 +217,7 @@ const RAIN_SAYS: &str = "\n`cones` are streaks on four nested cones, at a cost t
     the same places, so blocks of 20 x 20 pixels are compared over six moments: their mean and their contrast from pixel to \
     pixel and from patch to patch of 4 x 4, the worst of the three over the mean and a hundredth of white. `source-N` are \
     drops that get fewer and larger with distance (replicated: six copies of each), after an older system, timed by as many \
-    quads. Under head lights at night drops end before the beams do: take `cones` there.\n\n";
+    quads.\n\n";
 
 fn rain_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);

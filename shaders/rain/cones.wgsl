@@ -99,7 +99,7 @@ fn rain_on_cones(d: vec3f, range: f32) -> vec4f {
         let band = cones.bands[j];
         let before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
         let p = d * band.z;
-        if before <= 0.0 || sheltered(p, velocity, before > 0.0) {
+        if before * band.w <= 0.0 || sheltered(p, velocity, before * band.w > 0.0) {
             continue;
         }
         let look = look_at(at, cones.shapes[j]);

@@ -95,13 +95,20 @@ impl Rain {
 
     /// What drops or cones of the weather's own rain hide, as an extinction (their discs: half of theirs, the rest is
     /// diffraction), and the distance up to which they do.
-    pub fn hidden(&mut self, device: &Device, scene: &Scene) -> [f32; 2] {
+    pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> [f32; 2] {
         let falling = scene.conditions.precipitation;
-        let reach = if self.settings.model == RainModel::Cones { BANDS_M[CONES] } else { HIDDEN_M };
+        let far = self.settings.model == RainModel::Cones || self.has_far_cones(context);
+        let reach = if far { BANDS_M[CONES] } else { HIDDEN_M };
         let most = self.settings.most_on(device);
         // Stones are rare: they hide as much as if they did within the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
         [self.near(device, scene, &falling) + ice / reach, reach].map(|v| v as f32)
+    }
+
+    /// Whether cones stand for what drops do not reach: where lamps light it, which the veil does not know.
+    fn has_far_cones(&self, context: &Context) -> bool {
+        let drops = !matches!(self.settings.model, RainModel::Cones | RainModel::Veil);
+        drops && !context.lights().is_empty()
     }
 
     /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
@@ -230,7 +237,10 @@ impl Rain {
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from, to| context.carried(from, to);
-        let cones = on_cones.then(|| ConeUniform::new(block.seed, &classes, &shot, &air, &carried));
+        let cones = (on_cones || self.has_far_cones(context)).then(|| {
+            let all = ConeUniform::new(block.seed, &classes, &shot, &air, &carried);
+            if on_cones { all } else { all.beyond(0.9 * HIDDEN_M) }
+        });
         let around = context.wind_grid().map(|g| {
             let to_enu = context.world().frame_at(g.origin).world_to_enu;
             (g, g.cells_at(frame.camera.position, to_enu))
@@ -247,6 +257,7 @@ impl Rain {
         let drawn = Drawn {
             rain: &block,
             cones: cones.as_ref(),
+            drops: !on_cones,
             stepped: stepped.as_ref(),
             around: told,
             maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),

@@ -363,7 +363,7 @@ impl View {
         let drawn = self.planner.drawn();
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
-            block.drops = self.rain.hidden(&self.device, scene);
+            block.drops = self.rain.hidden(&self.device, context, scene);
         }
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {

@@ -134,6 +134,13 @@ impl ConeUniform {
         c
     }
 
+    /// Those cones alone that stand for drops from `distance_m` on.
+    pub fn beyond(mut self, distance_m: f64) -> Self {
+        let nearer = |b: &&mut [f32; 4]| f64::from(b[0]) < distance_m;
+        self.bands.iter_mut().filter(nearer).for_each(|b| b[3] = 0.0);
+        self
+    }
+
     fn zero() -> Self {
         bytemuck::Zeroable::zeroed()
     }

@@ -34,8 +34,8 @@ mod stones;
 mod uniforms;
 
 pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
-pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use light::DropLight;
+pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use settings::{RainModel, RainSettings};
 pub use shelter::{MAX_SHELTERS, Shelter};
 

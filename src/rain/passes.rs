@@ -40,8 +40,10 @@ pub(crate) struct RainLayer {
 /// What one frame draws.
 pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
-    /// Cones in place of drops and splashes.
+    /// Cones in place of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
+    /// Whether drops are drawn too.
+    pub drops: bool,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
     /// What keeps rain off, and lamps.
@@ -182,11 +184,13 @@ impl RainLayer {
         }
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
-            self.draw_into(encoder, over, |pass, layer| {
-                layer.cones.iter().for_each(|c| c.draw(pass, kind));
-                layer.draw_stones(pass, kind, drawn);
-            });
-            return Ok(());
+            if !drawn.drops {
+                self.draw_into(encoder, over, |pass, layer| {
+                    layer.cones.iter().for_each(|c| c.draw(pass, kind));
+                    layer.draw_stones(pass, kind, drawn);
+                });
+                return Ok(());
+            }
         }
         if let Some(stepped) = drawn.stepped {
             let pass = self.stepped.get_or_insert_with(|| StepPass::new(device));
@@ -200,6 +204,9 @@ impl RainLayer {
         }
         self.draw_into(encoder, over, |pass, layer| {
             let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
+            if drawn.cones.is_some() {
+                layer.cones.iter().for_each(|c| c.draw(pass, kind));
+            }
             match (&layer.stepped, drawn.stepped) {
                 (Some(stepped), Some(_)) => stepped.draw(pass, kind, areas),
                 _ => {

@@ -6,10 +6,10 @@ use super::*;
 use crate::{
     gpu::DeviceOptions,
     rain::{
+        DropLight,
         drops::GRAVITY_M_S2,
         integrated::step,
         lattice::{self, random3, side_m},
-        uniforms::DropLight,
     },
     scene::{Camera, DepthMapping, ViewRays},
     weather::{Precipitation, PrecipitationKind, Weather, derive},
