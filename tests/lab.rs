@@ -333,11 +333,22 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
     };
     for (name, effect) in Effect::NAMES {
         let table = read(&format!("{name}.csv"));
-        let charted: Vec<&str> = table.rows.iter().map(|r| r[0].as_str()).collect();
+        // The truth against itself is no way to draw.
+        let drawn = table.rows.iter().map(|r| r[0].as_str()).filter(|n| *n != "truth-again");
+        let charted: Vec<&str> = drawn.collect();
         let offered = candidates(effect);
         assert!(offered.iter().all(|c| charted.contains(&c.name)), "{name}: {charted:?}");
         assert_eq!(charted.len(), offered.len(), "{name}: {charted:?}");
         let points = chart::points(&table, "cost");
+        if effect == Effect::Rain {
+            // Cones are cheaper and nearer to the truth as a texture, yet have neither splashes nor drops that stay
+            // themselves for a camera that moves: the default is the nearest that has.
+            let error = |name: &str| points.iter().find(|p| p.name == name).unwrap().error;
+            assert!(points.iter().any(|p| p.name == "cones" && p.front));
+            assert!(error("drops") < error("veil"));
+            assert!(["source-20k", "source-140k"].iter().all(|n| error("drops") < 0.5 * error(n)));
+            continue;
+        }
         assert!(
             points.iter().any(|p| p.default && p.front),
             "{name}: something is cheaper and better than the default"

@@ -217,14 +217,14 @@ const RAIN_SAYS: &str = "\n`cones` are streaks on four nested cones, at a cost t
     the same places, so blocks of 20 x 20 pixels are compared over six moments: their mean and their contrast from pixel to \
     pixel and from patch to patch of 4 x 4, the worst of the three over the mean and a hundredth of white. `source-N` are \
     drops that get fewer and larger with distance (replicated: six copies of each), after an older system, timed by as many \
-    quads.\n\n";
+    quads. The default stays with drops, which splash and keep their place for a camera that moves.\n\n";
 
 fn rain_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
     out.push_str("## Which rain\n\n![cost of rain against error](rain.svg)\n\n");
     let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
     out.push_str(
-        "Costs of fog and rain alone; error by scene, 95th percentile, per cent:\n\n| rain | cost | all scenes |",
+        "Costs of fog and rain alone; error by scene, 95th percentile, per cent:\n\n| rain | cost | all by day |",
     );
     scenes.iter().for_each(|s| {
         let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
