@@ -332,10 +332,10 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
         Table::read(&path).unwrap().unwrap_or_else(|| panic!("{name} is not committed"))
     };
     for (name, effect) in Effect::NAMES {
-        let table = read(&format!("{name}.csv"));
+        let mut table = read(&format!("{name}.csv"));
         // The truth against itself is no way to draw.
-        let drawn = table.rows.iter().map(|r| r[0].as_str()).filter(|n| *n != "truth-again");
-        let charted: Vec<&str> = drawn.collect();
+        table.rows.retain(|r| r[0] != "truth-again");
+        let charted: Vec<&str> = table.rows.iter().map(|r| r[0].as_str()).collect();
         let offered = candidates(effect);
         assert!(offered.iter().all(|c| charted.contains(&c.name)), "{name}: {charted:?}");
         assert_eq!(charted.len(), offered.len(), "{name}: {charted:?}");
