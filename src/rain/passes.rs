@@ -29,7 +29,7 @@ pub(crate) struct RainLayer {
     /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
     cones: Option<ConePass>,
-    stepped: Option<StepPass>,
+    stepped: Option<Box<StepPass>>,
     /// Hail and pellets, when some fell.
     stones: Option<StonePass>,
     none: Option<wgpu::TextureView>,
@@ -130,7 +130,7 @@ impl RainLayer {
     pub fn bytes(&self) -> u64 {
         let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
         let cones = self.cones.as_ref().map_or(0, ConePass::bytes);
-        layer + cones + self.stepped.as_ref().map_or(0, StepPass::bytes)
+        layer + cones + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
@@ -193,7 +193,7 @@ impl RainLayer {
             }
         }
         if let Some(stepped) = drawn.stepped {
-            let pass = self.stepped.get_or_insert_with(|| StepPass::new(device));
+            let pass = self.stepped.get_or_insert_with(|| Box::new(StepPass::new(device)));
             pass.prepare_draw(device, frame, kind, areas)?;
             pass.step(device, encoder, &self.blocks, stepped)?;
         }
