@@ -25,14 +25,16 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
     }
     let wanted = options.scene.as_deref().unwrap_or(match a.effect {
         Effect::Sky => "low-sun",
-        Effect::Fog | Effect::Rain => "fog",
+        Effect::Fog => "fog",
+        Effect::Rain => {
+            return Err(Error::range("A", "of sky or fog: no two ways to draw rain put drops in one place", a.name));
+        }
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
     let pictures = match a.effect {
         Effect::Sky => sky_pictures(&lab, [a, b], scene, options.quick)?,
-        Effect::Fog => fog_pictures(&lab, [a, b], scene)?,
-        Effect::Rain => return Err(Error::range("A", "of sky or fog", a.name)),
+        _ => fog_pictures(&lab, [a, b], scene)?,
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
     let stem = options.out.join(format!("compare-{}-{}-{wanted}", a.name, b.name));

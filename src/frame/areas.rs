@@ -8,7 +8,10 @@ use super::Shared;
 use crate::{
     context::Scene,
     error::Result,
-    gpu::Device,
+    gpu::{
+        Device,
+        pass::{self, QuadsDesc},
+    },
     rain::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS, WAVES},
     sky::SkyVolume,
 };
@@ -284,11 +287,6 @@ impl AreaPass {
         let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
         let composite = shared.composite()?;
         let [_, sky, _] = composite.layouts(kind.multi);
-        let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("rain areas"),
-            bind_group_layouts: &[Some(&self.layouts[usize::from(kind.multi)]), Some(sky)],
-            immediate_size: 0,
-        });
         let yes = |b: bool| f64::from(u8::from(b));
         let mut all = constants.to_vec();
         all.extend([
@@ -296,31 +294,17 @@ impl AreaPass {
             ("OVERLAPS", yes(kind.overlaps)),
             ("POLYGONS", yes(kind.polygons)),
         ]);
-        let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("rain areas"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("shaft_vertex"),
-                compilation_options: Default::default(),
+        let pipeline = pass::quads(
+            device,
+            &QuadsDesc {
+                label: "rain areas",
+                vertex: (&module, "shaft_vertex", &[]),
+                fragment: (&module, "shaft_fragment", &all),
+                layouts: &[Some(&self.layouts[usize::from(kind.multi)]), Some(sky)],
                 buffers: &[],
+                format: FORMAT,
             },
-            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("shaft_fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions { constants: &all, ..Default::default() },
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: FORMAT,
-                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        );
         self.pipelines.push((kind, constants.to_vec(), pipeline));
         Ok(self.pipelines.len() - 1)
     }

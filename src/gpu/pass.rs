@@ -1,4 +1,4 @@
-//! The one kind of pass that most effects are: a full-screen triangle with a fragment shader.
+//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, or quads over a layer.
 //!
 //! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
 //! `common/fullscreen.wgsl`.
@@ -57,6 +57,57 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
         multiview_mask: None,
         cache: None,
     }))
+}
+
+/// What a pipeline of quads is made of: strips of four corners an instance, premultiplied and blended over what is there.
+pub struct QuadsDesc<'a> {
+    /// Name in captures.
+    pub label: &'a str,
+    /// Module and entry point of the corners, and values of its `override` constants.
+    pub vertex: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
+    /// Of the pixels.
+    pub fragment: (&'a wgpu::ShaderModule, &'a str, &'a [(&'a str, f64)]),
+    /// One layout a bind group, in order.
+    pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    /// What each instance brings.
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Of the layer, of one sample.
+    pub format: wgpu::TextureFormat,
+}
+
+/// Makes the pipeline; GPU faults come through [`Device::check`].
+pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> wgpu::RenderPipeline {
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(desc.label),
+        bind_group_layouts: desc.layouts,
+        immediate_size: 0,
+    });
+    let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(desc.label),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: desc.vertex.0,
+            entry_point: Some(desc.vertex.1),
+            compilation_options: options(desc.vertex.2),
+            buffers: desc.buffers,
+        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: desc.fragment.0,
+            entry_point: Some(desc.fragment.1),
+            compilation_options: options(desc.fragment.2),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: desc.format,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 /// Draws a full-screen triangle with `pipeline` into `target`, clearing nothing.

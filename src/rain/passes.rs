@@ -13,7 +13,13 @@ use super::{
     stone_pass::StonePass,
     uniforms::RainUniform,
 };
-use crate::{error::Result, gpu::Device};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, QuadsDesc},
+    },
+};
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -330,37 +336,18 @@ fn pipeline(
     areas: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
-    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("drops"),
-        bind_group_layouts: &[Some(frame), None, Some(around)],
-        immediate_size: 0,
-    });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     // Mixtures take each column by itself: what lies over what is in their order.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("drops"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
+    Ok(pass::quads(
+        device,
+        &QuadsDesc {
+            label: "drops",
+            vertex: (&module, vertex, &near),
+            fragment: (&module, "rain_fragment", &constants),
+            layouts: &[Some(frame), None, Some(around)],
             buffers: &[],
+            format: FORMAT,
         },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("rain_fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    }))
+    ))
 }

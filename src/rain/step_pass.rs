@@ -9,7 +9,14 @@ use super::{
     passes::{FORMAT, STARTS},
     uniforms::{Air, RainUniform, Shot},
 };
-use crate::{error::Result, gpu::Device, wind::WindGrid};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, QuadsDesc},
+    },
+    wind::WindGrid,
+};
 
 /// Bytes of one drop: place and word, velocity.
 pub(crate) const STATE_BYTES: u64 = 32;
@@ -312,44 +319,25 @@ fn draw_pipeline(
 ) -> Result<wgpu::RenderPipeline> {
     let vertex = device.shader("rain/integrated.wgsl")?;
     let fragment = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
-    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("stepped"),
-        bind_group_layouts: &layouts.map(Some),
-        immediate_size: 0,
-    });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     let attribute = |shader_location, offset, format| wgpu::VertexAttribute { format, offset, shader_location };
     let attributes = [attribute(0, 0, wgpu::VertexFormat::Uint32x4), attribute(1, 16, wgpu::VertexFormat::Float32x4)];
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("stepped"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &vertex,
-            entry_point: Some("integrated_vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
+    Ok(pass::quads(
+        device,
+        &QuadsDesc {
+            label: "stepped",
+            vertex: (&vertex, "integrated_vertex", &near),
+            fragment: (&fragment, "rain_fragment", &constants),
+            layouts: &layouts.map(Some),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: STATE_BYTES,
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: &attributes,
             })],
+            format: FORMAT,
         },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &fragment,
-            entry_point: Some("rain_fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(wgpu::ColorTargetState {
-                format: FORMAT,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    }))
+    ))
 }
 
 #[cfg(test)]

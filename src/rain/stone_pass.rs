@@ -1,7 +1,13 @@
 //! Stones on the GPU: their block and their two draws, in the drops' pass.
 
 use super::stones::{StoneUniform, Stones};
-use crate::{error::Result, gpu::Device};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, QuadsDesc},
+    },
+};
 
 /// What a frame draws of stones.
 #[derive(Clone, Copy)]
@@ -107,36 +113,17 @@ fn pipeline(
     (multi, has_depth, maps): Depth,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/stones_multi.wgsl" } else { "rain/stones_single.wgsl" })?;
-    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("stones"),
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     let near = [("MAPS", f64::from(u8::from(maps)))];
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("stones"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &near, ..Default::default() },
+    Ok(pass::quads(
+        device,
+        &QuadsDesc {
+            label: "stones",
+            vertex: (&module, vertex, &near),
+            fragment: (&module, "stone_fragment", &constants),
+            layouts,
             buffers: &[],
+            format,
         },
-        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("stone_fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    }))
+    ))
 }
