@@ -44,6 +44,7 @@ use picture::Picture;
 use stability::{Axis, Cell, Map, Panel, borders, numbers, particles, sky_maps};
 use store::{Journal, Table};
 use welkin::plan::{Effect, candidates};
+use welkin::rain::{drops::relax, integrated::step};
 
 /// A directory of its own, removed afterwards.
 struct Scratch(PathBuf);
@@ -242,17 +243,46 @@ fn standard_depth_and_far_origins_lose_what_welkin_keeps() {
 }
 
 #[test]
-fn explicit_drag_swings_then_diverges_and_the_exponential_does_not() {
-    // Drizzle at 0.1 s, snow at 0.25 s, rain of 1 mm at 1 s; and half of v/g, where it still settles.
-    for (terminal, dt) in [(0.27, 0.1), (1.0, 0.25), (4.03, 1.0)] {
-        assert_ne!(particles::euler_cell(terminal, dt), Cell::Error(0.0));
-        assert!(matches!(particles::euler_cell(terminal, dt), Cell::Diverged | Cell::Jumps), "{terminal}");
-        assert!(matches!(particles::euler_cell(terminal, 0.5 * terminal / 9.81), Cell::Error(e) if e < 1e-6));
-        assert_eq!(particles::euler_cell(terminal, 2.1 * terminal / 9.81), Cell::Diverged);
+fn explicit_drag_swings_then_diverges_and_steps_that_are_solved_do_not() {
+    let [explicit, solved, stepped] = [(particles::euler as particles::Step, true), (relax, false), (step, true)]
+        .map(|(step, square)| move |diameter, dt| particles::gust_cell(step, square, diameter, dt));
+    // Where drag takes long against the step, all are right.
+    assert!(matches!(explicit(5.0, 1e-3), Cell::Error(e) if e < 5e-3), "{:?}", explicit(5.0, 1e-3));
+    let small = |c: Cell, most: f64| matches!(c, Cell::Error(e) if e < most);
+    for (diameter, dt) in [(0.1, 1e-3), (0.3, 1.0 / 60.0), (0.8, 0.1), (6.0, 1.0), (6.0, 10.0)] {
+        let usual = explicit(diameter, dt);
+        assert!(matches!(usual, Cell::Jumps | Cell::Diverged), "{diameter} mm, {dt} s: {usual:?}");
+        assert!(small(solved(diameter, dt), 1e-6), "{diameter} mm, {dt} s: {:?}", solved(diameter, dt));
+        assert!(small(stepped(diameter, dt), 0.1), "{diameter} mm, {dt} s: {:?}", stepped(diameter, dt));
     }
-    for dt in [1e-4, 0.1, 10.0] {
-        let want = 1.0 - (-60.0 * dt * 9.81 / 0.27f64).exp();
-        assert!((particles::drag_exact(0.27, dt, 60) / want - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn velocity_times_time_throws_drops_and_the_displacement_does_not() {
+    for (late, by) in [(1e6, 0.1), (1e6, 80.0), (100.0, 10.0)] {
+        assert_eq!(particles::thrown_cell(late, by, particles::by_time).unwrap(), Cell::Jumps, "{late} s, {by} m/s");
+        let ours = particles::thrown_cell(late, by, particles::by_displacement).unwrap();
+        assert!(matches!(ours, Cell::Error(e) if e < 1e-6), "{late} s, {by} m/s: {ours:?}");
+    }
+}
+
+/// The maps of rain that are committed: nothing of Welkin's swings or grows, and what is usual does.
+#[test]
+fn the_committed_maps_of_drops_show_where_the_usual_steps_fail() {
+    let file = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab").join(name);
+    for (name, panels, worst) in [("drag", 3, 0.1), ("gust", 2, 1e-3)] {
+        assert!(["svg", "png"].iter().all(|e| file(&format!("stability-{name}.{e}")).exists()));
+        let cells = Table::read(&file(&format!("stability-{name}.csv"))).unwrap().expect("committed");
+        let of_ours = |r: &&Vec<String>| r[0].starts_with("Welkin");
+        let titles: std::collections::BTreeSet<_> = cells.rows.iter().map(|r| &r[0]).collect();
+        assert_eq!(titles.len(), panels, "{titles:?}");
+        for row in cells.rows.iter().filter(of_ours) {
+            let error: f64 = row[4].parse().unwrap_or(f64::INFINITY);
+            assert!(row[3] == "error" && error < worst, "{name}: {row:?}");
+        }
+        let (usual, failed): (Vec<_>, Vec<_>) =
+            cells.rows.iter().filter(|r| !of_ours(r)).partition(|r| r[3] == "error");
+        assert!(failed.len() > usual.len(), "{name}: {} of {}", failed.len(), failed.len() + usual.len());
     }
 }
 

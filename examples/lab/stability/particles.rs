@@ -1,58 +1,141 @@
-//! Maps of steps in time and sweeps in space: drag, pressure, and weather that changes.
+//! Maps of steps in time and sweeps in space: drops in the wind, pressure, and weather that changes.
 
+use glam::{DVec2, DVec3};
 use welkin::Result;
-use welkin::weather::{Timeline, Weather, derive};
+use welkin::rain::drops::{GRAVITY_M_S2, relax, terminal_speed_m_s};
+use welkin::rain::integrated::step;
+use welkin::rain::lattice::{Moment, side_m};
+use welkin::weather::{Timeline, Weather, Wind, derive};
+use welkin::wind::Drift;
 
 use super::{Axis, Cell, Map, Panel};
 
-const GRAVITY: f64 = 9.81;
+/// A drop that falls through still air, and from one moment on through this, m/s.
+const GUST: DVec3 = DVec3::new(20.0, 0.0, 0.0);
+/// Steps after which the ways are compared.
+const STEPS: usize = 60;
 
-/// Speed over terminal speed after `steps` of explicit Euler from rest, drag linear in speed.
-pub fn drag_euler(terminal: f64, dt: f64, steps: usize) -> f64 {
-    let mut v = 0.0f64;
-    for _ in 0..steps {
-        v += dt * GRAVITY * (1.0 - v / terminal);
-    }
-    v / terminal
+/// One step of a drop: velocity and way from velocity, air's velocity, terminal speed, and length.
+pub type Step = fn(DVec3, DVec3, f64, f64) -> (DVec3, DVec3);
+
+/// Drag by the square, as an acceleration: what falls at `terminal` is at rest in the air.
+fn by_square(v: DVec3, air: DVec3, terminal: f64) -> DVec3 {
+    let against = v - air;
+    -DVec3::Z * GRAVITY_M_S2 - against * (against.length() * GRAVITY_M_S2 / (terminal * terminal))
 }
 
-/// The same by the exact exponential.
-pub fn drag_exact(terminal: f64, dt: f64, steps: usize) -> f64 {
-    let mut v = 0.0f64;
-    for _ in 0..steps {
-        v = terminal + (v - terminal) * (-dt * GRAVITY / terminal).exp();
-    }
-    v / terminal
+/// Drag that is linear, likewise.
+fn linear(v: DVec3, air: DVec3, terminal: f64) -> DVec3 {
+    -DVec3::Z * GRAVITY_M_S2 - (v - air) * (GRAVITY_M_S2 / terminal)
 }
 
-/// What explicit Euler does at a step: settles, swings, or diverges. The truth after the same time is known.
-pub fn euler_cell(terminal: f64, dt: f64) -> Cell {
-    let ratio = dt * GRAVITY / terminal;
-    let steps = 60;
-    let end = drag_euler(terminal, dt, steps);
-    if !end.is_finite() || end.abs() > 10.0 {
-        return Cell::Diverged;
-    }
-    if ratio > 1.0 {
-        return Cell::Jumps;
-    }
-    let true_end = 1.0 - (-ratio * steps as f64).exp();
-    Cell::of(end / true_end - 1.0)
+/// The usual step: everything by what it is at its beginning.
+pub fn euler(v: DVec3, air: DVec3, terminal: f64, dt: f64) -> (DVec3, DVec3) {
+    (v + by_square(v, air, terminal) * dt, v * dt)
 }
 
-/// Drag over step and terminal speed.
+/// The way of a drop in the gust after `time`: of fourth order in steps of a hundredth of what drag takes.
+fn true_way(pull: fn(DVec3, DVec3, f64) -> DVec3, terminal: f64, time: f64) -> DVec3 {
+    let settled = GUST - DVec3::Z * terminal;
+    let (mut v, mut way, mut left) = (-DVec3::Z * terminal, DVec3::ZERO, time);
+    while left > 0.0 && (v - settled).length() > 1e-11 {
+        let quickest = GRAVITY_M_S2 / terminal * ((v - GUST).length() / terminal).max(1.0);
+        let h = left.min(0.01 / quickest);
+        let k1 = pull(v, GUST, terminal);
+        let k2 = pull(v + k1 * (0.5 * h), GUST, terminal);
+        let k3 = pull(v + k2 * (0.5 * h), GUST, terminal);
+        let k4 = pull(v + k3 * h, GUST, terminal);
+        way += (v + (k1 + k2 + k3) * (h / 6.0)) * h;
+        v += (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+        left -= h;
+    }
+    way + settled * left
+}
+
+/// What a way of stepping does to a drop of `diameter_mm` in the gust: it swings if the drop is ever blown faster than the
+/// wind is that blows it.
+pub fn gust_cell(step: Step, square: bool, diameter_mm: f64, dt: f64) -> Cell {
+    let terminal = terminal_speed_m_s(diameter_mm);
+    let (mut v, mut way, mut swings) = (-DVec3::Z * terminal, DVec3::ZERO, false);
+    for _ in 0..STEPS {
+        let (next, moved) = step(v, GUST, terminal, dt);
+        (v, way) = (next, way + moved);
+        if !v.is_finite() || v.length() > 1000.0 {
+            return Cell::Diverged;
+        }
+        swings |= v.x > GUST.x * (1.0 + 1e-9);
+    }
+    let truth = true_way(if square { by_square } else { linear }, terminal, dt * STEPS as f64);
+    if swings { Cell::Jumps } else { Cell::of((way - truth).length() / truth.length()) }
+}
+
+/// Drag over step and drop.
 pub fn drag() -> Map {
-    let x = Axis::ratios("time step, s", 1e-4, 10.0, 41);
-    let y = Axis::ratios("terminal speed, m/s", 0.05, 10.0, 26);
-    let exact = |dt: f64, terminal: f64| {
-        let true_end = -(-60.0 * dt * GRAVITY / terminal).exp_m1();
-        Cell::of(drag_exact(terminal, dt, 60) / true_end - 1.0)
+    let x = Axis::ratios("time step, s", 1e-3, 10.0, 41);
+    let y = Axis::ratios("diameter, mm", 0.1, 6.0, 26);
+    let panel = |title, ours, step: Step, square| {
+        Panel::of(title, ours, &x, &y, |dt, diameter| gust_cell(step, square, diameter, dt))
     };
     let panels = vec![
-        Panel::of("usual: explicit Euler", false, &x, &y, |dt, terminal| euler_cell(terminal, dt)),
-        Panel::of("exact exponential", true, &x, &y, exact),
+        panel("usual: explicit Euler, drag by the square", false, euler, true),
+        panel("Welkin: linear drag, solved", true, relax, false),
+        panel("Welkin: drag by the square, as stepped", true, step, true),
     ];
-    Map { title: "A falling drop after 60 steps: speed over the true one", x, y, panels, tolerance: 1e-9 }
+    Map {
+        title: "A drop met by a gust of 20 m/s, after 60 steps: its place over its way",
+        x,
+        y,
+        panels,
+        tolerance: 0.1,
+    }
+}
+
+/// How far places of drops are off that of air carried by a gust in one frame of 1/60 s, over that way; the gust raises the
+/// wind from 3 m/s by `by` within half a second, and the frame is amid of it. `place` answers from the velocity's and
+/// the displacement's values at a time (m/s, m, s).
+pub fn thrown_cell(late: f64, by: f64, place: fn(DVec2, DVec2, f64) -> DVec2) -> Result<Cell> {
+    let of = |speed: f64| derive(&Weather { wind: Wind::of(speed, 270.0), ..Weather::default() });
+    let mut timeline = Timeline::new(of(3.0)?);
+    timeline.change(of(3.0 + by)?, late, 0.5)?;
+    let blows = welkin::wind::Wind::new(5);
+    let at = |t: f64| blows.blowing(&timeline, Drift::ZERO, t);
+    let (from, dt) = (late + 0.25, 1.0 / 60.0);
+    // Simpson's rule over the frame.
+    let n = 16;
+    let velocity = |i: i32| at(from + dt * f64::from(i) / f64::from(n)).velocity_m_s();
+    let weight = |i: i32| if i == 0 || i == n { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+    let way = (0..=n).map(|i| velocity(i) * (weight(i) * dt / f64::from(3 * n))).sum::<DVec2>();
+    let [a, b] = [from, from + dt].map(|t| place(at(t).velocity_m_s(), at(t).drift.displacement_m, t));
+    let off = (b - a - way).length() / way.length();
+    // Farther than the wind blows in that time.
+    Ok(if off > 1.0 { Cell::Jumps } else { Cell::of(off) })
+}
+
+/// Places by velocity times time.
+pub fn by_time(velocity: DVec2, _: DVec2, t: f64) -> DVec2 {
+    velocity * t
+}
+
+/// Places by the displacement, to the 2^-32 of a cell's side that drops are drawn by.
+pub fn by_displacement(_: DVec2, displacement: DVec2, t: f64) -> DVec2 {
+    let moment = Moment::new(0, displacement.extend(0.0), t);
+    let cells = displacement / side_m(0);
+    let drawn = DVec2::new(f64::from(moment.air[0]), f64::from(moment.air[1])) / 4_294_967_296.0;
+    (cells.floor() + drawn) * side_m(0)
+}
+
+/// A gust over when it comes and how strong it is.
+pub fn gust() -> Result<Map> {
+    let x = Axis::ratios("when it comes, s", 1.0, 1e9, 37);
+    let y = Axis::ratios("rise of the wind, m/s", 0.1, 80.0, 26);
+    let panel = |title, ours, place| {
+        Panel::of(title, ours, &x, &y, |late, by| thrown_cell(late, by, place).unwrap_or(Cell::Refused))
+    };
+    let panels = vec![
+        panel("usual: velocity x time", false, by_time as fn(DVec2, DVec2, f64) -> DVec2),
+        panel("Welkin: the displacement's integral", true, by_displacement),
+    ];
+    Ok(Map { title: "A gust: what it moves drops in one frame, off the wind's own way", x, y, panels, tolerance: 1e-3 })
 }
 
 /// Residual over the first one after sweeps of successive over-relaxation on the unit square with a point source.
