@@ -60,6 +60,8 @@ const SPEED_UNIT: f32 = 0.015625;
 const LEAST_PIXELS: f32 = 1.2;
 // Drops nearer than this fade away: they would be blobs that no eye could focus on.
 const NEAREST: f32 = 0.25;
+// A streak is drawn up to this share of its distance to either side.
+const LONGEST: f32 = 0.8;
 
 @group(0) @binding(0) var<uniform> rain: RainUniform;
 
@@ -148,10 +150,23 @@ fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     return streak_of(drop, rain.wind - vec3f(0.0, 0.0, drop.speed), corner);
 }
 
+// Half of the way that is drawn of what moves by `half` to either side of a place at distance `d`, and what its cover is
+// multiplied by. A streak that nears the eye is cut there, to the part of the exposure in which it goes `LONGEST` of `d` to
+// either side, and hides as much in that part as in all of it. So places d (1 - c) to d (1 + c) along a ray are darkened, by
+// what is at d, where c is that part: atanh(c) / c times what is there, whatever way the camera looks. The factor is its inverse.
+fn part_drawn(half: vec3f, d: f32) -> vec4f {
+    let whole = length(half) / d;
+    let c = min(whole, LONGEST);
+    let c2 = c * c;
+    // To .2 % of c / atanh(c).
+    return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
+}
+
 // A corner of the streak that a drop of a `velocity` draws.
 fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
     let d = max(length(drop.position), 1e-3);
-    let half = (velocity - rain.camera) * (0.5 * rain.exposure);
+    let part = part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), d);
+    let half = part.xyz;
     // Both ends of the streak, then its width across the picture.
     let along = select(-1.0, 1.0, (corner & 2u) != 0u);
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
@@ -160,8 +175,7 @@ fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
     out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     out.range = d;
     out.across = side;
-    // What stretches beyond the eye cannot be drawn as a quad.
-    let shows = drop.share > 0.0 && abs(dot(half, toward)) <= 0.6 * d && in_picture(drop.position - half, drop.position + half);
+    let shows = drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
     if !shows || sheltered(drop.position + half, velocity, shows) {
         return out;
     }
@@ -179,7 +193,7 @@ fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
     // As much of the picture as the drop covers on the mean over the exposure: its disc, spread over the quad. The profile
     // across has the mean 2/3.
     let disc = 0.78539816 * drop.diameter * drop.diameter * drop.weight;
-    let cover = min(1.5 * disc / (2.0 * reach * width), 1.0) * drop.share;
+    let cover = min(1.5 * disc / (2.0 * reach * width), 1.0) * (drop.share * part.w);
     let clear = exp(-rain.extinction * d);
     out.light = vec4f(drop_light(drop.position, toward) * (cover * clear), cover * clear);
     return out;

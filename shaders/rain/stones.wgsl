@@ -175,10 +175,10 @@ fn no_stone() -> StoneVarying {
 fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     let d = max(length(stone.position), 1e-3);
     let toward = stone.position / d;
-    let half = (stone.velocity - rain.camera) * (0.5 * rain.exposure);
+    let part = part_drawn((stone.velocity - rain.camera) * (0.5 * rain.exposure), d);
+    let half = part.xyz;
     var out = no_stone();
-    // What stretches beyond the eye cannot be drawn as a quad.
-    if stone.share <= 0.0 || abs(dot(half, toward)) > 0.6 * d {
+    if stone.share <= 0.0 {
         return out;
     }
     let pixel = max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6);
@@ -198,7 +198,7 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     out.at = vec2f(side, end * (out.reach + 1.0));
     let disc = 0.78539816 * stone.diameter * stone.diameter * stone.weight;
     // The profile has the mean 2/3 along the bar and 1/2 over its round ends.
-    out.cover = disc / (radius * (2.6666667 * stretch + 1.5707963 * radius)) * stone.share;
+    out.cover = disc / (radius * (2.6666667 * stretch + 1.5707963 * radius)) * (stone.share * part.w);
     out.light = stone_light(stone.position, toward, stone.clear);
     return out;
 }

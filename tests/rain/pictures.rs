@@ -107,12 +107,12 @@ fn work_lights_show_the_rain_in_their_beams_at_night() {
     assert!(sum(&again) < 1.01 * sum(&dark), "the lamps are off");
 }
 
-/// Each model of the same rain, at rest and from a car at 25 m/s.
+/// Each model of the same rain, at rest, from a car at 25 m/s and from an aircraft at 300.
 #[test]
 fn every_model_shows_the_same_rain() {
     let mut host = Host::new((640, 360));
     host.boxes = vec![upright([-9.0, 25.0, 4.0], [4.0, 6.0, 4.0]), upright([8.0, 40.0, 6.0], [5.0, 5.0, 6.0])];
-    for (i, (rate, speed)) in [(6.0, 0.0), (60.0, 0.0), (20.0, 25.0)].into_iter().enumerate() {
+    for (i, (rate, speed)) in [(6.0, 0.0), (60.0, 0.0), (20.0, 25.0), (60.0, 300.0)].into_iter().enumerate() {
         let t = 100.0 * (i + 1) as f64;
         host.context.set_weather(&rain(rate, 5.0), t, 0.0).unwrap();
         host.context.update(t + 1.0).unwrap();

@@ -23,10 +23,11 @@ fn ice(kind: PrecipitationKind, rate: f64, wind: f64) -> Weather {
 #[test]
 fn stones_hide_as_much_as_their_extinction_says() {
     let mut host = white((320, 180));
-    for (i, (kind, rate, wind)) in [
-        (PrecipitationKind::IcePellets, 3.0, 0.0),
-        (PrecipitationKind::Hail, 100.0, 8.0),
-        (PrecipitationKind::SmallHail, 40.0, 15.0),
+    for (i, (kind, rate, wind, speed)) in [
+        (PrecipitationKind::IcePellets, 3.0, 0.0, 0.0),
+        (PrecipitationKind::Hail, 100.0, 8.0, 0.0),
+        (PrecipitationKind::SmallHail, 40.0, 15.0, 0.0),
+        (PrecipitationKind::SmallHail, 40.0, 0.0, 300.0),
     ]
     .into_iter()
     .enumerate()
@@ -34,14 +35,15 @@ fn stones_hide_as_much_as_their_extinction_says() {
         let (t, weather) = (10.0 + 50.0 * i as f64, ice(kind, rate, wind));
         host.context.set_weather(&weather, t, 0.0).unwrap();
         let wanted = Stones::new(&derive(&weather).unwrap().precipitation, 1.0, 100_000).hidden_depth();
+        host.velocity_m_s = DVec3::Y * speed;
         let mut seen = Vec::new();
         for k in 0..12 {
             host.context.update(t + f64::from(k)).unwrap();
             seen.push(mean(&through(&mut host)));
         }
         let got = -mean(&seen).ln();
-        println!("{kind:?}: {got:.5} of {wanted:.5}");
-        assert!((got / wanted - 1.0).abs() < 0.12, "{kind:?}: {got} of {wanted}");
+        println!("{kind:?} at {speed} m/s: {got:.5} of {wanted:.5}");
+        assert!((got / wanted - 1.0).abs() < 0.12, "{kind:?} at {speed} m/s: {got} of {wanted}");
     }
 }
 
