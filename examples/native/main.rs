@@ -7,7 +7,7 @@ mod world;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Mat4};
+use glam::{DVec3, Mat4, Vec3};
 use welkin::{
     context::{Context, ContextDesc, Scene},
     frame::{Frame, Shared, Stages, View, tone},
@@ -27,6 +27,8 @@ struct HostUniform {
     sun_light: [f32; 4],
     sky_light: [f32; 4],
     lamps: [[[f32; 4]; 3]; 2],
+    /// Lowest and highest corner of the bridge's deck, camera-relative; 1 in the last: there is one.
+    deck: [[f32; 4]; 2],
 }
 
 /// Everything the host owns: Welkin knows nothing of it but `device` and the two targets.
@@ -117,8 +119,8 @@ impl Host {
     }
 
     /// Vertices relative to the camera, so that f32 holds them.
-    fn vertices(&self, eye: DVec3) -> wgpu::Buffer {
-        let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2());
+    fn vertices(&self, eye: DVec3, bridge: bool) -> wgpu::Buffer {
+        let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2(), bridge);
         for v in &mut mesh {
             for (p, e) in v.position.iter_mut().zip(eye.to_array()) {
                 *p -= e as f32;
@@ -142,6 +144,7 @@ impl Host {
         scene: &Scene,
         lamps: &[HostLight],
         world: Option<&wgpu::Buffer>,
+        deck: [[f32; 4]; 2],
     ) {
         let eye = camera.position;
         let pad = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
@@ -151,6 +154,7 @@ impl Host {
             sun_light: pad(scene.ground.sun_lux),
             sky_light: pad(scene.ground.sky_lux),
             lamps: std::array::from_fn(|i| lamps.get(i).map_or([[0.0; 4]; 3], |l| lamp(l, eye))),
+            deck,
         };
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         let (color, depth) = (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
@@ -188,6 +192,15 @@ fn lamp(l: &HostLight, eye: DVec3) -> [[f32; 4]; 3] {
     ]
 }
 
+/// The deck of a shot's bridge as the host's shader reads it.
+fn deck(shot: &shots::Shot) -> [[f32; 4]; 2] {
+    let (foot, size) = world::bridge()[0];
+    let foot = foot - Vec3::new(0.0, 0.0, shot.height_m as f32);
+    let flat = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
+    let there = f32::from(u8::from(shot.bridge));
+    [(foot - flat).extend(there).to_array(), (foot + flat + Vec3::new(0.0, 0.0, size.z)).extend(there).to_array()]
+}
+
 /// One picture: the host's world with the weather drawn into it.
 fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
@@ -214,10 +227,10 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
             view.record(&context, &frame, Stages::PREPARE)?;
         }
     }
-    let vertices = shot.above_ground.then(|| host.vertices(eye));
+    let vertices = shot.above_ground.then(|| host.vertices(eye, shot.bridge));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
     let scene = context.scene_at(eye, context.time_s())?;
-    host.draw(&mut encoder, &camera, &scene, context.lights(), vertices.as_ref());
+    host.draw(&mut encoder, &camera, &scene, context.lights(), vertices.as_ref(), deck(shot));
     let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;

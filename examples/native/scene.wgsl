@@ -18,6 +18,7 @@ struct Host {
     sky_light: vec3f,         // illuminance of the sky on level ground, lux
     pad2: f32,
     lamps: array<Lamp, 2>,
+    deck: array<vec4f, 2>,    // lowest and highest corner of a deck, camera-relative; 1 in the last: there is one
 }
 
 @group(0) @binding(0) var<uniform> host: Host;
@@ -34,10 +35,34 @@ fn vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @location(2)
     return Varying(host.view_projection * vec4f(position, 1.0), normal, albedo, position);
 }
 
+// Part of the sky's light on level ground that a level rectangle hides, whose corner is `a` away over its height; as odd in
+// both, sums of corners are rectangles (Howell, Catalog of Radiation Heat Transfer Configuration Factors, B-4).
+fn hidden_by(a: vec2f) -> f32 {
+    let r = inverseSqrt(1.0 + a * a);
+    return (a.x * r.x * atan(a.y * r.x) + a.y * r.y * atan(a.x * r.y)) / 6.2831853;
+}
+
+// Share of the sky's light that a surface gets.
+fn sky_share(p: vec3f, n: vec3f) -> f32 {
+    let up = 0.5 + 0.5 * n.z;
+    let height = host.deck[0].z - p.z;
+    if host.deck[0].w == 0.0 {
+        return up;
+    }
+    var hidden = 0.0;
+    if height > 0.01 {
+        let a = (host.deck[0].xy - p.xy) / height;
+        let b = (host.deck[1].xy - p.xy) / height;
+        hidden = hidden_by(b) - hidden_by(vec2f(a.x, b.y)) - hidden_by(vec2f(b.x, a.y)) + hidden_by(a);
+    }
+    // What looks down is lit by the ground.
+    return up * (1.0 - hidden) + 0.12 * (1.0 - up);
+}
+
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4f {
     let n = normalize(in.normal);
-    var light = host.sun_light * max(dot(n, host.sun), 0.0) + host.sky_light * (0.5 + 0.5 * n.z);
+    var light = host.sun_light * max(dot(n, host.sun), 0.0) + host.sky_light * sky_share(in.place, n);
     for (var i = 0; i < 2; i++) {
         let lamp = host.lamps[i];
         let to = in.place - lamp.position;

@@ -1,17 +1,19 @@
 //! The pictures of the gallery: where, when and in what weather.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3, Vec3};
 use welkin::{
     context::{Context, GivenDirection},
     frame::Exposure,
     glass::{Pane, Windscreen, WiperArm},
-    rain::{AreaRain, AreaShape, RainArea},
+    rain::{AreaRain, AreaShape, RainArea, Shelter},
     scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, Precipitation,
         PrecipitationKind, Surface, SurfaceState, Weather, Wind,
     },
 };
+
+use crate::world;
 
 pub struct Shot {
     pub name: &'static str,
@@ -26,6 +28,8 @@ pub struct Shot {
     pub fov_y_deg: f64,
     /// Sets sun and weather; the second argument is the ground's altitude below the camera, m.
     pub weather: fn(&mut Context, f64) -> welkin::Result<()>,
+    /// Whether there is a bridge over the road.
+    pub bridge: bool,
     /// The window that the camera looks through at a time, s.
     pub windscreen: Option<fn(f64) -> Windscreen>,
 }
@@ -80,8 +84,12 @@ const GROUND: Shot = Shot {
     elevation_deg: 4.0,
     fov_y_deg: 50.0,
     weather: |_, _| Ok(()),
+    bridge: false,
     windscreen: None,
 };
+
+/// On the valley's level floor.
+const FLOOR: Shot = Shot { at: [2604.0, 138.8], height_m: 1.8, ..GROUND };
 
 pub fn shots() -> Vec<Shot> {
     vec![
@@ -129,8 +137,6 @@ pub fn shots() -> Vec<Shot> {
         Shot {
             name: "hail",
             caption: "Hail, 40 mm/h",
-            at: [2604.0, 138.8],
-            height_m: 1.8,
             elevation_deg: -8.0,
             weather: |c, ground| {
                 sun(c, 70.0, 40.0)?;
@@ -145,13 +151,11 @@ pub fn shots() -> Vec<Shot> {
                 };
                 c.set_weather(&weather, 0.0, 0.0)
             },
-            ..GROUND
+            ..FLOOR
         },
         Shot {
             name: "blowing_sand",
             caption: "Blowing sand, visibility 500 m",
-            at: [2604.0, 138.8],
-            height_m: 1.8,
             elevation_deg: -2.0,
             weather: |c, ground| {
                 sun(c, 235.0, 40.0)?;
@@ -166,13 +170,11 @@ pub fn shots() -> Vec<Shot> {
                 };
                 c.set_weather(&weather, 0.0, 0.0)
             },
-            ..GROUND
+            ..FLOOR
         },
         Shot {
             name: "wet_road",
             caption: "Wet road after a shower, low sun",
-            at: [2604.0, 138.8],
-            height_m: 1.8,
             elevation_deg: -6.0,
             weather: |c, ground| {
                 sun(c, 14.0, 9.0)?;
@@ -180,7 +182,63 @@ pub fn shots() -> Vec<Shot> {
                 let wind = Wind::of(2.0, 250.0);
                 c.set_weather(&Weather { surface, wind, station_altitude_m: ground, ..Weather::default() }, 0.0, 0.0)
             },
-            ..GROUND
+            ..FLOOR
+        },
+        Shot {
+            name: "drizzle",
+            caption: "Drizzle, 0.5 mm/h, visibility 3 km",
+            elevation_deg: -3.0,
+            weather: |c, ground| {
+                sun(c, 70.0, 35.0)?;
+                let weather = Weather {
+                    visibility_m: 3000.0,
+                    relative_humidity: 0.98,
+                    fog: Fog::of(FogKind::Mist),
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Stratus, 1.0, 250.0)],
+                    precipitation: Precipitation::of(PrecipitationKind::Drizzle, 0.5),
+                    wind: Wind::of(2.0, 260.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)
+            },
+            ..FLOOR
+        },
+        Shot {
+            name: "steady_rain",
+            caption: "Steady rain, 6 mm/h",
+            elevation_deg: -5.0,
+            weather: steady_rain,
+            ..FLOOR
+        },
+        Shot {
+            name: "under_the_bridge",
+            caption: "Dry under the bridge, its windward edge wet",
+            elevation_deg: -3.0,
+            azimuth_deg: 24.0,
+            bridge: true,
+            weather: |c, ground| {
+                sun(c, 70.0, 35.0)?;
+                let weather = Weather {
+                    visibility_m: 4000.0,
+                    relative_humidity: 0.95,
+                    station_altitude_m: ground,
+                    clouds: vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 400.0)],
+                    precipitation: Precipitation::of(PrecipitationKind::Rain, 20.0),
+                    wind: Wind::of(3.0, 98.0),
+                    ..Weather::default()
+                };
+                c.set_weather(&weather, 0.0, 0.0)?;
+                let foot = DVec3::new(f64::from(FLOOR.at[0]), f64::from(FLOOR.at[1]), ground);
+                let shelter = |(at, size): &(Vec3, Vec3)| Shelter {
+                    center_m: foot + at.as_dvec3() + DVec3::Z * (0.5 * f64::from(size.z)),
+                    axes: DMat3::IDENTITY,
+                    half_size_m: 0.5 * size.as_dvec3(),
+                    velocity_m_s: DVec3::ZERO,
+                };
+                c.set_shelters(&world::bridge().iter().map(shelter).collect::<Vec<_>>())
+            },
+            ..FLOOR
         },
         Shot {
             name: "cloudburst",
