@@ -253,6 +253,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_WIND_GRID 43
 /** wk_occluder_map */
 #define WK_STRUCT_TYPE_OCCLUDER_MAP 44
+/** wk_shelter_shape */
+#define WK_STRUCT_TYPE_SHELTER_SHAPE 45
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3742,7 +3744,8 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * picture shows within ten metres.
  *
  * What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
- * crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry.
+ * crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry. Planes cut a box to any
+ * convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
  * ====================================================================================================
  */
 
@@ -3801,7 +3804,7 @@ typedef struct wk_shelter {
     uint32_t struct_size;
     /** WK_STRUCT_TYPE_SHELTER. */
     wk_struct_type struct_type;
-    /** No extensions in this version: NULL. */
+    /** NULL (the default), or a wk_shelter_shape. */
     const void *next;
     /** Its middle, m, within 1e12 m of the origin. Default 0, 0, 0. */
     double center_m[3];
@@ -3822,6 +3825,38 @@ typedef struct wk_shelter {
     /* axes */ { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }, \
     /* half_size_m */ { 1.0, 1.0, 1.0 }, \
     /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * Planes that cut a wk_shelter, in whose chain it stands, to another convex shape: what of the box lies beyond any of them
+ * keeps nothing off. So a convex shape is the box about it and its faces.
+ */
+typedef struct wk_shelter_shape {
+    /** sizeof(wk_shelter_shape) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SHELTER_SHAPE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Planes. Range [0, 16], default 0: the box stays whole. */
+    uint32_t plane_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * Four numbers each: a unit vector along the box's axes that points out of the shape, and how far along it from the box's
+     * middle the plane lies, m, within 1e6. They must leave some of the box. Default 0.
+     */
+    double planes[64];
+} wk_shelter_shape;
+
+/** Every field of `wk_shelter_shape` at its default. */
+#define WK_SHELTER_SHAPE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_shelter_shape), \
+    /* struct_type */ WK_STRUCT_TYPE_SHELTER_SHAPE, \
+    /* next */ NULL, \
+    /* plane_count */ 0, \
+    /* reserved0 */ 0, \
+    /* planes */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 } \
 }
 
 /**
@@ -3857,6 +3892,14 @@ WK_API wk_status wk_rain_init(wk_rain *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_shelter_init(wk_shelter *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SHELTER_SHAPE_INIT`. `struct_size` is `sizeof(wk_shelter_shape)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_shelter_shape_init(wk_shelter_shape *out,
+                                uint32_t struct_size);
 
 /*
  * ====================================================================================================

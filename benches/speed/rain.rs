@@ -8,7 +8,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    rain::{AreaMotion, AreaShape, OccluderMap, RainArea, RainModel, RainSettings, Shelter, Taken},
+    rain::{AreaMotion, AreaShape, OccluderMap, Planes, RainArea, RainModel, RainSettings, Shelter, Taken},
     scene::{Camera, HostLight},
     weather::{Precipitation, PrecipitationKind, Weather},
 };
@@ -223,6 +223,7 @@ pub fn run() -> Fallible<()> {
             axes: DMat3::IDENTITY,
             half_size_m: DVec3::splat(3.0),
             velocity_m_s: DVec3::ZERO,
+            planes: Planes::NONE,
         })
         .collect();
     let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;

@@ -12,7 +12,8 @@ use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::rain::{
-    Classes, DropLight, RainModel, RainSettings, Shelter, drops, lattice, light, sizes::DropSizes, source::SourceLod,
+    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, drops, lattice, light, sizes::DropSizes,
+    source::SourceLod,
 };
 use welkin::scene::{Camera, HostLight};
 use welkin::sky::SkySettings;
@@ -196,6 +197,7 @@ impl Host {
             axes: DMat3::IDENTITY,
             half_size_m: DVec3::splat(10.0 * lattice::REACH_M),
             velocity_m_s: DVec3::ZERO,
+            planes: Planes::NONE,
         };
         self.context.set_shelters(&[tent])?;
         self.set(RainSettings { model: RainModel::Drops, ..RainSettings::default() })?;

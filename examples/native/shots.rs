@@ -5,7 +5,7 @@ use welkin::{
     context::{Context, GivenDirection},
     frame::Exposure,
     glass::{Pane, Windscreen, WiperArm},
-    rain::{AreaRain, AreaShape, RainArea, Shelter},
+    rain::{AreaRain, AreaShape, Planes, RainArea, Shelter},
     scene::HostLight,
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, Precipitation,
@@ -235,6 +235,7 @@ pub fn shots() -> Vec<Shot> {
                     axes: DMat3::IDENTITY,
                     half_size_m: 0.5 * size.as_dvec3(),
                     velocity_m_s: DVec3::ZERO,
+                    planes: Planes::NONE,
                 };
                 c.set_shelters(&world::bridge().iter().map(shelter).collect::<Vec<_>>())
             },

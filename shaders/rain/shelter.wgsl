@@ -2,12 +2,15 @@
 //!include "rain/occluders.wgsl"
 
 const MAX_SHELTERS: u32 = 32u;
+const MAX_CUTS: u32 = 512u;
 
 struct Shelter {
     // From camera-relative east-north-up into the box's own space, where it reaches from -1 to 1.
     rows: array<vec4f, 3>,
     // m/s; not 0 in the last: it moves.
     velocity: vec4f,
+    // Of the planes that cut it, the first and the one behind its last.
+    cuts: vec4u,
 }
 
 struct Shelters {
@@ -15,24 +18,29 @@ struct Shelters {
     near: u32,
     count: u32,
     boxes: array<Shelter, MAX_SHELTERS>,
+    // In the own space of their boxes: outward normal, distance.
+    cuts: array<vec4f, MAX_CUTS>,
 }
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// Whether what came to `p` with `velocity` met box `i`.
+// Whether what came to `p` with `velocity` met box `i`, or what planes leave of it.
 fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let back = shelters.boxes[i].velocity.xyz - velocity;
-    var near = 0.0;
-    var far = 1e30;
-    for (var j = 0u; j < 3u; j++) {
-        let row = shelters.boxes[i].rows[j];
-        let o = dot(row.xyz, p) + row.w;
-        let d = dot(row.xyz, back);
-        let inverse = 1.0 / select(d, 1e-9, abs(d) < 1e-9);
-        let a = (-1.0 - o) * inverse;
-        let c = (1.0 - o) * inverse;
-        near = max(near, min(a, c));
-        far = min(far, max(a, c));
+    let rows = shelters.boxes[i].rows;
+    let o = vec3f(dot(rows[0].xyz, p), dot(rows[1].xyz, p), dot(rows[2].xyz, p)) + vec3f(rows[0].w, rows[1].w, rows[2].w);
+    let d = vec3f(dot(rows[0].xyz, back), dot(rows[1].xyz, back), dot(rows[2].xyz, back));
+    let inverse = 1.0 / select(d, vec3f(1e-9), abs(d) < vec3f(1e-9));
+    let low = min((-1.0 - o) * inverse, (1.0 - o) * inverse);
+    let high = max((-1.0 - o) * inverse, (1.0 - o) * inverse);
+    var near = max(max(low.x, low.y), max(low.z, 0.0));
+    var far = min(high.x, min(high.y, high.z));
+    for (var j = shelters.boxes[i].cuts.x; j < shelters.boxes[i].cuts.y; j++) {
+        let plane = shelters.cuts[j];
+        let rate = dot(plane.xyz, d);
+        let at = (plane.w - dot(plane.xyz, o)) / select(rate, 1e-9, abs(rate) < 1e-9);
+        near = select(near, max(near, at), rate <= -1e-9);
+        far = select(min(far, at), far, rate <= -1e-9);
     }
     return far >= near;
 }

@@ -2,7 +2,10 @@
 
 use std::ffi::{CStr, c_char, c_void};
 
-use super::layout::{self, EnumInfo, Layout};
+use super::{
+    layout::{self, EnumInfo, Layout},
+    status::wk_struct_type,
+};
 use crate::error::{Error, Result, Status};
 
 /// # Errors
@@ -214,6 +217,24 @@ pub(super) unsafe fn each<T: Layout>(
     limit: usize,
     take: &mut dyn FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
+    // SAFETY: the caller's promise.
+    unsafe { each_with(param, p, (count, stride, limit), &[], take) }
+}
+
+/// As [`each`], where each may have extensions of the types `known`.
+///
+/// # Safety
+/// As [`each`]; every link of their chains is NULL or points to a struct that begins with a head.
+///
+/// # Errors
+/// As [`each`].
+pub(super) unsafe fn each_with<T: Layout>(
+    param: &str,
+    p: *const T,
+    (count, stride, limit): (usize, usize, usize),
+    known: &[wk_struct_type],
+    take: &mut dyn FnMut(usize, T) -> Result<()>,
+) -> Result<()> {
     check_count(param, count, limit)?;
     if count == 0 {
         return Ok(());
@@ -242,7 +263,7 @@ pub(super) unsafe fn each<T: Layout>(
         // SAFETY: the caller's promise.
         let value = unsafe { layout::read(&Indexed(param, i), at)? };
         // SAFETY: as above.
-        unsafe { layout::check_chain(&Indexed(param, i), layout::head_of(&value).next, &[])? };
+        unsafe { layout::check_chain(&Indexed(param, i), layout::head_of(&value).next, known)? };
         take(i, value)?;
     }
     Ok(())

@@ -6,7 +6,8 @@
 //! picture shows within ten metres.
 //!
 //! What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
-//! crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry.
+//! crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry. Planes cut a box to any
+//! convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -21,8 +22,8 @@ use super::{
     view::{ViewObject, wk_view},
 };
 use crate::{
-    error::{Error, Status},
-    rain::{MAX_SHELTERS, RainModel, RainSettings, Shelter},
+    error::{Error, Result, Status},
+    rain::{MAX_SHELTERS, Planes, RainModel, RainSettings, Shelter},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
@@ -80,7 +81,7 @@ pub struct wk_shelter {
     pub struct_size: u32,
     /// WK_STRUCT_TYPE_SHELTER.
     pub struct_type: wk_struct_type,
-    /// No extensions in this version: NULL.
+    /// NULL (the default), or a wk_shelter_shape.
     pub next: *const c_void,
     /// Its middle, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub center_m: [f64; 3],
@@ -102,6 +103,51 @@ impl wk_shelter {
         half_size_m: [1.0, 1.0, 1.0],
         velocity_m_s: [0.0, 0.0, 0.0],
     };
+}
+
+/// Planes that cut a wk_shelter, in whose chain it stands, to another convex shape: what of the box lies beyond any of them
+/// keeps nothing off. So a convex shape is the box about it and its faces.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_shelter_shape {
+    /// sizeof(wk_shelter_shape) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_SHELTER_SHAPE.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Planes. Range [0, 16], default 0: the box stays whole.
+    pub plane_count: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+    /// Four numbers each: a unit vector along the box's axes that points out of the shape, and how far along it from the box's
+    /// middle the plane lies, m, within 1e6. They must leave some of the box. Default 0.
+    pub planes: [f64; 64],
+}
+
+impl wk_shelter_shape {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_SHELTER_SHAPE,
+        next: null(),
+        plane_count: 0,
+        reserved0: 0,
+        planes: [
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
+        ],
+    };
+
+    fn planes(&self) -> Result<Planes> {
+        let planes = self.planes.as_chunks::<4>().0;
+        if self.plane_count as usize > planes.len() {
+            let accepted = format!("at most {}", planes.len());
+            return Err(Error::range("wk_shelter_shape.plane_count", &accepted, self.plane_count));
+        }
+        Planes::new(&planes[..self.plane_count as usize])
+    }
 }
 
 /// Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
@@ -148,11 +194,14 @@ pub unsafe extern "C" fn wk_context_set_shelters(
         let object = call.get::<ContextObject>("context", context)?;
         let mut list = [None; MAX_SHELTERS];
         let mut take = |i: usize, c: wk_shelter| {
+            // SAFETY: the chain was checked.
+            let shape = unsafe { layout::extension::<wk_shelter_shape>(c.next)? };
             let shelter = Shelter {
                 center_m: DVec3::from_array(c.center_m),
                 axes: DMat3::from_cols_array(&c.axes),
                 half_size_m: DVec3::from_array(c.half_size_m),
                 velocity_m_s: DVec3::from_array(c.velocity_m_s),
+                planes: shape.map_or(Ok(Planes::NONE), |s| s.planes())?,
             };
             let named = |e: Error| Error::new(e.status, e.message.replacen("shelter.", &format!("shelters[{i}]."), 1));
             shelter.validate().map_err(named)?;
@@ -161,7 +210,8 @@ pub unsafe extern "C" fn wk_context_set_shelters(
         };
         // SAFETY: the caller's promise about `shelters`.
         unsafe {
-            input::each("shelters", shelters, count as usize, stride as usize, MAX_SHELTERS, &mut take)?;
+            let list = (count as usize, stride as usize, MAX_SHELTERS);
+            input::each_with("shelters", shelters, list, &[WK_STRUCT_TYPE_SHELTER_SHAPE], &mut take)?;
         }
         object.write().set_shelters(list.iter().flatten())?;
         Ok(Status::Ok)

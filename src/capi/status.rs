@@ -136,6 +136,8 @@ pub const WK_STRUCT_TYPE_RAIN_AREA: wk_struct_type = 42;
 pub const WK_STRUCT_TYPE_WIND_GRID: wk_struct_type = 43;
 /// wk_occluder_map
 pub const WK_STRUCT_TYPE_OCCLUDER_MAP: wk_struct_type = 44;
+/// wk_shelter_shape
+pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

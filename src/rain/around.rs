@@ -6,15 +6,19 @@ use glam::{DMat3, DVec3};
 use super::{
     OccluderMaps, Shelter,
     occluder::{MAX_OCCLUDER_MAPS, OccluderUniform},
-    shelter::MAX_SHELTERS,
+    shelter::{MAX_PLANES, MAX_SHELTERS},
 };
 use crate::{
     gpu::Device,
     scene::{HostLight, LightUniform, MAX_LIGHTS},
 };
 
-/// Two counts, and the boxes after them.
-const SHELTER_BYTES: usize = 16 + MAX_SHELTERS * 64;
+/// A box: its rows, its velocity, which planes cut it.
+const BOX_BYTES: usize = 80;
+/// Where the planes begin.
+const CUTS_AT: usize = 16 + MAX_SHELTERS * BOX_BYTES;
+/// Two counts, the boxes after them, and the planes.
+const SHELTER_BYTES: usize = CUTS_AT + MAX_SHELTERS * MAX_PLANES * 16;
 /// A count, where the cells begin, and the maps.
 const MAP_BYTES: usize = 16 + MAX_OCCLUDER_MAPS * size_of::<OccluderUniform>();
 /// A count, and the lamps.
@@ -148,11 +152,18 @@ impl Around {
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
         let matters = |s: &Shelter| s.matters(told.eye, told.to_enu, told.wind_m_s, told.slowest_m_s, told.reach_m);
         let boxes = &told.shelters[..told.shelters.len().min(MAX_SHELTERS)];
-        let mut i = 0;
+        let (mut i, mut cuts) = (0, 0);
         let mut near = 0u32;
         for first in [true, false] {
             for shelter in boxes.iter().filter(|s| matters(s) == first) {
-                put(STARTS[0] + 16 + 64 * i, bytemuck::cast_slice(&shelter.rows(told.eye, told.to_enu)));
+                let at = STARTS[0] + 16 + BOX_BYTES * i;
+                put(at, bytemuck::cast_slice(&shelter.rows(told.eye, told.to_enu)));
+                let begin = cuts;
+                for plane in shelter.cuts() {
+                    put(STARTS[0] + CUTS_AT + 16 * cuts, bytemuck::cast_slice(&plane));
+                    cuts += 1;
+                }
+                put(at + 64, bytemuck::cast_slice(&[begin as u32, cuts as u32]));
                 i += 1;
             }
             near = if first { i as u32 } else { near };

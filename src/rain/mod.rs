@@ -37,7 +37,7 @@ pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea
 pub use light::DropLight;
 pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use settings::{RainModel, RainSettings};
-pub use shelter::{MAX_SHELTERS, Shelter};
+pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 
 pub(crate) use area::Shaft;
 pub(crate) use around::{Around, Present, Told, layout as around_layout};

@@ -1,7 +1,8 @@
-//! What keeps rain off: boxes of the host (roofs, bridges, cabs, trucks), standing or moving.
+//! What keeps rain off: boxes of the host (roofs, bridges, cabs, trucks) and convex shapes cut from them, standing or moving.
 //!
 //! A drop is gone where its own slanted path back through the box's air meets the box: whatever the wind, it is dry behind a
-//! box and wet before it, and inside of one it is dry. Tested per drop and box, exactly.
+//! box and wet before it, and inside of one it is dry. Tested per drop and box, exactly. What meets a box that planes cut is
+//! clipped by these too.
 
 use glam::{DMat3, DVec3};
 
@@ -9,6 +10,42 @@ use crate::error::{Error, Result, check_range};
 
 /// Most boxes at a time.
 pub const MAX_SHELTERS: usize = 32;
+
+/// Most planes that cut one box.
+pub const MAX_PLANES: usize = 16;
+/// What planes leave of a box is at least this far from all of its faces somewhere, m.
+const THINNEST_M: f64 = 1e-5;
+
+/// Planes that cut a box to a convex shape: what lies beyond any of them is not part of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Planes {
+    all: [[f64; 4]; MAX_PLANES],
+    count: usize,
+}
+
+impl Planes {
+    /// None: the box stays whole.
+    pub const NONE: Self = Self { all: [[0.0; 4]; MAX_PLANES], count: 0 };
+
+    /// Each of them a unit vector along the box's axes that points out of the shape, and how far along it from the box's
+    /// middle the plane lies, m, within 1e6.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_PLANES`].
+    pub fn new(planes: &[[f64; 4]]) -> Result<Self> {
+        if planes.len() > MAX_PLANES {
+            return Err(Error::range("shelter.planes", &format!("at most {MAX_PLANES} planes"), planes.len()));
+        }
+        let mut all = [[0.0; 4]; MAX_PLANES];
+        all[..planes.len()].copy_from_slice(planes);
+        Ok(Self { all, count: planes.len() })
+    }
+
+    /// Normals and distances.
+    fn each(&self) -> impl ExactSizeIterator<Item = (DVec3, f64)> + Clone {
+        self.all[..self.count].iter().map(|&[x, y, z, d]| (DVec3::new(x, y, z), d))
+    }
+}
 
 /// A box that rain does not pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +58,8 @@ pub struct Shelter {
     pub half_size_m: DVec3,
     /// Its velocity in the host's world, m/s, at most 2000 in all.
     pub velocity_m_s: DVec3,
+    /// What cuts it to another convex shape.
+    pub planes: Planes,
 }
 
 impl Shelter {
@@ -48,7 +87,44 @@ impl Shelter {
         if speed.is_nan() || speed > 2000.0 {
             return Err(Error::range("shelter.velocity_m_s", "a vector of at most 2000 m/s", self.velocity_m_s));
         }
+        for (i, (n, d)) in self.planes.each().enumerate() {
+            if !((n.length() - 1.0).abs() <= 1e-3 && d.abs() <= 1e6) {
+                let accepted = format!("unit vectors and distances within 1e6 m in plane {i}");
+                return Err(Error::range("shelter.planes", &accepted, n.extend(d)));
+            }
+        }
+        if self.planes.count > 0 && self.thickness_m() < THINNEST_M {
+            return Err(Error::range("shelter.planes", "planes that leave some of the box", "nothing of it"));
+        }
         Ok(())
+    }
+
+    /// How far from all of its faces the mean of the shape's corners lies, m; below 0 if it has none.
+    fn thickness_m(&self) -> f64 {
+        const FACES: usize = 6 + MAX_PLANES;
+        let half = self.half_size_m;
+        let mut faces = [(DVec3::X, half.x); FACES];
+        for (i, axis) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+            faces[2 * i] = (axis, half[i]);
+            faces[2 * i + 1] = (-axis, half[i]);
+        }
+        self.planes.each().enumerate().for_each(|(i, plane)| faces[6 + i] = plane);
+        let faces = &faces[..6 + self.planes.count];
+        let slack = 1e-7 * half.max_element();
+        let within = |p: DVec3| faces.iter().map(|(n, d)| d - n.dot(p)).fold(f64::INFINITY, f64::min);
+        let (mut sum, mut corners) = (DVec3::ZERO, 0u32);
+        for (i, &(a, da)) in faces.iter().enumerate() {
+            for (j, &(b, db)) in faces.iter().enumerate().skip(i + 1) {
+                for &(c, dc) in &faces[j + 1..] {
+                    let det = a.dot(b.cross(c));
+                    let corner = (b.cross(c) * da + c.cross(a) * db + a.cross(b) * dc) / det;
+                    if det.abs() > 1e-9 && within(corner) > -slack {
+                        (sum, corners) = (sum + corner, corners + 1);
+                    }
+                }
+            }
+        }
+        if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
     /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not need.
@@ -81,7 +157,18 @@ impl Shelter {
     }
 }
 
-/// Whether what came to `p` with `velocity` (the host's world) met the box.
+impl Shelter {
+    /// Its planes as shaders test them, in the space of [`Shelter::rows`].
+    pub(crate) fn cuts(&self) -> impl ExactSizeIterator<Item = [f32; 4]> {
+        let half = self.half_size_m;
+        self.planes.each().map(move |(n, d)| {
+            let scale = (n * half).length();
+            (n * half / scale).extend(d / scale).as_vec4().to_array()
+        })
+    }
+}
+
+/// Whether what came to `p` with `velocity` (the host's world) met the box, or what planes leave of it.
 pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
     let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;
     let (o, d) = (own(p - shelter.center_m), own(shelter.velocity_m_s - velocity));
@@ -91,6 +178,16 @@ pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
         let (a, b) = ((-1.0 - o[i]) * inverse, (1.0 - o[i]) * inverse);
         near = near.max(a.min(b));
         far = far.min(a.max(b));
+    }
+    for (n, distance) in shelter.planes.each() {
+        let n = n * shelter.half_size_m;
+        let (out, rate) = (n.dot(o) - distance, n.dot(d));
+        let at = -out / if rate.abs() < 1e-9 { 1e-9 } else { rate };
+        if rate <= -1e-9 {
+            near = near.max(at);
+        } else {
+            far = far.min(at);
+        }
     }
     far >= near
 }
@@ -105,6 +202,7 @@ mod tests {
             axes: DMat3::IDENTITY,
             half_size_m: DVec3::new(10.0, 3.0, 0.2),
             velocity_m_s: DVec3::ZERO,
+            planes: Planes::NONE,
         }
     }
 
@@ -140,6 +238,50 @@ mod tests {
         assert!(sheltered(&truck, DVec3::new(0.5, 1.0, 1.0), rain), "in it");
     }
 
+    /// A gable roof 2 m high over 6 m, turned and moving.
+    fn gable() -> Shelter {
+        let slope = DVec3::new(0.0, 2.0, 3.0).normalize();
+        let planes = [[slope.x, slope.y, slope.z, slope.z], [0.0, -slope.y, slope.z, slope.z]];
+        Shelter {
+            axes: DMat3::from_rotation_z(0.7),
+            half_size_m: DVec3::new(5.0, 3.0, 1.0),
+            velocity_m_s: DVec3::new(3.0, -1.0, 0.0),
+            planes: Planes::new(&planes).unwrap(),
+            ..roof()
+        }
+    }
+
+    #[test]
+    fn a_path_meets_a_cut_box_where_a_point_that_goes_along_it_is_inside() {
+        let shape = gable();
+        let inside = |p: DVec3| {
+            let own = shape.axes.transpose() * (p - shape.center_m);
+            // By the roof's own geometry: 1 m below the ridge at the eaves' height.
+            own.abs().cmple(shape.half_size_m).all() && own.z <= 1.0 - own.y.abs() * (2.0 / 3.0)
+        };
+        let (mut met, mut by_box_only) = (0, 0);
+        for i in 0..3000u32 {
+            let random = |k: u32| f64::from(super::super::lattice::random3([i, k, 3])[0]) / 4_294_967_296.0;
+            let p = shape.center_m + (DVec3::new(random(0), random(1), random(2)) - 0.5) * DVec3::new(24.0, 24.0, 10.0);
+            let velocity = DVec3::new(30.0 * random(3) - 15.0, 30.0 * random(4) - 15.0, -1.0 - 8.0 * random(5));
+            let hit = sheltered(&shape, p, velocity);
+            let back = shape.velocity_m_s - velocity;
+            let marched = (0..6000).any(|k| inside(p + back.normalize() * (5e-3 * f64::from(k))));
+            // A march misses what is thinner than its step.
+            let thin = hit && !marched;
+            assert!(!marched || hit, "{p} {velocity}");
+            if thin {
+                let shrunk = Shelter { half_size_m: shape.half_size_m - 0.02, ..shape };
+                let planes = shape.planes.each().map(|(n, d)| n.extend(d - 0.02).to_array()).collect::<Vec<_>>();
+                let shrunk = Shelter { planes: Planes::new(&planes).unwrap(), ..shrunk };
+                assert!(!sheltered(&shrunk, p, velocity), "{p} {velocity}");
+            }
+            met += u32::from(hit);
+            by_box_only += u32::from(!hit && sheltered(&Shelter { planes: Planes::NONE, ..shape }, p, velocity));
+        }
+        assert!(met > 100 && by_box_only > 50, "{met} {by_box_only}");
+    }
+
     #[test]
     fn no_box_that_matters_is_left_out() {
         let (mut left_out, mut kept) = (0, 0);
@@ -167,15 +309,29 @@ mod tests {
     #[test]
     fn what_is_no_box_is_refused_by_name() {
         let nan = f64::NAN;
+        let cut = |planes: &[[f64; 4]]| Shelter { planes: Planes::new(planes).unwrap(), ..roof() };
         for (bad, name) in [
             (Shelter { center_m: DVec3::new(nan, 0.0, 0.0), ..roof() }, "shelter.center_m"),
             (Shelter { axes: DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)), ..roof() }, "shelter.axes"),
             (Shelter { half_size_m: DVec3::new(1.0, 0.0, 1.0), ..roof() }, "shelter.half_size_m"),
             (Shelter { velocity_m_s: DVec3::splat(5000.0), ..roof() }, "shelter.velocity_m_s"),
+            (cut(&[[0.0, 0.0, 2.0, 0.1]]), "shelter.planes must be unit vectors and distances within 1e6 m in plane 0"),
+            (cut(&[[0.0, 0.0, 1.0, 0.1], [0.0, 1.0, 0.0, nan]]), "plane 1"),
+            // Two that leave nothing between them, a sheet without thickness, one below the whole box.
+            (
+                cut(&[[0.0, 1.0, 0.0, -1.0], [0.0, -1.0, 0.0, 0.5]]),
+                "shelter.planes must be planes that leave some of the box",
+            ),
+            (cut(&[[0.0, 1.0, 0.0, 1.0], [0.0, -1.0, 0.0, -1.0]]), "leave some"),
+            (cut(&[[0.0, 0.0, 1.0, -0.3]]), "leave some"),
         ] {
             let e = bad.validate().unwrap_err();
             assert!(e.message.contains(name), "{}", e.message);
         }
-        roof().validate().unwrap();
+        for good in [roof(), gable(), cut(&[[0.0, 0.0, 1.0, 0.1999]]), cut(&[[1.0, 0.0, 0.0, 1e6]; 16])] {
+            good.validate().unwrap();
+        }
+        let many = Planes::new(&[[1.0, 0.0, 0.0, 1.0]; 17]).unwrap_err();
+        assert!(many.message.contains("shelter.planes must be at most 16 planes"), "{}", many.message);
     }
 }

@@ -8,6 +8,7 @@ mod areas;
 mod handles;
 mod plan;
 mod queries;
+mod shelters;
 mod sky;
 mod structs;
 mod weather;

@@ -104,6 +104,10 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_shelter", "shelters[0]", true, move |p| unsafe {
             wk_context_set_shelters(context, p.cast(), 1, 1 << 24)
         }),
+        case("wk_shelter_shape", "wk_shelter_shape", true, move |p| {
+            let shelter = wk_shelter { next: p, ..init("wk_shelter") };
+            unsafe { wk_context_set_shelters(context, &shelter, 1, size_of::<wk_shelter>() as u32) }
+        }),
         case("wk_rain_area", "areas[0]", true, move |p| unsafe {
             wk_context_set_rain_areas(context, p.cast(), 1, 1 << 24)
         }),

@@ -8,6 +8,7 @@ mod pictures;
 mod processes;
 mod sand;
 mod scene;
+mod shapes;
 mod shelter;
 mod stability;
 mod stones;

@@ -7,7 +7,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
-    rain::Shelter,
+    rain::{Planes, Shelter},
     scene::{Camera, DepthMapping, ViewRays},
     sky::SkySettings,
     weather::{Precipitation, PrecipitationKind, Weather},
@@ -37,6 +37,7 @@ pub fn upright(center: [f64; 3], half: [f64; 3]) -> Shelter {
         axes: DMat3::IDENTITY,
         half_size_m: DVec3::from(half),
         velocity_m_s: DVec3::ZERO,
+        planes: Planes::NONE,
     }
 }
 

@@ -124,10 +124,16 @@ fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<
     all.map(|d| hit(p + d)).all(|h| h == first).then_some(first)
 }
 
-/// One picture against the truth: every drop whose way is surely free is there, and nothing is dark but by such drops.
-/// Answers how many drops were surely kept off and how many were drawn.
-fn check(host: &mut Host, boxes: &[Shelter], classes: &Classes, slack_m: f64, what: &str) -> (u32, u32) {
-    let pixels = through(host, boxes);
+/// One picture against the truth: every drop whose way is surely free of `boxes` is there, and nothing is dark but by such
+/// drops; `visible` is what the picture shows. Answers how many drops were surely kept off and how many were drawn.
+pub fn check(
+    host: &mut Host,
+    (visible, boxes): (&[Shelter], &[Shelter]),
+    classes: &Classes,
+    slack_m: f64,
+    what: &str,
+) -> (u32, u32) {
+    let pixels = through(host, visible);
     let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
     let (w, h) = (f64::from(host.size.0), f64::from(host.size.1));
     let t = host.context.time_s();
@@ -147,7 +153,7 @@ fn check(host: &mut Host, boxes: &[Shelter], classes: &Classes, slack_m: f64, wh
     let splashes = Splashes::new(classes);
     let splash_velocity = wind - DVec3::Z * splashes.speed_m_s;
     for at in splashes.landings(11, eye, t).map(|l| l.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0)) {
-        let near = boxes.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
+        let near = visible.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
         // On tops, and where a side is all that the picture shows.
         let heights = near.flat_map(|b| (0..=20).map(|i| b.center_m.z + b.half_size_m.z * (0.1 * f64::from(i) - 1.0)));
         for z in heights.chain([0.0]) {
@@ -168,7 +174,7 @@ fn check(host: &mut Host, boxes: &[Shelter], classes: &Classes, slack_m: f64, wh
         let speed = f64::from(classes.table[drop.id.1 as usize][1]) * lattice::SPEED_UNIT;
         let free = surely(boxes, eye + drop.position_m, wind - DVec3::Z * speed, slack_m);
         let at = ((ndc.x * 0.5 + 0.5) * w, (0.5 - ndc.y * 0.5) * h);
-        let range = cast(boxes, eye, drop.position_m.normalize()).unwrap_or(1e9);
+        let range = cast(visible, eye, drop.position_m.normalize()).unwrap_or(1e9);
         let seen = drop.position_m.length() < range - 0.3;
         if free == Some(true) {
             dry += u32::from(seen && ndc.abs().max_element() < 1.0);
@@ -236,7 +242,7 @@ fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
             (DVec3::new(0.0, 6.5, 2.0), DVec3::new(-8.0, 1.0, 1.0)),
         ] {
             host.look(from, to);
-            let (a, b) = check(&mut host, &boxes, &classes, slack, &format!("wind {wind}"));
+            let (a, b) = check(&mut host, (&boxes, &boxes), &classes, slack, &format!("wind {wind}"));
             (dry, drawn) = (dry + a, drawn + b);
         }
         println!("wind {wind}: {dry} drops kept off, {drawn} drawn");
@@ -344,7 +350,7 @@ fn maps_keep_rain_off_on_both_drivers() {
 }
 
 /// Drops few enough to be told apart.
-fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
+pub fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
     host.view.set_rain(RainSettings { shutter_s: 1e-3, most_drops: Some(4000), ..RainSettings::default() }).unwrap();
     let weather = rain(rate, wind);
     host.context.set_weather(&weather, t, 0.0).unwrap();
