@@ -111,6 +111,7 @@ fn what_is_unknown_is_said_and_nothing_is_written() {
         (&["compare", "directional", "exact"], "same effect"),
         (&["compare", "directional"], "two candidates"),
         (&["compare", "directional", "isotropic", "--scene", "moon"], "--scene"),
+        (&["compare", "drops", "cones", "--scene", "moon"], "one of light, steady"),
         (&["stability", "everything"], "quadrature"),
         (&["draw"], "unknown command"),
         (&["chart", "sky", "--fast"], "--fast"),
@@ -352,6 +353,30 @@ fn a_map_is_written_and_reported() {
     run(&["stability", "over-relaxation", "--quick", "--out", out]).unwrap();
     let table = Table::read(&dir.0.join("stability.csv")).unwrap().unwrap();
     assert!(table.row("drag/0").is_some() && table.row("over-relaxation/1").is_some());
+}
+
+/// Of rain, whose drops are elsewhere in each, the textures are compared: the picture has both, and says what blocks say.
+#[test]
+fn two_ways_to_draw_rain_are_compared_block_by_block() {
+    let dir = Scratch::new("compare");
+    run(&["compare", "cones", "veil", "--scene", "light", "--out", dir.0.to_str().unwrap()]).unwrap();
+    assert!(dir.0.join("compare-cones-veil-light.png").exists());
+    let svg = std::fs::read_to_string(dir.0.join("compare-cones-veil-light.svg")).unwrap();
+    for said in ["A: cones", "B: veil", "blocks from the truth: p95", "blocks between them: p95"] {
+        assert!(svg.contains(said), "{said}");
+    }
+    let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
+    let steady = scenes::rain()[1];
+    let mut host = rain::Host::new(&device, &steady, (80, 40)).unwrap();
+    let one = |name| welkin::plan::candidate(Effect::Rain, name).unwrap().method;
+    let welkin::plan::Method::Rain(veil) = one("veil") else { panic!("no rain") };
+    let (a, b) = (host.drawn_by(&veil).unwrap(), host.drawn_by(&veil).unwrap());
+    // The same twice: nothing is brighter.
+    assert!(a.brighter(&b, 1.0).iter().all(|d| d.abs() < 1e-9) && a.last == b.last);
+    let mut darker = rain::Blocks::new((80, 40));
+    darker.add(&a.last.iter().map(|y| 0.5 * y).collect::<Vec<_>>());
+    let d = darker.brighter(&a, 0.0);
+    assert!(d.len() == 3200 && d.iter().all(|d| (d + 0.5).abs() < 1e-6), "{:?}", &d[..4]);
 }
 
 /// What is committed was charted with today's candidates, and shows what it must.

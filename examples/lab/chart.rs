@@ -318,10 +318,7 @@ fn rain_chart(lab: &Lab, options: &Options) -> Result<()> {
         let Method::Rain(method) = c.method else { continue };
         let mut blocks = Vec::new();
         for host in &mut hosts {
-            blocks.push(match method {
-                RainMethod::Offered(settings) => host.blocks(settings)?,
-                RainMethod::Source(lod) => host.source(&lod)?,
-            });
+            blocks.push(host.drawn_by(&method)?);
         }
         let settings = match method {
             RainMethod::Offered(settings) => settings,

@@ -1,18 +1,27 @@
 //! `lab compare A B`: two candidates' pictures side by side, their difference amplified, the figures under them.
 
-use welkin::plan::{Candidate, Effect, candidates};
+use image::RgbImage;
+use welkin::plan::{Candidate, Difference, Effect, Method, candidates, difference::percentile};
 use welkin::{Error, Result};
 
 use crate::canvas::{Anchor, Canvas, INK};
 use crate::chart::Lab;
 use crate::command::Options;
-use crate::picture::Picture;
+use crate::picture::{Figures, Picture};
 use crate::plot::short;
-use crate::{fog, scenes, sky};
+use crate::{fog, rain, scenes, sky};
 
-/// Size of a picture, and how large a pixel of it is drawn.
+/// Size of a picture of sky or fog.
 const SIZE: (u32, u32) = (128, 72);
-const ZOOM: f64 = 3.0;
+/// How wide pictures are drawn.
+const WIDTH: f64 = 384.0;
+
+/// A picture as it is shown, with what is said of it.
+struct Panel {
+    title: String,
+    image: RgbImage,
+    text: String,
+}
 
 /// Draws both and writes `compare-A-B-SCENE`.
 ///
@@ -26,19 +35,19 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
     let wanted = options.scene.as_deref().unwrap_or(match a.effect {
         Effect::Sky => "low-sun",
         Effect::Fog => "fog",
-        Effect::Rain => {
-            return Err(Error::range("A", "of sky or fog: no two ways to draw rain put drops in one place", a.name));
-        }
+        Effect::Rain => "shower",
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
-    let pictures = match a.effect {
-        Effect::Sky => sky_pictures(&lab, [a, b], scene, options.quick)?,
-        _ => fog_pictures(&lab, [a, b], scene)?,
+    let panels = match a.effect {
+        Effect::Sky => by_pixels([a.name, b.name], &sky_pictures(&lab, [a, b], scene, options.quick)?)?,
+        Effect::Fog => by_pixels([a.name, b.name], &fog_pictures(&lab, [a, b], scene)?)?,
+        Effect::Rain => by_blocks(&lab, [a, b], scene)?,
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
     let stem = options.out.join(format!("compare-{}-{}-{wanted}", a.name, b.name));
-    draw([a.name, b.name], wanted, &pictures)?.save(&stem)?;
+    draw(&format!("{} and {}, scene {wanted}", a.name, b.name), &panels).save(&stem)?;
+    panels[..2].iter().for_each(|p| println!("  {}: {}", p.title, p.text));
     println!("{}.png", stem.display());
     Ok(())
 }
@@ -64,56 +73,102 @@ fn fog_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Pictu
     Ok([one(pair[0])?, one(pair[1])?, fog::truth(&scene, &host)?])
 }
 
-fn draw(names: [&str; 2], scene: &str, [a, b, truth]: &[Picture; 3]) -> Result<Canvas> {
-    let (w, h) = (f64::from(SIZE.0) * ZOOM, f64::from(SIZE.1) * ZOOM);
-    let mut canvas = Canvas::new((2.0 * w + 60.0) as u32, (2.0 * h + 150.0) as u32);
-    canvas.text(&format!("{} and {}, scene {scene}", names[0], names[1]), (20.0, 20.0), 18.0, INK, Anchor::Left);
+/// Pictures that are compared pixel by pixel.
+fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4]> {
     let white = truth.white();
     let between = a.figures(b)?;
-    // The 95th percentile of the difference is shown as a third of white.
-    let gain = (0.33 / between.luminance.p95.max(1e-6)).clamp(1.0, 1e5);
+    let gain = gain(&between.luminance);
     let difference = Picture { texels: amplified(a, b, gain, white), ..a.clone() };
-    let cells = [
-        (format!("A: {}", names[0]), a.display(white), a.figures(truth)?),
-        (format!("B: {}", names[1]), b.display(white), b.figures(truth)?),
-        ("truth".to_owned(), truth.display(white), truth.figures(truth)?),
-        (
-            format!("A - B, x{}: red where A is brighter, blue where darker", short(gain)),
-            difference.display(1.0),
-            between,
-        ),
-    ];
-    for (i, (title, image, figures)) in cells.iter().enumerate() {
+    let text = |of: &str, figures: &Figures| {
+        format!("{}, perceptual {} %", said(of, &figures.luminance), short(100.0 * figures.perceptual))
+    };
+    let from_truth = |p: &Picture| Ok::<_, Error>(text("from the truth", &p.figures(truth)?));
+    Ok([
+        Panel { title: format!("A: {}", names[0]), image: a.display(white), text: from_truth(a)? },
+        Panel { title: format!("B: {}", names[1]), image: b.display(white), text: from_truth(b)? },
+        Panel { title: "truth".into(), image: truth.display(white), text: "the reference in f64".into() },
+        Panel { title: of_difference("", gain), image: difference.display(1.0), text: text("between them", &between) },
+    ])
+}
+
+/// Rain, of which no two ways put drops in the same places: compared block by block over some moments, as its chart is. The
+/// last moment is shown.
+fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4]> {
+    let mut host = rain::Host::new(&lab.device, &scenes::rain()[scene], rain::SIZE)?;
+    let (truth, white) = host.truth(1)?;
+    let mut drawn = |c: &Candidate| match c.method {
+        Method::Rain(method) => host.drawn_by(&method),
+        _ => Err(Error::range(c.name, "a way to draw rain", c.name)),
+    };
+    let [a, b] = [drawn(pair[0])?, drawn(pair[1])?];
+    let figures = |x: &rain::Blocks, y: &rain::Blocks| {
+        let mut errors = x.errors(y, white);
+        errors.sort_by(f64::total_cmp);
+        let at = |share| percentile(&errors, share);
+        Difference { median: at(0.5), p95: at(0.95), worst: at(1.0) }
+    };
+    let picture = |texels: Vec<[f64; 3]>| Picture { width: rain::SIZE.0, height: rain::SIZE.1, texels };
+    let shown = |b: &rain::Blocks| picture(b.last.iter().map(|y| [*y; 3]).collect()).display(white);
+    let between = figures(&a, &b);
+    let gain = gain(&between);
+    let difference = picture(a.brighter(&b, white).iter().map(|d| two_colours(gain * d)).collect());
+    let one = |which: &str, c: &Candidate, b: &rain::Blocks| Panel {
+        title: format!("{which}: {}", c.name),
+        image: shown(b),
+        text: said("blocks from the truth", &figures(b, &truth)),
+    };
+    Ok([
+        one("A", pair[0], &a),
+        one("B", pair[1], &b),
+        Panel { title: "truth".into(), image: shown(&truth), text: "all drops up to 14 m, each by itself".into() },
+        Panel {
+            title: of_difference("means of blocks, ", gain),
+            image: difference.display(1.0),
+            text: said("blocks between them", &between),
+        },
+    ])
+}
+
+/// What the difference is multiplied by: its 95th percentile is shown as a third of white.
+fn gain(between: &Difference) -> f64 {
+    (0.33 / between.p95.max(1e-6)).clamp(1.0, 1e5)
+}
+
+fn of_difference(what: &str, gain: f64) -> String {
+    format!("A - B, {what}x{}: red where A is brighter, blue where darker", short(gain))
+}
+
+fn said(of: &str, e: &Difference) -> String {
+    let [p95, median, worst] = [e.p95, e.median, e.worst].map(|v| short(100.0 * v));
+    format!("{of}: p95 {p95} %, median {median} %, worst {worst} %")
+}
+
+fn draw(heading: &str, panels: &[Panel; 4]) -> Canvas {
+    let (columns, rows) = panels[0].image.dimensions();
+    let zoom = WIDTH / f64::from(columns);
+    let (w, h) = (WIDTH, f64::from(rows) * zoom);
+    let mut canvas = Canvas::new((2.0 * w + 60.0) as u32, (2.0 * h + 150.0) as u32);
+    canvas.text(heading, (20.0, 20.0), 18.0, INK, Anchor::Left);
+    for (i, panel) in panels.iter().enumerate() {
         let (x, y) = (20.0 + (i % 2) as f64 * (w + 20.0), 52.0 + (i / 2) as f64 * (h + 52.0));
-        canvas.text(title, (x, y - 10.0), 13.0, INK, Anchor::Left);
-        for (px, py, c) in image.enumerate_pixels() {
-            let (left, top) = (x + f64::from(px) * ZOOM, y + f64::from(py) * ZOOM);
-            canvas.fill([left, top, left + ZOOM, top + ZOOM], (c[0], c[1], c[2]));
+        canvas.text(&panel.title, (x, y - 10.0), 13.0, INK, Anchor::Left);
+        for (px, py, c) in panel.image.enumerate_pixels() {
+            let (left, top) = (x + f64::from(px) * zoom, y + f64::from(py) * zoom);
+            canvas.fill([left, top, left + zoom, top + zoom], (c[0], c[1], c[2]));
         }
-        let e = figures.luminance;
-        let of = if i == 3 { "between them" } else { "from the truth" };
-        let text = format!(
-            "{of}: p95 {} %, median {} %, worst {} %, perceptual {} %",
-            short(100.0 * e.p95),
-            short(100.0 * e.median),
-            short(100.0 * e.worst),
-            short(100.0 * figures.perceptual)
-        );
-        let text = if i == 2 { "the reference in f64".to_owned() } else { text };
-        canvas.text(&text, (x, y + h + 10.0), 12.0, INK, Anchor::Left);
-        if i < 2 {
-            println!("  {title}: {text}");
-        }
+        canvas.text(&panel.text, (x, y + h + 10.0), 12.0, INK, Anchor::Left);
     }
-    Ok(canvas)
+    canvas
 }
 
 /// The relative difference in luminance: red where A is brighter, blue where it is darker.
 fn amplified(a: &Picture, b: &Picture, gain: f64, white: f64) -> Vec<[f64; 3]> {
     let y = welkin::sky::spectral::luminance;
-    let one = |(a, b): (&[f64; 3], &[f64; 3])| {
-        let d = gain * (y(a) - y(b)) / (y(b).max(0.0) + 0.01 * white);
-        [d.max(0.0), 0.25 * d.abs(), (-d).max(0.0)]
-    };
+    let one = |(a, b): (&[f64; 3], &[f64; 3])| two_colours(gain * (y(a) - y(b)) / (y(b).max(0.0) + 0.01 * white));
     a.texels.iter().zip(&b.texels).map(one).collect()
+}
+
+/// Red above 0, blue below.
+fn two_colours(d: f64) -> [f64; 3] {
+    [d.max(0.0), 0.25 * d.abs(), (-d).max(0.0)]
 }

@@ -12,8 +12,8 @@ use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::rain::{
-    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, drops, lattice, light, sizes::DropSizes,
-    source::SourceLod,
+    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, candidates::RainMethod, drops, lattice, light,
+    sizes::DropSizes, source::SourceLod,
 };
 use welkin::scene::{Camera, HostLight};
 use welkin::sky::SkySettings;
@@ -177,8 +177,15 @@ impl Host {
         Ok(texels.iter().map(|t| luminance(&[0, 1, 2].map(|i| f64::from(t[i])))).collect())
     }
 
-    /// Blocks of what is drawn with these settings.
-    pub fn blocks(&mut self, settings: RainSettings) -> Result<Blocks> {
+    /// Blocks of what a way to draw rain makes of the scene.
+    pub fn drawn_by(&mut self, method: &RainMethod) -> Result<Blocks> {
+        match method {
+            RainMethod::Offered(settings) => self.blocks(*settings),
+            RainMethod::Source(lod) => self.source(lod),
+        }
+    }
+
+    fn blocks(&mut self, settings: RainSettings) -> Result<Blocks> {
         self.set(settings)?;
         let mut blocks = Blocks::new(self.size);
         for _ in 0..MOMENTS {
@@ -235,7 +242,7 @@ impl Host {
     }
 
     /// Blocks of an older system's drops.
-    pub fn source(&mut self, lod: &SourceLod) -> Result<Blocks> {
+    fn source(&mut self, lod: &SourceLod) -> Result<Blocks> {
         let size = self.size;
         Ok(self.before(lod.reach_m, |drops, i| drops.source(size, lod, i))?.0)
     }
@@ -387,6 +394,8 @@ pub struct Blocks {
     /// Of each block: mean, deviation from pixel to pixel, from patch to patch; summed over pictures.
     sums: Vec<[f64; 3]>,
     pictures: usize,
+    /// The last picture's luminances.
+    pub last: Vec<f64>,
 }
 
 fn deviation(values: &[f64]) -> (f64, f64) {
@@ -396,13 +405,14 @@ fn deviation(values: &[f64]) -> (f64, f64) {
 }
 
 impl Blocks {
-    fn new(size: (u32, u32)) -> Self {
-        Self { size, sums: vec![[0.0; 3]; (size.0 / BLOCK * (size.1 / BLOCK)) as usize], pictures: 0 }
+    /// Of pictures of a size, of which there is none yet.
+    pub fn new(size: (u32, u32)) -> Self {
+        Self { size, sums: vec![[0.0; 3]; (size.0 / BLOCK * (size.1 / BLOCK)) as usize], pictures: 0, last: Vec::new() }
     }
 
     /// What does not change from picture to picture (the wall's edge, the sky's gradient) has a part in the deviations of
     /// both sides alike.
-    fn add(&mut self, picture: &[f64]) {
+    pub fn add(&mut self, picture: &[f64]) {
         let columns = self.size.0 / BLOCK;
         let at = |x: u32, y: u32| picture[(y * self.size.0 + x) as usize];
         for (i, sum) in self.sums.iter_mut().enumerate() {
@@ -420,6 +430,15 @@ impl Blocks {
             (0..3).for_each(|j| sum[j] += values[j]);
         }
         self.pictures += 1;
+        self.last = picture.to_vec();
+    }
+
+    /// How much brighter than in `other` each pixel's block is, over that and a hundredth of white.
+    pub fn brighter(&self, other: &Self, white: f64) -> Vec<f64> {
+        let mean = |b: &Self, i: usize| b.sums[i][0] / b.pictures as f64;
+        let one = |i: usize| (mean(self, i) - mean(other, i)) / (mean(other, i).max(0.0) + 0.01 * white);
+        let block = |k: u32| (k / self.size.0 / BLOCK * (self.size.0 / BLOCK) + k % self.size.0 / BLOCK) as usize;
+        (0..self.size.0 * self.size.1).map(|k| one(block(k))).collect()
     }
 
     /// How far each of these blocks is from the truth's: the worst of the three numbers' differences over the block's mean

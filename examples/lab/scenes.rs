@@ -162,7 +162,7 @@ pub fn find(effect: Effect, name: &str) -> Result<usize> {
     let names: Vec<&str> = match effect {
         Effect::Sky => SKY.iter().map(|s| s.name).collect(),
         Effect::Fog => fog().iter().map(|s| s.name).collect(),
-        Effect::Rain => Vec::new(),
+        Effect::Rain => rain().iter().map(|s| s.name).collect(),
     };
     let fault = || Error::range("--scene", &format!("one of {}", names.join(", ")), name);
     names.iter().position(|n| *n == name).ok_or_else(fault)
