@@ -112,6 +112,11 @@ struct RustHost {
     copy: wgpu::Texture,
     uniform: wgpu::Buffer,
     target: wgpu::TextureView,
+    /// A shader that does nothing, to what, and how often.
+    idle: wgpu::ComputePipeline,
+    held: wgpu::BindGroup,
+    list: wgpu::Buffer,
+    times: wgpu::Buffer,
 }
 
 fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
@@ -127,6 +132,34 @@ fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
         usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | color,
         view_formats: &[],
     })
+}
+
+/// A compute shader that does nothing to `buffer`.
+fn idle(device: &wgpu::Device, buffer: &wgpu::Buffer) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
+    let ty = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: wgpu::BufferSize::new(4),
+    };
+    let entry = wgpu::BindGroupLayoutEntry { binding: 0, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            bind_group_layouts: &[Some(&layout)],
+            ..Default::default()
+        })),
+        module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl("@compute @workgroup_size(1) fn idle() {}".into()),
+        }),
+        entry_point: None,
+        compilation_options: Default::default(),
+        cache: None,
+    });
+    let entries = [wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
+    let held = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    (pipeline, held)
 }
 
 impl RustHost {
@@ -145,6 +178,15 @@ impl RustHost {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let [list, times] = [wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDIRECT].map(|usage| {
+            device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: 64,
+                usage: wgpu::BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
+            })
+        });
+        let (idle, held) = idle(&device.device, &list);
         let color = texture(&device, wgpu::TextureFormat::Rgba16Float);
         Self {
             target: color.create_view(&Default::default()),
@@ -155,10 +197,15 @@ impl RustHost {
             context,
             view,
             uniform,
+            idle,
+            held,
+            list,
+            times,
         }
     }
 
-    /// The same wgpu calls without Welkin: uploads, a copy, a pass for the drops and one for the picture.
+    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and one for the
+    /// picture.
     fn bare(&self) {
         let device = &self.device.device;
         for _ in 0..5 {
@@ -166,6 +213,13 @@ impl RustHost {
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
         encoder.copy_texture_to_texture(self.color.as_image_copy(), self.copy.as_image_copy(), self.color.size());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.idle);
+        pass.set_bind_group(0, &self.held, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.dispatch_workgroups_indirect(&self.times, 0);
+        drop(pass);
         for label in ["drops", "composite"] {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(label),
@@ -178,6 +232,9 @@ impl RustHost {
                 ..Default::default()
             });
             pass.set_viewport(0.0, 0.0, 64.0, 36.0, 0.0, 1.0);
+            if label == "drops" {
+                pass.set_vertex_buffer(0, self.list.slice(..));
+            }
         }
         self.device.queue.submit([encoder.finish()]);
         self.device.wait().unwrap();

@@ -84,33 +84,45 @@ fn class_of(index: u32) -> u32 {
     return low;
 }
 
-fn drop_of(instance: u32) -> Drop {
-    let s = instance / rain.per_shell;
-    let index = instance % rain.per_shell;
-    let k = class_of(index);
-    let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
-    let size = rain.classes[k];
-    let place = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
-    let fallen = u32(size.y) * rain.cell[s].w;
-    return drop_at(s, k, index - first, place - vec3u(0u, 0u, fallen) - rain.cell[s].xyz);
+// What the drops of one class in one shell have in common.
+struct Kind {
+    s: u32,
+    k: u32,
+    // Of the shell's drops, its first and the one behind its last.
+    first: u32,
+    end: u32,
+    diameter: f32,
+    // Speed units.
+    speed: u32,
+    cell: vec4u,
+    shell: vec4f,
 }
 
-// The drop `number` of shell `s` and class `k`, `away_units` from the camera in 2^-32 of the cell's side.
-fn drop_at(s: u32, k: u32, number: u32, away_units: vec3u) -> Drop {
+fn kind_of(s: u32, k: u32) -> Kind {
     let size = rain.classes[k];
-    let away = bitcast<vec3i>(away_units);
-    let shell = rain.shell[s];
-    let p = vec3f(away) * (shell.x / 4294967296.0);
+    let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
+    return Kind(s, k, first, u32(size.z), size.x, u32(size.y), rain.cell[s], rain.shell[s]);
+}
+
+// Drop `index` of its shell.
+fn drop_of(kind: Kind, index: u32) -> Drop {
+    let place = random3(vec3u(rain.seed, (kind.s << 8u) | kind.k, index - kind.first));
+    return drop_at(kind, index, place - vec3u(0u, 0u, kind.speed * kind.cell.w) - kind.cell.xyz);
+}
+
+// The same, `away_units` from the camera in 2^-32 of the cell's side.
+fn drop_at(kind: Kind, index: u32, away_units: vec3u) -> Drop {
+    let shell = kind.shell;
+    let p = vec3f(bitcast<vec3i>(away_units)) * (shell.x / 4294967296.0);
     let d = length(p);
-    let last = s + 1u == SHELLS;
     let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
-    let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
+    let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), kind.s == 0u);
     var here = vec2f(1e9, rain.weight);
     if AREAS {
-        here = local_drops(k, p);
+        here = local_drops(kind.k, p);
     }
-    let share = select(0.0, inner * outer, f32(number) < here.x);
-    return Drop(p, size.x, size.y * SPEED_UNIT, share, here.y * f32(1u << s));
+    let share = select(0.0, inner * outer, f32(index - kind.first) < here.x);
+    return Drop(p, kind.diameter, f32(kind.speed) * SPEED_UNIT, share, here.y * f32(1u << kind.s));
 }
 
 // Radiance of a drop at `p` seen along `d`: it shows, small and upside down, most of the half space behind it, and what
@@ -137,17 +149,12 @@ struct RainVarying {
 
 // Whether a line between two points, some pixels wide, can be in the picture.
 fn in_picture(a: vec3f, b: vec3f) -> bool {
-    let ends = array<vec4f, 2>(rain.clip * vec4f(a, 1.0), rain.clip * vec4f(b, 1.0));
-    let side = 0.05 + 1.02 * vec2f(ends[0].w, ends[1].w);
-    let x = vec2f(ends[0].x, ends[1].x);
-    let y = vec2f(ends[0].y, ends[1].y);
+    let first = rain.clip * vec4f(a, 1.0);
+    let last = rain.clip * vec4f(b, 1.0);
+    let side = 0.05 + 1.02 * vec2f(first.w, last.w);
+    let x = vec2f(first.x, last.x);
+    let y = vec2f(first.y, last.y);
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
-}
-
-@vertex
-fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
-    let drop = drop_of(instance);
-    return streak_of(drop, rain.wind - vec3f(0.0, 0.0, drop.speed), corner);
 }
 
 // Half of the way that is drawn of what moves by `half` to either side of a place at distance `d`, and what its cover is
@@ -162,41 +169,84 @@ fn part_drawn(half: vec3f, d: f32) -> vec4f {
     return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
 }
 
-// A corner of the streak that a drop of a `velocity` draws.
-fn streak_of(drop: Drop, velocity: vec3f, corner: u32) -> RainVarying {
-    let d = max(length(drop.position), 1e-3);
-    let part = part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), d);
+// The same of a drop of a `velocity`.
+fn drop_part(drop: Drop, velocity: vec3f) -> vec4f {
+    return part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), max(length(drop.position), 1e-3));
+}
+
+// Whether a drop of a `velocity` can be in the picture, if nothing keeps it off.
+fn may_show(drop: Drop, velocity: vec3f) -> bool {
+    let half = drop_part(drop, velocity).xyz;
+    return drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
+}
+
+// What a drop draws.
+struct Streak {
+    // Its middle, camera-relative, m.
+    middle: vec3f,
+    // m; 0: nothing is drawn.
+    width: f32,
+    // From the middle to its end, m.
+    half: vec3f,
+    // Premultiplied.
+    light: vec4f,
+}
+
+// The streak of a drop of a `velocity`, if it `shows`.
+fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
+    let part = drop_part(drop, velocity);
     let half = part.xyz;
-    // Both ends of the streak, then its width across the picture.
-    let along = select(-1.0, 1.0, (corner & 2u) != 0u);
-    let side = select(-1.0, 1.0, (corner & 1u) != 0u);
-    let toward = drop.position / d;
-    var out: RainVarying;
-    out.position = vec4f(2.0, 2.0, 2.0, 1.0);
-    out.range = d;
-    out.across = side;
-    let shows = drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
     if !shows || sheltered(drop.position + half, velocity, shows) {
-        return out;
+        return Streak();
     }
-    let pixel = max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6);
-    let streak = half - toward * dot(half, toward);
-    let stretch = max(length(streak), 1e-6);
-    let lengthwise = streak / stretch;
-    let width = max(drop.diameter, pixel);
-    let reach = stretch + 0.5 * max(drop.diameter, pixel);
-    let end = drop.position + along * (half + lengthwise * (reach - stretch))
-        + cross(toward, lengthwise) * (side * 0.5 * width);
-    var clip = rain.clip * vec4f(end, 1.0);
-    clip.y *= rain.y_sign;
-    out.position = vec4f(clip.xy, 0.0, clip.w);
+    let d = max(length(drop.position), 1e-3);
+    let toward = drop.position / d;
+    let width = max(drop.diameter, max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6));
+    let stretch = max(length(half - toward * dot(half, toward)), 1e-6);
     // As much of the picture as the drop covers on the mean over the exposure: its disc, spread over the quad. The profile
     // across has the mean 2/3.
     let disc = 0.78539816 * drop.diameter * drop.diameter * drop.weight;
-    let cover = min(1.5 * disc / (2.0 * reach * width), 1.0) * (drop.share * part.w);
+    let cover = min(1.5 * disc / ((2.0 * stretch + width) * width), 1.0) * (drop.share * part.w);
     let clear = exp(-rain.extinction * d);
-    out.light = vec4f(drop_light(drop.position, toward) * (cover * clear), cover * clear);
-    return out;
+    let light = vec4f(drop_light(drop.position, toward) * (cover * clear), cover * clear);
+    return Streak(drop.position, width, half, light);
+}
+
+// Both ends of a streak, then its width across the picture.
+fn corner_of(streak: Streak, corner: u32) -> RainVarying {
+    let d = max(length(streak.middle), 1e-3);
+    let toward = streak.middle / d;
+    let along = select(-1.0, 1.0, (corner & 2u) != 0u);
+    let side = select(-1.0, 1.0, (corner & 1u) != 0u);
+    let way = streak.half - toward * dot(streak.half, toward);
+    let lengthwise = way / max(length(way), 1e-6);
+    let end = streak.middle + along * (streak.half + lengthwise * (0.5 * streak.width))
+        + cross(toward, lengthwise) * (side * 0.5 * streak.width);
+    var clip = rain.clip * vec4f(end, 1.0);
+    clip.y *= rain.y_sign;
+    let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), streak.width > 0.0);
+    return RainVarying(position, streak.light, d, side);
+}
+
+// Every drop of the lattice, where there are no compute shaders.
+@vertex
+fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
+    let index = instance % rain.per_shell;
+    let drop = drop_of(kind_of(instance / rain.per_shell, class_of(index)), index);
+    let velocity = rain.wind - vec3f(0.0, 0.0, drop.speed);
+    return corner_of(streak_of(drop, velocity, may_show(drop, velocity)), corner);
+}
+
+struct Listed {
+    @location(0) middle_width: vec4f,
+    @location(1) half: vec3f,
+    @location(2) light: vec4f,
+}
+
+// Those that were found to be in the picture (rain/cull.wgsl).
+@vertex
+fn listed_vertex(@builtin(vertex_index) corner: u32, listed: Listed) -> RainVarying {
+    return corner_of(Streak(listed.middle_width.xyz, listed.middle_width.w, listed.half, listed.light), corner);
 }
 
 fn streak(in: RainVarying, range: f32) -> vec4f {

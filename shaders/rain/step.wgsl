@@ -1,5 +1,6 @@
 // One frame of the drops that are stepped; the model is explained in src/rain/integrated.rs.
 //!include "rain/drops.wgsl"
+//!include "rain/state.wgsl"
 
 struct StepUniform {
     // Velocity of the air, m/s.
@@ -23,16 +24,6 @@ struct StepUniform {
     // Place of the camera in the cell of each shell, now and before, in 2^-32 of its side.
     eye: array<vec4u, SHELLS>,
     before: array<vec4u, SHELLS>,
-}
-
-struct State {
-    // Place in the cell, in 2^-32 of its side.
-    place: vec3u,
-    // How often it came in, times 2^16; shell.
-    word: u32,
-    // m/s.
-    velocity: vec3f,
-    pad: f32,
 }
 
 @group(1) @binding(0) var<uniform> stepping: StepUniform;

@@ -16,7 +16,7 @@ pub struct Caps {
     pub adapter_name: String,
     /// The driver's own name and version.
     pub driver: String,
-    /// 0 = no compute (GL 3.3 to 4.2, macOS GL), 1 = compute.
+    /// 0 = no compute (GL 3.3 to 4.2, macOS GL), 1 = compute, with counts that stay on the GPU.
     pub tier: u32,
     /// A driver that computes on the CPU.
     pub software: bool,
@@ -186,15 +186,18 @@ impl Device {
         binding: Option<Arc<dyn HostBinding>>,
     ) -> Result<Arc<Self>> {
         let info = adapter.get_info();
-        let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
-            && device.limits().max_compute_workgroup_size_x > 0;
+        let limits = device.limits();
+        let needed = wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+        let compute = adapter.get_downlevel_capabilities().flags.contains(needed)
+            && limits.max_compute_workgroup_size_x >= 128
+            && limits.max_storage_buffers_per_shader_stage >= 3;
         let caps = Caps {
             backend: info.backend,
             adapter_name: info.name.clone(),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
             tier: u32::from(compute && !force_tier0),
             software: info.device_type == wgpu::DeviceType::Cpu || info.name.contains("llvmpipe"),
-            max_texture_size: device.limits().max_texture_dimension_2d,
+            max_texture_size: limits.max_texture_dimension_2d,
         };
         let faults = Arc::new(Faults::default());
         watch(&device, &faults);

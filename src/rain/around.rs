@@ -79,10 +79,10 @@ impl Told<'_> {
 
 /// Layout of group 2 of drops and composition.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let block = |binding, size: usize| wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: both,
+        visibility: all,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
@@ -92,7 +92,7 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     };
     let table = wgpu::BindGroupLayoutEntry {
         binding: 2,
-        visibility: both,
+        visibility: all,
         ty: wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Uint,
             view_dimension: wgpu::TextureViewDimension::D2,

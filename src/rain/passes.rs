@@ -7,6 +7,7 @@ use super::{
     around::{self, Around},
     cone_pass::ConePass,
     cones::ConeUniform,
+    cull_pass::{CullPass, Lattice},
     lattice::SHELLS,
     splash::SplashUniform,
     step_pass::{StepPass, Stepped},
@@ -32,8 +33,10 @@ pub(crate) struct RainLayer {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     around: wgpu::BindGroupLayout,
-    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps.
+    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps. The drops' is
+    /// for devices that cannot draw by lists.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
+    cull: Option<Box<CullPass>>,
     cones: Option<ConePass>,
     stepped: Option<Box<StepPass>>,
     /// Hail and pellets, when some fell.
@@ -101,7 +104,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 }
 
 /// The columns of [`LocalUniform`], which are a block of their own.
-const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
+pub(super) const COLUMNS_BYTES: usize = std::mem::offset_of!(LocalUniform, counts);
 /// Where each block begins: rain, splashes, columns of areas, drops of areas; and the end.
 pub(super) const STARTS: [usize; 5] = {
     let splash = size_of::<RainUniform>().next_multiple_of(256);
@@ -123,6 +126,7 @@ impl RainLayer {
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             around: around::layout(&device.device),
             pipelines: [const { [None, None] }; 16],
+            cull: None,
             cones: None,
             stepped: None,
             stones: None,
@@ -136,7 +140,8 @@ impl RainLayer {
     pub fn bytes(&self) -> u64 {
         let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
         let cones = self.cones.as_ref().map_or(0, ConePass::bytes);
-        layer + cones + self.stepped.as_ref().map_or(0, |s| s.bytes())
+        let cull = self.cull.as_ref().map_or(0, |c| c.bytes());
+        layer + cones + cull + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
@@ -200,27 +205,40 @@ impl RainLayer {
         }
         if let Some(stepped) = drawn.stepped {
             let pass = self.stepped.get_or_insert_with(|| Box::new(StepPass::new(device)));
-            pass.prepare_draw(device, frame, kind, areas)?;
             pass.step(device, encoder, &self.blocks, stepped)?;
         }
-        for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
-            if slot.is_none() {
+        let listed = CullPass::serves(device);
+        if listed {
+            let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
+            let lattice = Lattice { per_shell: drawn.rain.per_shell, states, areas, maps: drawn.maps };
+            let pass = self.cull.get_or_insert_with(|| Box::new(CullPass::new(&device.device, &self.blocks)));
+            pass.prepare_draw(device, frame[0], (multi, depth.is_some()))?;
+            pass.find(device, encoder, (frame[1], over.1), lattice)?;
+        }
+        let vertices = [(!listed).then_some("rain_vertex"), depth.is_some().then_some("splash_vertex")];
+        for (slot, vertex) in self.pipelines[key].iter_mut().zip(vertices) {
+            if let (None, Some(vertex)) = (&slot, vertex) {
                 *slot = Some(pipeline(device, frame, vertex, kind, areas)?);
             }
         }
         self.draw_into(encoder, over, |pass, layer| {
-            let [Some(falling), Some(splashing)] = &layer.pipelines[key] else { return };
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, kind));
+                // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies elsewhere,
+                // nor that a group is set, if it is the same one.
+                pass.set_bind_group(2, None, &[]);
+                pass.set_bind_group(2, drawn.around.bind_group(), &[]);
             }
-            match (&layer.stepped, drawn.stepped) {
-                (Some(stepped), Some(_)) => stepped.draw(pass, kind, areas),
-                _ => {
+            let [falling, splashing] = &layer.pipelines[key];
+            match (&layer.cull, falling) {
+                (Some(cull), _) if listed => cull.draw(pass, (multi, depth.is_some())),
+                (_, Some(falling)) => {
                     pass.set_pipeline(falling);
                     pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
                 }
+                _ => {}
             }
-            if depth.is_some() && drawn.splashes > 0 {
+            if let (Some(splashing), 1..) = (splashing, drawn.splashes) {
                 pass.set_pipeline(splashing);
                 pass.draw(0..4, 0..drawn.splashes);
             }

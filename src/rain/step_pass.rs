@@ -1,22 +1,16 @@
-//! Drops that are stepped, on the GPU: their states, the pass that steps them, the draw.
+//! Drops that are stepped, on the GPU: their states, and the pass that steps them. [`super::cull_pass`] draws them.
 
 use std::sync::Arc;
 
 use super::{
     Classes,
+    cull_pass::source_layout,
     integrated::{Around, Left, StepUniform},
     lattice::SHELLS,
-    passes::{FORMAT, STARTS},
+    passes::STARTS,
     uniforms::{Air, RainUniform, Shot},
 };
-use crate::{
-    error::Result,
-    gpu::{
-        Device,
-        pass::{self, QuadsDesc},
-    },
-    wind::WindGrid,
-};
+use crate::{error::Result, gpu::Device, wind::WindGrid};
 
 /// Bytes of one drop: place and word, velocity.
 pub(crate) const STATE_BYTES: u64 = 32;
@@ -34,8 +28,6 @@ pub(crate) struct StepPass {
     layouts: [wgpu::BindGroupLayout; 3],
     /// With and without a grid.
     steps: [Option<wgpu::ComputePipeline>; 2],
-    /// For each kind of depth, with and without rims of areas near, and occluder maps.
-    draws: [Option<wgpu::RenderPipeline>; 16],
     groups: Option<[wgpu::BindGroup; 3]>,
 }
 
@@ -66,7 +58,7 @@ fn uniform(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::B
     }
 }
 
-/// Of the frame's blocks and of its own for the step, and of the draw's.
+/// Of the frame's blocks and of its own for the step, and of what draws them.
 fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
     let compute = wgpu::ShaderStages::COMPUTE;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: compute, ty, count: None };
@@ -98,7 +90,7 @@ fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
                 entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         ),
-        make("stepped", &[uniform(0, wgpu::ShaderStages::VERTEX, 16 * SHELLS)]),
+        source_layout(device),
     ]
 }
 
@@ -122,7 +114,6 @@ impl StepPass {
             }),
             layouts: layouts(&device.device),
             steps: [None, None],
-            draws: [const { None }; 16],
             groups: None,
         }
     }
@@ -151,7 +142,7 @@ impl StepPass {
             let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("drops"),
                 size: STATE_BYTES * u64::from(capacity) * SHELLS as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             });
             (self.states, self.left, self.groups) = (Some((capacity, buffer)), None, None);
@@ -183,39 +174,9 @@ impl StepPass {
         Ok(())
     }
 
-    /// Makes the draw's pipeline for a kind of depth, if it is not there.
-    ///
-    /// # Errors
-    /// A missing shader file.
-    pub fn prepare_draw(
-        &mut self,
-        device: &Arc<Device>,
-        [frame, around]: [&wgpu::BindGroupLayout; 2],
-        kind: (bool, bool, bool),
-        areas: bool,
-    ) -> Result<()> {
-        let slot = &mut self.draws[key(kind, areas)];
-        if slot.is_none() {
-            *slot = Some(draw_pipeline(device, [frame, &self.layouts[2], around], kind, areas)?);
-        }
-        Ok(())
-    }
-
-    /// Draws what was stepped; the other groups are set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), areas: bool) {
-        let pipeline = &self.draws[key(kind, areas)];
-        let (Some(pipeline), Some(groups), Some((capacity, states)), Some(left)) =
-            (pipeline, &self.groups, &self.states, &self.left)
-        else {
-            return;
-        };
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(1, &groups[2], &[]);
-        for shell in 0..SHELLS as u64 {
-            let first = shell * u64::from(*capacity) * STATE_BYTES;
-            pass.set_vertex_buffer(0, states.slice(first..));
-            pass.draw(0..4, 0..left.per_shell);
-        }
+    /// The states as [`source_layout`] binds them, once there are any.
+    pub fn states(&self) -> Option<&wgpu::BindGroup> {
+        self.groups.as_ref().map(|[.., states]| states)
     }
 
     fn take_wind(&mut self, device: &Device, wind: Option<&Arc<WindGrid>>) {
@@ -257,13 +218,12 @@ impl StepPass {
                     entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
                 ],
             ),
-            group(&self.layouts[2], &[entry(0, part(&self.block, EYES, 16 * SHELLS))]),
+            group(
+                &self.layouts[2],
+                &[entry(0, part(&self.block, EYES, 16 * SHELLS)), entry(1, states.as_entire_binding())],
+            ),
         ]);
     }
-}
-
-fn key((multi, has_depth, maps): (bool, bool, bool), areas: bool) -> usize {
-    [areas, maps, multi, has_depth].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
 }
 
 fn wind_texture(device: &Device, nodes: [u32; 3], velocities: &[[f32; 3]]) -> wgpu::TextureView {
@@ -309,35 +269,6 @@ fn step_pipeline(
         compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
         cache: None,
     }))
-}
-
-fn draw_pipeline(
-    device: &Arc<Device>,
-    layouts: [&wgpu::BindGroupLayout; 3],
-    (multi, has_depth, maps): (bool, bool, bool),
-    areas: bool,
-) -> Result<wgpu::RenderPipeline> {
-    let vertex = device.shader("rain/integrated.wgsl")?;
-    let fragment = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
-    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
-    let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
-    let attribute = |shader_location, offset, format| wgpu::VertexAttribute { format, offset, shader_location };
-    let attributes = [attribute(0, 0, wgpu::VertexFormat::Uint32x4), attribute(1, 16, wgpu::VertexFormat::Float32x4)];
-    Ok(pass::quads(
-        device,
-        &QuadsDesc {
-            label: "stepped",
-            vertex: (&vertex, "integrated_vertex", &near),
-            fragment: (&fragment, "rain_fragment", &constants),
-            layouts: &layouts.map(Some),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: STATE_BYTES,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            })],
-            format: FORMAT,
-        },
-    ))
 }
 
 #[cfg(test)]

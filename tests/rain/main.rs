@@ -2,6 +2,7 @@
 
 mod areas;
 mod cones;
+mod culled;
 mod drops;
 mod integrated;
 mod pictures;

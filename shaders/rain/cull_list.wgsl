@@ -1,0 +1,57 @@
+// The list of drops that a picture shows, of all in the shells round the camera: which they are stands in a bit each, in the
+// lattice's order, so the list's order is that order and depends on no thread's haste.
+//!include "rain/drops.wgsl"
+//!include "rain/state.wgsl"
+
+// Whether drops are stepped.
+override STEPPED: bool = false;
+
+// Words of bits of a block.
+const WORDS: u32 = 4u;
+
+struct Block {
+    seen: array<u32, WORDS>,
+    // Drops that are seen in the blocks before.
+    before: u32,
+}
+
+@group(1) @binding(0) var<storage, read_write> blocks: array<Block>;
+@group(1) @binding(1) var<storage, read_write> streaks: array<Streak>;
+// Place of the camera in the cell of each shell, and the stepped drops, shell after shell.
+@group(3) @binding(0) var<uniform> eyes: array<vec4u, SHELLS>;
+@group(3) @binding(1) var<storage, read> states: array<State>;
+
+struct Moving {
+    drop: Drop,
+    velocity: vec3f,
+}
+
+// Drops of each shell.
+fn shell_drops() -> u32 {
+    if STEPPED {
+        return min(rain.per_shell, arrayLength(&states) / SHELLS);
+    }
+    return rain.per_shell;
+}
+
+fn shell_blocks() -> u32 {
+    return (rain.per_shell + 32u * WORDS - 1u) / (32u * WORDS);
+}
+
+// Drop `index` of its shell.
+fn moving(kind: Kind, index: u32) -> Moving {
+    if STEPPED {
+        let state = states[kind.s * (arrayLength(&states) / SHELLS) + index];
+        return Moving(drop_at(kind, index, state.place - eyes[kind.s].xyz), state.velocity);
+    }
+    let drop = drop_of(kind, index);
+    return Moving(drop, rain.wind - vec3f(0.0, 0.0, drop.speed));
+}
+
+fn seen_in(block: u32) -> u32 {
+    var sum = 0u;
+    for (var i = 0u; i < WORDS; i++) {
+        sum += countOneBits(blocks[block].seen[i]);
+    }
+    return sum;
+}

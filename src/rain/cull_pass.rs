@@ -1,0 +1,337 @@
+//! Drops by a list of those that the picture shows: a few in a hundred of the lattice.
+//!
+//! Three passes of compute shaders (`shaders/rain/cull.wgsl`, `cull_streaks.wgsl`): each drop is asked whether it can be in the
+//! picture; those that can are counted off in the lattice's order, near shells first; and what makes each one's streak,
+//! shelter and lamps with it, is found once. The draw then only spreads the streaks' corners. How many there are stays on the GPU.
+
+use super::{
+    LocalUniform,
+    lattice::SHELLS,
+    passes::{COLUMNS_BYTES, FORMAT, STARTS},
+    step_pass::STATE_BYTES,
+    uniforms::RainUniform,
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, QuadsDesc},
+    },
+};
+
+/// Bytes of a `Streak` of `shaders/rain/drops.wgsl`.
+const STREAK_BYTES: u64 = 48;
+/// Bytes and drops of a `Block` of `shaders/rain/cull_list.wgsl`.
+const BLOCK_BYTES: u64 = 20;
+const BLOCK_DROPS: u32 = 128;
+/// Bytes of `Found` of `shaders/rain/cull.wgsl`, and where the workgroups stand in it.
+const FOUND_BYTES: u64 = 32;
+const GROUPS_AT: u64 = 16;
+/// Threads of a workgroup, one for 32 drops.
+const MARK_DROPS: u32 = 64 * 32;
+/// Room of a list, whatever the lattice: beyond the share of it that [`room`] says.
+const LEAST_ROOM: u64 = 16_384;
+
+/// What a view holds to draw drops by lists.
+pub(super) struct CullPass {
+    /// Of the frame's blocks, of the list as it is found and as it is read, and of stepped drops.
+    layouts: [wgpu::BindGroupLayout; 4],
+    frame: wgpu::BindGroup,
+    /// In place of stepped drops.
+    unstepped: wgpu::BindGroup,
+    found: wgpu::Buffer,
+    list: Option<List>,
+    /// With and without states.
+    marks: [Option<wgpu::ComputePipeline>; 2],
+    order: Option<wgpu::ComputePipeline>,
+    /// Likewise, with and without rims of areas near, and occluder maps.
+    makes: [Option<wgpu::ComputePipeline>; 8],
+    /// For each kind of depth.
+    draws: [Option<wgpu::RenderPipeline>; 4],
+    #[cfg(test)]
+    room: Option<u64>,
+}
+
+/// Room for the drops of a lattice.
+struct List {
+    blocks: wgpu::Buffer,
+    streaks: wgpu::Buffer,
+    groups: [wgpu::BindGroup; 2],
+}
+
+/// The drops of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Lattice<'a> {
+    pub per_shell: u32,
+    /// Their states, if they are stepped: [`source_layout`].
+    pub states: Option<&'a wgpu::BindGroup>,
+    /// Whether a rim of a rain area is near, and whether there are occluder maps.
+    pub areas: bool,
+    pub maps: bool,
+}
+
+/// Most drops that a list has room for, of `blocks`. Within a shell's own reach are half of its drops at most, and four in ten
+/// of all; a picture 150 degrees wide shows half of those.
+fn room(device: &wgpu::Device, blocks: u64) -> u64 {
+    let most = device.limits().max_storage_buffer_binding_size / STREAK_BYTES;
+    (blocks * u64::from(BLOCK_DROPS) / 4).max(LEAST_ROOM).min(most)
+}
+
+fn buffer(binding: u32, ty: wgpu::BufferBindingType, size: u64) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: wgpu::BufferSize::new(size) },
+        count: None,
+    }
+}
+
+fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
+    let make = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    };
+    let uniform = |binding, size: usize| buffer(binding, wgpu::BufferBindingType::Uniform, size as u64);
+    let storage = |binding, size| buffer(binding, wgpu::BufferBindingType::Storage { read_only: false }, size);
+    let list = [storage(0, BLOCK_BYTES), storage(1, STREAK_BYTES), storage(2, FOUND_BYTES)];
+    [
+        make(
+            "cull frame",
+            &[
+                uniform(0, size_of::<RainUniform>()),
+                uniform(7, COLUMNS_BYTES),
+                uniform(8, size_of::<LocalUniform>() - COLUMNS_BYTES),
+            ],
+        ),
+        make("cull", &list),
+        make("streaks", &list[..2]),
+    ]
+}
+
+/// Layout of stepped drops: the camera's places in the shells' cells, and the states.
+pub(super) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("stepped"),
+        entries: &[
+            buffer(0, wgpu::BufferBindingType::Uniform, 16 * SHELLS as u64),
+            buffer(1, wgpu::BufferBindingType::Storage { read_only: true }, STATE_BYTES),
+        ],
+    })
+}
+
+impl CullPass {
+    /// Whether `device` can.
+    pub fn serves(device: &Device) -> bool {
+        device.caps().tier > 0
+    }
+
+    /// For the drops of `blocks`, the rain's.
+    pub fn new(device: &wgpu::Device, blocks: &wgpu::Buffer) -> Self {
+        let [frame, found, streaks] = layouts(device);
+        let source = source_layout(device);
+        let make = |label, size, usage| {
+            let usage = wgpu::BufferUsages::STORAGE | usage;
+            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        };
+        let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: blocks,
+                offset: offset as u64,
+                size: wgpu::BufferSize::new(size as u64),
+            }),
+        };
+        let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("cull"), layout, entries })
+        };
+        let [eyes, states] = [("no eyes", 16 * SHELLS as u64), ("no drops", STATE_BYTES)]
+            .map(|(l, n)| make(l, n, wgpu::BufferUsages::UNIFORM));
+        Self {
+            frame: group(
+                &frame,
+                &[
+                    block(0, STARTS[0], size_of::<RainUniform>()),
+                    block(7, STARTS[2], COLUMNS_BYTES),
+                    block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
+                ],
+            ),
+            unstepped: group(&source, &[group_entry(0, &eyes), group_entry(1, &states)]),
+            layouts: [frame, found, streaks, source],
+            found: make("found", FOUND_BYTES, wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC),
+            list: None,
+            marks: [None, None],
+            order: None,
+            makes: [const { None }; 8],
+            draws: [const { None }; 4],
+            #[cfg(test)]
+            room: None,
+        }
+    }
+
+    /// Bytes of GPU memory held.
+    pub fn bytes(&self) -> u64 {
+        self.list.as_ref().map_or(0, |l| l.blocks.size() + l.streaks.size())
+    }
+
+    /// Records what finds the drops that the picture shows. The rain's blocks are up.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn find(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (around_layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
+        lattice: Lattice<'_>,
+    ) -> Result<()> {
+        self.make_room(&device.device, lattice.per_shell);
+        let stepped = lattice.states.is_some();
+        let make = key([stepped, lattice.areas, lattice.maps]);
+        self.prepare(device, around_layout, lattice)?;
+        let (Some(list), Some(mark), Some(order), Some(streaks)) =
+            (&self.list, &self.marks[usize::from(stepped)], &self.order, &self.makes[make])
+        else {
+            return Ok(());
+        };
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_bind_group(0, &self.frame, &[]);
+        pass.set_bind_group(1, &list.groups[0], &[]);
+        pass.set_bind_group(2, around, &[]);
+        pass.set_bind_group(3, lattice.states.unwrap_or(&self.unstepped), &[]);
+        pass.set_pipeline(mark);
+        pass.dispatch_workgroups(lattice.per_shell.div_ceil(MARK_DROPS).max(1), SHELLS as u32, 1);
+        pass.set_pipeline(order);
+        pass.dispatch_workgroups(1, 1, 1);
+        pass.set_pipeline(streaks);
+        pass.set_bind_group(1, &list.groups[1], &[]);
+        pass.dispatch_workgroups_indirect(&self.found, GROUPS_AT);
+        Ok(())
+    }
+
+    /// Makes the draw's pipeline for a kind of depth (several samples, any at all), if it is not there.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn prepare_draw(&mut self, device: &Device, frame: &wgpu::BindGroupLayout, depth: (bool, bool)) -> Result<()> {
+        let slot = &mut self.draws[key([false, depth.0, depth.1])];
+        if slot.is_none() {
+            *slot = Some(draw_pipeline(device, frame, depth)?);
+        }
+        Ok(())
+    }
+
+    /// Draws what was found; group 0 is set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, depth: (bool, bool)) {
+        let (Some(pipeline), Some(list)) = (&self.draws[key([false, depth.0, depth.1])], &self.list) else { return };
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, list.streaks.slice(..));
+        pass.draw_indirect(&self.found, 0);
+    }
+
+    fn make_room(&mut self, device: &wgpu::Device, per_shell: u32) {
+        // Rain that grows makes lists anew now and then, not each frame.
+        let blocks = u64::from(per_shell.div_ceil(BLOCK_DROPS).next_power_of_two()) * SHELLS as u64;
+        if self.list.as_ref().is_some_and(|l| l.blocks.size() >= blocks * BLOCK_BYTES) {
+            return;
+        }
+        #[cfg(not(test))]
+        let room = room(device, blocks);
+        #[cfg(test)]
+        let room = self.room.unwrap_or_else(|| room(device, blocks));
+        let make = |label, size, usage| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | usage;
+            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        };
+        let blocks = make("cull", blocks * BLOCK_BYTES, wgpu::BufferUsages::empty());
+        let streaks = make("streaks", room * STREAK_BYTES, wgpu::BufferUsages::VERTEX);
+        let entries = [group_entry(0, &blocks), group_entry(1, &streaks), group_entry(2, &self.found)];
+        let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("cull"), layout, entries })
+        };
+        let groups = [group(&self.layouts[1], &entries), group(&self.layouts[2], &entries[..2])];
+        self.list = Some(List { blocks, streaks, groups });
+    }
+
+    fn prepare(&mut self, device: &Device, around: &wgpu::BindGroupLayout, lattice: Lattice<'_>) -> Result<()> {
+        let Lattice { states, areas, maps, .. } = lattice;
+        let [frame, found, streaks, source] = &self.layouts;
+        let stepped = ("STEPPED", f64::from(u8::from(states.is_some())));
+        let mark = &mut self.marks[usize::from(states.is_some())];
+        if mark.is_none() {
+            let layouts = [Some(frame), Some(found), None, Some(source)];
+            *mark = Some(compute_pipeline(device, ("rain/cull.wgsl", "mark"), &layouts, &[stepped])?);
+        }
+        if self.order.is_none() {
+            let layouts = [Some(frame), Some(found)];
+            self.order = Some(compute_pipeline(device, ("rain/cull.wgsl", "order"), &layouts, &[])?);
+        }
+        let make = &mut self.makes[key([states.is_some(), areas, maps])];
+        if make.is_none() {
+            let flag = |name, on| (name, f64::from(u8::from(on)));
+            // Mixtures take each column by itself: what lies over what is in their order.
+            let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
+            let layouts = [Some(frame), Some(streaks), Some(around), Some(source)];
+            *make = Some(compute_pipeline(device, ("rain/cull_streaks.wgsl", "make_streaks"), &layouts, &constants)?);
+        }
+        Ok(())
+    }
+}
+
+fn key(bits: [bool; 3]) -> usize {
+    bits.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
+}
+
+fn group_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
+}
+
+fn compute_pipeline(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    constants: &[(&str, f64)],
+) -> Result<wgpu::ComputePipeline> {
+    let module = device.shader(shader)?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(entry),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+        cache: None,
+    }))
+}
+
+fn draw_pipeline(
+    device: &Device,
+    frame: &wgpu::BindGroupLayout,
+    (multi, has_depth): (bool, bool),
+) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
+    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x3];
+    let light = wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x4, offset: 32, shader_location: 2 };
+    let attributes = [attributes[0], attributes[1], light];
+    Ok(pass::quads(
+        device,
+        &QuadsDesc {
+            label: "listed drops",
+            vertex: (&module, "listed_vertex", &[]),
+            fragment: (&module, "rain_fragment", &constants),
+            layouts: &[Some(frame)],
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: STREAK_BYTES,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            })],
+            format: FORMAT,
+        },
+    ))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,168 @@
+//! What is found of a lattice, against its twin in f64.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::*;
+use crate::{
+    gpu::DeviceOptions,
+    rain::{
+        DropLight, around,
+        lattice::{self, Drop, SPEED_UNIT},
+        uniforms::{Air, Classes, Shot},
+    },
+    scene::{Camera, DepthMapping, ViewRays},
+    weather::{Precipitation, PrecipitationKind, Weather, derive},
+};
+
+const SEED: u64 = 3;
+const EYE: DVec3 = DVec3::new(20.0, -7.0, 30.0);
+const WIND: DVec3 = DVec3::new(9.0, 4.0, 0.0);
+const TIME_S: f64 = 77.0;
+const EXPOSURE_S: f64 = 1.0 / 60.0;
+
+struct Bench {
+    device: Arc<Device>,
+    blocks: wgpu::Buffer,
+    pass: CullPass,
+    around: around::Around,
+    classes: Classes,
+    clip: DMat4,
+    /// Of the camera.
+    velocity_m_s: DVec3,
+}
+
+impl Bench {
+    fn new(rate_mm_h: f64) -> Self {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let precipitation = Precipitation::of(PrecipitationKind::Rain, rate_mm_h);
+        let falling = derive(&Weather { precipitation, ..Weather::default() }).unwrap().precipitation;
+        let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: STARTS[4] as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let pass = CullPass::new(&device.device, &blocks);
+        let around = around::Around::new(&device.device);
+        let classes = Classes::new(&falling, 1.0, u32::MAX);
+        Self { device, blocks, pass, around, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
+    }
+
+    /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the streaks.
+    fn find(&mut self, fov_rad: f64) -> ([u32; 4], Vec<([f32; 3], f32)>) {
+        let camera = Camera::look_to(EYE, DVec3::Y, DVec3::Z, fov_rad, 1.5, 0.1);
+        let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
+        self.clip = camera.projection * DMat4::from_mat3(camera.rotation());
+        let shot = Shot {
+            clip: self.clip,
+            rays: &rays,
+            height: 360,
+            y_sign: 1.0,
+            position_m: EYE,
+            velocity_m_s: self.velocity_m_s,
+            exposure_s: EXPOSURE_S,
+        };
+        let air = Air { displacement_m: WIND * TIME_S, velocity_m_s: WIND, time_s: TIME_S, extinction_per_m: 0.0 };
+        let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
+        let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
+        self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        let layout = around::layout(&self.device.device);
+        let lattice = Lattice { per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
+        self.pass.find(&self.device, &mut encoder, (&layout, self.around.bind_group()), lattice).unwrap();
+        self.device.submit_and_wait(encoder).unwrap();
+        let found: Vec<u32> = self.read(&self.pass.found);
+        let streaks: Vec<[f32; 12]> = self.read(&self.pass.list.as_ref().unwrap().streaks);
+        assert_eq!(&found[4..7], &[found[1].div_ceil(64), 1, 1]);
+        let shown = streaks[..found[1] as usize].iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
+        ([found[0], found[1], found[2], found[3]], shown)
+    }
+
+    fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Vec<T> {
+        let copy = self.device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        self.device.submit(encoder);
+        copy.slice(..).map_async(wgpu::MapMode::Read, |r| r.unwrap());
+        self.device.wait().unwrap();
+        bytemuck::pod_collect_to_vec(&copy.slice(..).get_mapped_range().unwrap())
+    }
+
+    /// Whether the twin has a drop in the picture: none where that hangs on a rounding.
+    fn surely(&self, drop: &Drop) -> Option<bool> {
+        let speed = f64::from(self.classes.table[drop.id.1 as usize][1]) * SPEED_UNIT;
+        let whole = (WIND - DVec3::Z * speed - self.velocity_m_s) * (0.5 * EXPOSURE_S);
+        let half = whole * (0.8 * drop.position_m.length() / whole.length()).min(1.0);
+        let at = |slack: f64| {
+            let ends = [drop.position_m - half, drop.position_m + half].map(|p| self.clip * p.extend(1.0));
+            let inside = |v: fn(&DVec4) -> f64| ends.iter().any(|e| v(e) < 0.05 + slack + 1.02 * e.w);
+            let picture = inside(|e| e.x) && inside(|e| -e.x) && inside(|e| e.y) && inside(|e| -e.y);
+            picture && lattice::shell_share(drop.id.0 as usize, drop.position_m.length() * (1.0 + slack)) > 0.0
+        };
+        let all = [-1e-4, 0.0, 1e-4].map(at);
+        (all[0] == all[1] && all[1] == all[2]).then_some(all[1])
+    }
+}
+
+#[test]
+fn the_list_has_what_the_picture_shows_in_the_lattices_order() {
+    // Room is made anew on the way.
+    for rate_mm_h in [0.5, 60.0, 8.0] {
+        let mut bench = Bench::new(rate_mm_h);
+        let (draw, shown) = bench.find(0.9);
+        assert_eq!((draw[0], draw[2], draw[3]), (4, 0, 0));
+        let drops = lattice::drops(&bench.classes, SEED, EYE, WIND * TIME_S, TIME_S);
+        let all = 4 * bench.classes.per_shell as usize;
+        let mut found = shown.iter().peekable();
+        let (mut sure, mut doubtful) = (0, 0);
+        for drop in drops {
+            let near = |p: &[f32; 3]| (DVec3::from(p.map(f64::from)) - drop.position_m).length() < 1e-5;
+            let here = found.next_if(|(p, _)| near(p)).is_some();
+            match bench.surely(&drop) {
+                Some(expected) => assert_eq!(here, expected, "{rate_mm_h} mm/h: {drop:?}"),
+                None => doubtful += 1,
+            }
+            sure += usize::from(here);
+        }
+        assert!(found.next().is_none() && sure == shown.len(), "{rate_mm_h} mm/h: others or another order");
+        assert!(shown.iter().all(|(_, width)| *width > 0.0));
+        println!("{rate_mm_h} mm/h: {sure} of {all} drops, {doubtful} on an edge");
+        assert!((0.01..0.1).contains(&(sure as f64 / all as f64)) && doubtful * 1000 <= all);
+    }
+}
+
+#[test]
+fn a_full_list_leaves_out_the_outermost_drops() {
+    let mut bench = Bench::new(60.0);
+    let (_, all) = bench.find(0.9);
+    bench.pass.list = None;
+    bench.pass.room = Some(1000);
+    let (draw, some) = bench.find(0.9);
+    assert_eq!((draw[1], &some[..]), (1000, &all[..1000]));
+}
+
+#[test]
+fn neither_wide_pictures_nor_fast_cameras_fill_the_list() {
+    let mut bench = Bench::new(60.0);
+    let drops = u64::from(bench.classes.per_shell) * SHELLS as u64;
+    let room = room(&bench.device.device, drops / u64::from(BLOCK_DROPS));
+    bench.pass.room = Some(drops);
+    for (across_deg, velocity_m_s) in [
+        (150.0f64, DVec3::ZERO),
+        (90.0, DVec3::Y * 300.0),
+        (90.0, DVec3::X * 300.0),
+        (60.0, DVec3::new(-100.0, 200.0, 200.0)),
+    ] {
+        bench.velocity_m_s = velocity_m_s;
+        let (_, shown) = bench.find(2.0 * ((0.5 * across_deg).to_radians().tan() / 1.5).atan());
+        println!("{across_deg} degrees at {velocity_m_s} m/s: {} of {drops}, room for {room}", shown.len());
+        assert!((shown.len() as u64) < room);
+    }
+}
