@@ -255,6 +255,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_OCCLUDER_MAP 44
 /** wk_shelter_shape */
 #define WK_STRUCT_TYPE_SHELTER_SHAPE 45
+/** wk_ground_grid */
+#define WK_STRUCT_TYPE_GROUND_GRID 46
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -2949,7 +2951,7 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
 /**
  * What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
  * the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
- * the ground. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
+ * the ground. What boxes (wk_context_set_shelters) keep off a point 5 cm before the surface does not land; maps are not asked. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
  * surface, and nothing is written.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; the field of a surface by name and range.
@@ -4491,11 +4493,11 @@ typedef struct wk_ground {
     const void *next;
     /** Depth of water there, mm: the film, and what stands in the hollow if there is one. For tyres. */
     double water_mm;
-    /** Film on level ground outside of hollows, mm. */
+    /** Film on level ground outside of hollows, mm; on the host's terrain that of the place. */
     double film_mm;
-    /** Of all the ground: 0 dry, 0.3 damp, 1 under a closed film. */
+    /** Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film. */
     double wetness;
-    /** Share of all the ground under standing water. */
+    /** Share of all the ground, or of the host's terrain, under standing water. */
     double puddles;
     /** 1 where standing water covers the place, else 0. */
     uint32_t in_puddle;
@@ -4553,8 +4555,9 @@ typedef struct wk_simulation_desc {
 }
 
 /**
- * Water on level, open ground at a place of the host's world, now. Hollows are those that are drawn: a pattern fixed to the
- * world by the context's seed.
+ * Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+ * it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
+ * the context's seed.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place.
  */
@@ -4576,6 +4579,109 @@ wk_status wk_simulation_desc_init(wk_simulation_desc *out,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Water on the host's terrain
+ *
+ * A host that gives the heights of its terrain on a grid gets wetness and puddles cell by cell: rain areas and standing
+ * boxes (wk_context_set_shelters) decide what falls where, what runs off fills the terrain's hollows up to where they spill.
+ * wk_context_get_ground answers by the place, the stage SURFACE draws it, and wk_context_get_ground_cells hands it over for
+ * the host's own materials. With WK_GROUND_SIMULATED it is a state, which wk_context_save keeps together with the heights; else
+ * the weather's wetness, spread over the hollows.
+ * ====================================================================================================
+ */
+
+/**
+ * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square cell about
+ * it; between nodes water goes linearly. Outside is the world's ground, into which the picture fades over two cells.
+ */
+typedef struct wk_ground_grid {
+    /** sizeof(wk_ground_grid) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_GROUND_GRID. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its own.
+     * Default 0, 0, 0.
+     */
+    double origin_m[3];
+    /** From node to node, m. Range [0.01, 10 000], default 1. Puddles smaller than a few cells are not in it. */
+    double cell_m;
+    /** Nodes east and north. Range 2 to 512, default 2, 2. */
+    uint32_t nodes[2];
+    /**
+     * Heights above the origin, m, within 1e5; the node to the east comes next, after a row the next row to the north. Copied by
+     * the call.
+     */
+    const float *heights_m;
+    /** Numbers in heights_m: the product of `nodes`. */
+    uint32_t height_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_ground_grid;
+
+/** Every field of `wk_ground_grid` at its default. */
+#define WK_GROUND_GRID_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_ground_grid), \
+    /* struct_type */ WK_STRUCT_TYPE_GROUND_GRID, \
+    /* next */ NULL, \
+    /* origin_m */ { 0.0, 0.0, 0.0 }, \
+    /* cell_m */ 1.0, \
+    /* nodes */ { 2, 2 }, \
+    /* heights_m */ NULL, \
+    /* height_count */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Water of a cell of the host's terrain; plain values of a list: packed it is the upload of a texture of four floats.
+ */
+typedef struct wk_ground_cell {
+    /** Water between and on the grains, mm; none under standing water. */
+    float film_mm;
+    /** In the pores, as a share of what they hold. */
+    float soaked;
+    /** Standing water, mm. */
+    float standing_mm;
+    /** Share under ice, by the weather of the moment. */
+    float ice;
+} wk_ground_cell;
+
+/**
+ * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
+ * keeps its water, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
+ * error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_ground_grid(wk_context *context,
+                                     const wk_ground_grid *ground_grid);
+
+/**
+ * Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+ * `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
+ * upload anew what has changed, every 10 s of simulation time at most.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
+ */
+WK_API
+wk_status wk_context_get_ground_cells(const wk_context *context,
+                                      wk_ground_cell *cells,
+                                      uint32_t capacity,
+                                      uint32_t cell_size,
+                                      uint64_t *out_revision);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_GROUND_GRID_INIT`. `struct_size` is `sizeof(wk_ground_grid)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_ground_grid_init(wk_ground_grid *out,
+                              uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

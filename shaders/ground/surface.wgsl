@@ -4,11 +4,15 @@
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
 //!include "ground/normal.wgsl"
+//!include "ground/terrain.wgsl"
 //!include "rain/lights_binding.wgsl"
 //!include "rain/shelter.wgsl"
 
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;
+
+// Whether the host has given its terrain.
+override TERRAIN: bool = false;
 
 // Whether anything keeps rain off, and whether there are lamps of the host's.
 override SHELTER: bool = false;
@@ -88,6 +92,11 @@ fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     return lux / frame.exposure;
 }
 
+// Beyond this many root mean squares there are no hollows; slopes of thin and closed films (src/ground/uniform.rs).
+const FARTHEST_LEVEL: f32 = 6.0;
+const THIN_FILM_SLOPE: f32 = 0.3;
+const CLOSED_FILM_SLOPE: f32 = 0.15;
+
 // Radius that a lamp of the host is taken to have, m.
 const LAMP_RADIUS: f32 = 0.1;
 
@@ -108,13 +117,13 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     return light / frame.exposure;
 }
 
-// Share of the rain's water that gets to a surface past what keeps it off.
-fn rained_on(at: vec3f, normal: vec3f, range: f32) -> f32 {
+// Share of the rain's water that gets to a surface past what keeps it off; `boxes`: past boxes too.
+fn rained_on(at: vec3f, normal: vec3f, range: f32, boxes: bool) -> f32 {
     // As far off the surface as depth may be wrong.
     let p = at + normal * (0.02 + 0.002 * range);
     var share = 0.0;
     for (var i = 0u; i < 3u; i++) {
-        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, ground.falls[i])));
+        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, ground.falls[i]), boxes));
     }
     return share;
 }
@@ -141,14 +150,31 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let across = vec2f(-along.y, along.x) * side;
     let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
 
+    var here = TerrainPoint(0.0, 0.0, 0.0, 0.0);
+    if TERRAIN {
+        here = terrain_at(at);
+    }
     var gets = 1.0;
     if SHELTER {
-        gets = rained_on(at, facing.normal, range);
+        // What falls past boxes the terrain's cells know.
+        gets = rained_on(at, facing.normal, range, here.share < 0.5);
     }
     let bare = facing.sure * (1.0 - plants(albedo));
-    let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && min(ground.level, ground.film_level) < 100.0);
+    let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
     let hollow = hollow_depth(ground, place, across, along * (side / cosine), waves);
-    let pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * bare * gets;
+    var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level);
+    var soaked_share = ground.soaked;
+    var film_level = ground.film_level;
+    var film_slope = ground.film_slope;
+    if TERRAIN {
+        // Water is level whatever lies below it.
+        pool = mix(pool, pooled(here.depth) * smoothstep(0.5, 0.8, level), here.share);
+        soaked_share = mix(soaked_share, here.soaked, here.share);
+        film_level = mix(min(film_level, FARTHEST_LEVEL), here.film_level, here.share);
+        let filmed = normal_share(-here.film_level);
+        film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, filmed), here.share);
+    }
+    pool *= bare * gets;
     // A pixel too long to see rings sees a rougher surface.
     let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
     let rings = pool > 1e-3 && ground.ring_chance > 0.0 && seen > 0.0;
@@ -156,12 +182,12 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
     let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
     // In the hollows the film is deeper and smoother.
-    let film = Film(facing.normal, ground.film_slope * (1.2 - 0.4 * normal_share(hollow.x)));
+    let film = Film(facing.normal, film_slope * (1.2 - 0.4 * normal_share(hollow.x)));
 
     // Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
-    let soaked = ground.soaked * kept * (0.5 + 0.5 * bare) * gets;
+    let soaked = soaked_share * kept * (0.5 + 0.5 * bare) * gets;
     let wet = mix(vec3f(1.0), below, soaked);
-    let cover = covered_share(hollow, ground.film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
+    let cover = covered_share(hollow, film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
     let thin = mirror(film, to_eye);
     let deep = mirror(water, to_eye);
     let thin_share = thin.share * cover * (1.0 - pool);

@@ -56,6 +56,16 @@ struct GroundUniform {
     // Fall speeds of the drops that bring a third of the water each, m/s.
     falls: vec3f,
     pad2: f32,
+    // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to metres
+    // above its origin.
+    terrain_x: vec4f,
+    terrain_y: vec4f,
+    terrain_z: vec4f,
+    // Its last node, cells from its border within which it gives way to the world's ground, and how far off it, m, a surface
+    // may lie that is still its own.
+    terrain_last: vec2f,
+    terrain_rim: f32,
+    terrain_near: f32,
     // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.
     waves: array<vec4f, HOLLOW_WAVES>,
 }

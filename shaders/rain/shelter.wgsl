@@ -63,9 +63,9 @@ fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return false;
 }
 
-// Likewise for ground, which remembers: what only passes by does not keep it dry.
-fn sheltered_ground(p: vec3f, velocity: vec3f) -> bool {
-    for (var i = 0u; i < shelters.count; i++) {
+// Likewise for ground, which remembers: what only passes by does not keep it dry. `boxes`: whether these are asked at all.
+fn sheltered_ground(p: vec3f, velocity: vec3f, boxes: bool) -> bool {
+    for (var i = select(MAX_SHELTERS, 0u, boxes); i < shelters.count; i++) {
         if shelters.boxes[i].velocity.w == 0.0 && meets(i, p, velocity) {
             return true;
         }

@@ -76,11 +76,11 @@ pub struct wk_ground {
     pub next: *const c_void,
     /// Depth of water there, mm: the film, and what stands in the hollow if there is one. For tyres.
     pub water_mm: f64,
-    /// Film on level ground outside of hollows, mm.
+    /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
     pub film_mm: f64,
-    /// Of all the ground: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
-    /// Share of all the ground under standing water.
+    /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
     /// 1 where standing water covers the place, else 0.
     pub in_puddle: u32,
@@ -113,8 +113,9 @@ impl wk_ground {
     }
 }
 
-/// Water on level, open ground at a place of the host's world, now. Hollows are those that are drawn: a pattern fixed to the
-/// world by the context's seed.
+/// Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+/// it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
+/// the context's seed.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place.
 #[unsafe(no_mangle)]

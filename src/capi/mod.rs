@@ -63,6 +63,8 @@ pub mod windscreen;
 
 pub mod ground;
 
+pub mod ground_grid;
+
 mod boundary;
 mod device_cell;
 mod handles;

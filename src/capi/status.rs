@@ -138,6 +138,8 @@ pub const WK_STRUCT_TYPE_WIND_GRID: wk_struct_type = 43;
 pub const WK_STRUCT_TYPE_OCCLUDER_MAP: wk_struct_type = 44;
 /// wk_shelter_shape
 pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
+/// wk_ground_grid
+pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -223,7 +223,7 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
 
 /// What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
 /// the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
-/// the ground. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
+/// the ground. What boxes (wk_context_set_shelters) keep off a point 5 cm before the surface does not land; maps are not asked. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
 /// surface, and nothing is written.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; the field of a surface by name and range.

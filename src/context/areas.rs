@@ -46,7 +46,9 @@ impl Context {
         }
         self.areas.clear();
         self.areas.extend(areas.iter().map(|area| KeptArea { area: *area, carried_m: None }));
-        self.keep_carried(self.time_s)
+        self.keep_carried(self.time_s)?;
+        self.told += 1;
+        self.show_terrain()
     }
 
     fn check_area(&self, area: &RainArea) -> Result<()> {

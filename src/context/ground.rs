@@ -31,11 +31,11 @@ pub enum GroundModel {
 pub struct GroundAt {
     /// Depth of water, mm: the film, and what stands in the hollow if there is one. For tyres.
     pub water_mm: f64,
-    /// Film on level ground outside of hollows, mm.
+    /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
     pub film_mm: f64,
-    /// Of all the ground: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
-    /// Share of all the ground under standing water.
+    /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
     /// Whether standing water covers the place.
     pub in_puddle: bool,
@@ -61,7 +61,7 @@ pub(super) struct GroundState {
 }
 
 impl GroundState {
-    fn water(&self) -> GroundWater {
+    pub fn water(&self) -> GroundWater {
         GroundWater { film_mm: self.film_mm, soaked_mm: self.soaked_mm, hollows_mm: self.hollows_mm }
     }
 
@@ -89,6 +89,7 @@ impl Context {
         if now_s - state.time_s > LONGEST_S {
             state = self.first_ground(now_s - LONGEST_S)?;
         }
+        let terrain_from_s = self.terrain_from_s(state.time_s, now_s);
         loop {
             let end_s = ((state.time_s / STEP_S).floor() + 1.0) * STEP_S;
             if end_s > now_s {
@@ -97,8 +98,14 @@ impl Context {
             if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
                 state.sunlight_w_m2 = self.sunlight_w_m2(state.time_s)?;
             }
-            state.set(self.ground_after(&state, end_s));
+            let (before, from_s, seconds) = (state.water(), state.time_s, end_s - state.time_s);
+            let c = self.timeline.at(0.5 * (from_s + end_s));
+            let forcing = Forcing::of(&c, state.sunlight_w_m2);
+            state.set(before.after(&forcing, seconds));
             state.time_s = end_s;
+            if from_s >= terrain_from_s {
+                self.step_terrain((from_s, seconds), &c, &forcing, &before)?;
+            }
         }
         self.ground = Some(state);
         Ok(state.time_s.min(now_s))
@@ -162,13 +169,23 @@ impl Context {
         }
     }
 
-    /// Water on the ground at `position`, now: by the hollows that are drawn, wherever the host's own ground has its own.
+    /// Water on the ground at `position`, now: on the host's terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of
+    /// its cells; elsewhere by the hollows that are drawn, wherever the host's own ground has its own.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place.
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
         let frame = self.desc.world.frame_at(position);
         frame.place.validate()?;
+        if let Some((cell, puddles)) = self.terrain_at(position) {
+            return Ok(GroundAt {
+                water_mm: cell.depth_mm(),
+                film_mm: cell.film_mm,
+                wetness: cell.wetness(),
+                puddles,
+                in_puddle: cell.standing_mm > 0.0,
+            });
+        }
         let reported = self.timeline.at(self.time_s).surface;
         let cover = self.ground_cover_at(position, reported);
         let kept = GroundWater::of_cover(&cover);

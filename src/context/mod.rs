@@ -13,6 +13,8 @@ mod rain;
 mod scene;
 mod sky;
 mod state;
+mod terrain;
+mod terrain_saved;
 mod wind;
 
 use std::{
@@ -28,6 +30,7 @@ pub use queries::{Between, LightAt};
 pub use rain::{RainAt, RainOn, RainSurface};
 pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;
+pub use terrain::GroundCell;
 
 use crate::{
     error::{Error, Result, Status, check_range},
@@ -135,6 +138,10 @@ pub struct Context {
     ephemeris: Ephemeris,
     hollows: Hollows,
     ground: Option<ground::GroundState>,
+    host_ground: Option<Box<terrain::HostGround>>,
+    ground_revision: u64,
+    /// Counts what the host has told of areas and of standing shelter.
+    told: u64,
 }
 
 impl Context {
@@ -172,6 +179,9 @@ impl Context {
             ephemeris: Ephemeris::default(),
             hollows,
             ground: None,
+            host_ground: None,
+            ground_revision: 0,
+            told: 0,
         })
     }
 
@@ -216,7 +226,8 @@ impl Context {
     /// # Errors
     /// As [`derive`] and [`Timeline::change`]; the weather stays as it was.
     pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
-        self.timeline.change(derive(weather)?, start_s, transition_s)
+        self.timeline.change(derive(weather)?, start_s, transition_s)?;
+        self.show_terrain()
     }
 
     /// As [`Context::set_weather`], with the host's own figures in place of some couplings.
@@ -230,7 +241,8 @@ impl Context {
         start_s: f64,
         transition_s: f64,
     ) -> Result<()> {
-        self.timeline.change(derive_with(weather, overrides)?, start_s, transition_s)
+        self.timeline.change(derive_with(weather, overrides)?, start_s, transition_s)?;
+        self.show_terrain()
     }
 
     /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's.
@@ -258,9 +270,14 @@ impl Context {
             return Err(Error::range("shelters", &format!("at most {MAX_SHELTERS}"), count));
         }
         shelters.clone().try_for_each(Shelter::validate)?;
+        let same = self.shelters.iter().filter(|s| s.stands()).eq(shelters.clone().filter(|s| s.stands()));
         self.shelters.clear();
         self.shelters.extend(shelters);
-        Ok(())
+        if same {
+            return Ok(());
+        }
+        self.told += 1;
+        self.show_terrain()
     }
 
     /// What keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes them away. What
@@ -397,7 +414,7 @@ impl Context {
         self.time_s = time_s;
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
         self.timeline.advance_keeping(time_s, keep_s);
-        Ok(())
+        self.show_terrain()
     }
 
     /// Simulation time, s.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Context, GivenDirection, GroundModel, areas::KeptArea, ground::GroundState};
+use super::{Context, GivenDirection, GroundModel, areas::KeptArea, ground::GroundState, terrain_saved::SavedGround};
 use crate::{
     error::{Error, Result, Status, check_range},
     rain::MAX_AREAS,
@@ -32,6 +32,8 @@ struct Saved {
     ground: Option<GroundState>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     areas: Vec<KeptArea>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    terrain: Option<SavedGround>,
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten. States written before there was a drift begin there
@@ -65,6 +67,7 @@ impl Context {
             }),
             ground: self.ground,
             areas: self.areas.clone(),
+            terrain: self.host_ground.as_deref().map(SavedGround::of),
         };
         toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
     }
@@ -118,6 +121,12 @@ impl Context {
         if saved.areas.len() > MAX_AREAS || !saved.areas.iter().all(KeptArea::is_valid) {
             return Err(parse(&"areas must be as they can be set"));
         }
+        let terrain = saved.terrain.as_ref().map(|t| {
+            let of_a_state = self.desc.ground == GroundModel::Simulated && saved.ground.is_some();
+            let loaded = t.host_ground(&self.desc.world).filter(|held| of_a_state || !held.begun);
+            loaded.ok_or_else(|| parse(&"terrain must be a grid of heights and the water that it can hold"))
+        });
+        let terrain = terrain.transpose()?;
         let timeline = Timeline::load(&saved.timeline)?;
         let drifted = drifted_from(saved.drifted, &timeline).map_err(|e| parse(&e))?;
         (self.timeline, self.drifted) = (timeline, drifted);
@@ -126,7 +135,7 @@ impl Context {
         (self.given_sun, self.given_moon) = (sun, moon);
         self.time_s = saved.time_s;
         self.desc.utc_at_zero = Utc(saved.utc_at_zero);
-        Ok(())
+        self.take_up_terrain(terrain)
     }
 
     /// A number that is equal on two channels whose contexts show the same world from now on (FNV-1a of the saved

@@ -32,6 +32,8 @@ pub(super) struct Variant {
     pub depth_kinds: u32,
     /// The sky is marched per pixel instead of looked up.
     pub march: bool,
+    /// The host's terrain is drawn on.
+    pub terrain: bool,
     /// What the host has told of that keeps the ground dry or lights it.
     pub around: Present,
     /// Air between and clear sky are drawn at all.
@@ -47,12 +49,12 @@ impl Variant {
 
     /// Those of [`Variant::constants`] that shaders of the veil alone have.
     pub fn veil_constants(&self) -> [(&'static str, f64); 9] {
-        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, f0, f1, f2, f3, f4] = self.constants();
+        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, _, f0, f1, f2, f3, f4] = self.constants();
         [march, fog, kinds, air, f0, f1, f2, f3, f4]
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 20] {
+    pub fn constants(&self) -> [(&'static str, f64); 21] {
         let yes = |b: bool| f64::from(u8::from(b));
         let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
@@ -71,6 +73,7 @@ impl Variant {
             ("SHELTER", yes(self.around.shelter)),
             ("MAPS", yes(self.around.maps)),
             ("LAMPS", yes(self.around.lamps)),
+            ("TERRAIN", yes(self.terrain)),
             f0,
             f1,
             f2,
@@ -127,6 +130,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             uniform(4, size_of::<FogUniform>()),
             texture_entry(5, false),
             uniform(6, size_of::<GroundUniform>()),
+            texture_entry(7, false),
         ],
     })
 }
@@ -182,15 +186,15 @@ impl Composite {
         [self.layout(multi), &self.layout_sky, &self.layout_around]
     }
 
-    /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, and the drops before
-    /// them.
+    /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, the drops before them and
+    /// the cells of the host's terrain.
     pub fn bind(
         &self,
         device: &Device,
         [frame, fog, ground]: [&wgpu::Buffer; 3],
         copy: &wgpu::Texture,
         host: &Frame<'_>,
-        drops: Option<&wgpu::TextureView>,
+        [drops, cells]: [Option<&wgpu::TextureView>; 2],
     ) -> wgpu::BindGroup {
         let multi = copy.sample_count() > 1;
         let color_view = copy.create_view(&Default::default());
@@ -214,6 +218,7 @@ impl Composite {
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
                 entry(5, drops.unwrap_or(&self.none)),
+                entry(7, cells.unwrap_or(&self.none)),
             ],
         })
     }

@@ -7,6 +7,7 @@
 
 use std::time::{Duration, Instant};
 
+use super::target::Stages;
 use crate::{error::Result, gpu::Device, plan::Prediction};
 
 /// What a frame spends time on.
@@ -38,6 +39,18 @@ pub enum Effect {
 }
 
 impl Effect {
+    /// Whose a draw of these stages is.
+    pub(super) fn of(stages: Stages) -> Self {
+        match stages {
+            Stages::SURFACE => Self::Surface,
+            Stages::BACKGROUND => Self::Background,
+            Stages::MEDIUM => Self::Medium,
+            Stages::PARTICLES => Self::Particles,
+            Stages::TONE => Self::Tone,
+            _ => Self::Composition,
+        }
+    }
+
     /// All of them, in order.
     pub const ALL: [Self; 11] = [
         Self::SkyTables,

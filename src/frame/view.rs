@@ -37,8 +37,11 @@ struct Bound {
     color: wgpu::Texture,
     depth: Option<wgpu::Texture>,
     mask: Option<wgpu::Texture>,
-    drops: Option<wgpu::TextureView>,
+    own: OwnViews,
 }
+
+/// The drops before the picture, and the cells of the host's terrain.
+type OwnViews = [Option<wgpu::TextureView>; 2];
 
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
@@ -54,6 +57,7 @@ pub struct View {
     froxels: Option<Froxels>,
     rain: Rain,
     around: Around,
+    terrain: surface::TerrainCells,
     pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
@@ -101,6 +105,7 @@ impl View {
             froxels: None,
             rain,
             around,
+            terrain: Default::default(),
             planner,
             planned_for: None,
             light_scale: 0.0,
@@ -333,6 +338,7 @@ impl View {
                 .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
             depth_kinds: rays.depth_kinds(),
             march: context.marches_sky(),
+            terrain: false,
             around: Default::default(),
             air: true,
             sky: true,
@@ -341,7 +347,8 @@ impl View {
             return Ok(());
         }
         let drops = self.rain.shows().then(|| self.rain.layer(&self.device, color).clone());
-        self.bind(frame, color, drops)?;
+        let cells = self.terrain.follow(&self.device, context, variant.stages.has(Stages::SURFACE)).cloned();
+        self.bind(frame, color, [drops, cells])?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
         let situation = situation(frame, scene);
@@ -375,6 +382,7 @@ impl View {
             self.around.follow(&self.device, &told);
             if variant.stages.has(Stages::SURFACE) {
                 variant.around = told.present();
+                variant.terrain = context.ground_grid().is_some();
             }
         }
         if variant.stages.has(Stages::PARTICLES) {
@@ -410,7 +418,7 @@ impl View {
             self.report.passes += 1;
         }
         drop(composite);
-        to.ends(effect_of(variant.stages), true)?;
+        to.ends(Effect::of(variant.stages), true)?;
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (exposure * frame.cd_m2_per_unit)) as f32,
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
@@ -432,6 +440,7 @@ impl View {
         });
         copy + self.froxels.as_ref().map_or(0, Froxels::bytes)
             + self.rain.bytes()
+            + self.terrain.bytes()
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
@@ -449,9 +458,9 @@ impl View {
     }
 
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
-    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, drops: Option<wgpu::TextureView>) -> Result<()> {
+    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, own: [Option<wgpu::TextureView>; 2]) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
-            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask && b.drops == drops
+            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask && b.own == own
         });
         if same {
             return Ok(());
@@ -459,9 +468,10 @@ impl View {
         self.hold_copy(color);
         let Some(copy) = &self.copy else { return Ok(()) };
         let blocks = [&self.uniform, &self.fog, &self.ground];
-        let group = self.shared.composite()?.bind(&self.device, blocks, copy, frame, drops.as_ref());
+        let group =
+            self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
         let target = color.create_view(&Default::default());
-        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned(), drops };
+        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned(), own };
         self.bound = Some((bound, group, target));
         Ok(())
     }
@@ -478,16 +488,4 @@ fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
 fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
     !tone || frame.color.is_some_and(|c| is_float(c.format()))
-}
-
-/// Whose a draw of these stages is.
-fn effect_of(stages: Stages) -> Effect {
-    match stages {
-        Stages::SURFACE => Effect::Surface,
-        Stages::BACKGROUND => Effect::Background,
-        Stages::MEDIUM => Effect::Medium,
-        Stages::PARTICLES => Effect::Particles,
-        Stages::TONE => Effect::Tone,
-        _ => Effect::Composition,
-    }
 }

@@ -11,11 +11,16 @@
 //! shown colour is taken for the albedo, darkened, and the mirrored light added through the tone curve. Mirrors see the sky
 //! and level ground, no objects; the film is that of asphalt whatever it lies on.
 
+mod basins;
+mod grid;
 mod hollows;
+mod pools;
 pub mod reference;
+pub(crate) mod terrain;
 mod uniform;
 pub mod water;
 
+pub use grid::{GroundGrid, MAX_GRID_NODES};
 pub use hollows::Hollows;
 pub(crate) use hollows::pattern_axes;
 pub(crate) use uniform::{GroundUniform, Seen};

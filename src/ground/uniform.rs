@@ -2,19 +2,16 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    Hollows,
+    GroundGrid, Hollows,
     hollows::{PERIOD_M, WAVES, pattern_axes},
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
 };
 use crate::{
     context::Scene,
-    rain::{
-        drops::factor_in,
-        sizes::{DropSizes, SMALLEST_MM, Weight},
-    },
+    rain::{drops::factor_in, sizes::DropSizes},
     weather::SurfaceCover,
 };
 
@@ -29,6 +26,8 @@ const CLOSED_FILM_SLOPE: f64 = 0.15;
 /// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles have:
 /// they are a few metres long.
 const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
+/// Beyond this many root mean squares there are no hollows.
+const FARTHEST_LEVEL: f64 = 6.0;
 /// Mean square slope of puddles by the rings of drops, per mm/h.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
 
@@ -67,6 +66,12 @@ pub(crate) struct GroundUniform {
     pub pad1: f32,
     pub falls: [f32; 3],
     pub pad2: f32,
+    pub terrain_x: [f32; 4],
+    pub terrain_y: [f32; 4],
+    pub terrain_z: [f32; 4],
+    pub terrain_last: [f32; 2],
+    pub terrain_rim: f32,
+    pub terrain_near: f32,
     pub waves: [[f32; 4]; WAVES],
 }
 
@@ -92,11 +97,28 @@ pub(crate) struct Seen<'a> {
     pub most_cd_m2: f64,
     /// Of the air that carries the rain, (east, north, up), where anything keeps rain off.
     pub wind_m_s: Option<DVec3>,
+    /// The host's terrain, and what turns the host's axes at its origin.
+    pub terrain: Option<(&'a GroundGrid, DMat3)>,
 }
+
+/// Cells within which a terrain gives way to the world's ground.
+const TERRAIN_RIM: f64 = 2.0;
+/// How far a surface may lie off a terrain, m, and of its cells' size.
+const NEAR_TERRAIN: [f64; 2] = [0.25, 0.25];
 
 fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
     let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
+}
+
+/// How soaked ground of this wetness looks, and the share of it that a film covers.
+pub(super) fn look_of(wetness: f64) -> (f64, f64) {
+    (smooth(0.0, 0.3, wetness), smooth(0.3, 1.0, wetness))
+}
+
+/// Level of a film that covers this share of the ground, no farther off than blends into another.
+pub(super) fn film_level(film: f64) -> f64 {
+    f64::from(level_of(film)).clamp(-FARTHEST_LEVEL, FARTHEST_LEVEL)
 }
 
 /// Depth of the hollows, in units of their root mean square, above which the share `covered` of the ground lies.
@@ -112,8 +134,7 @@ fn falls_m_s(scene: &Scene) -> [f64; 3] {
     if falling.rain_mm_h + falling.drizzle_mm_h <= 0.0 {
         falling.rain_mm_h = 3.0;
     }
-    let sizes = DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m));
-    sizes.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]).map(|d| sizes.speed_m_s(d))
+    DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m)).thirds_m_s()
 }
 
 impl Seen<'_> {
@@ -122,7 +143,7 @@ impl Seen<'_> {
         let rain = self.rain_mm_h;
         let lamp = scene.brighter();
         let lamp_lux = if std::ptr::eq(lamp, &scene.sun) { scene.ground.sun_lux } else { scene.ground.moon_lux };
-        let film = smooth(0.3, 1.0, cover.wetness);
+        let (soaked, film) = look_of(cover.wetness);
         let wind2 = 0.5 * 0.00512 * PUDDLE_SHARE_OF_SEA * scene.conditions.wind.speed_m_s();
         let axes = pattern_axes(&scene.world_to_enu);
         let at = DVec2::from(axes.map(|a| a.dot(self.position)));
@@ -132,9 +153,10 @@ impl Seen<'_> {
         let drops = ring_drops_per_m2_s(rain);
         let [u, v] = axes.map(|a| (scene.world_to_enu * a).as_vec3().to_array());
         let f = |c: [f64; 3]| c.map(|v| v as f32);
+        let (rows, last, cell_m) = self.terrain_rows();
         GroundUniform {
             to_lamp: lamp.apparent.as_vec3().to_array(),
-            soaked: smooth(0.0, 0.3, cover.wetness) as f32,
+            soaked: soaked as f32,
             lamp_lux: f(lamp_lux),
             level: level_of(cover.puddles),
             sky_lux: f(scene.ground.sky_lux),
@@ -168,8 +190,24 @@ impl Seen<'_> {
             pad1: 0.0,
             falls: self.wind_m_s.map_or([0.0; 3], |_| falls_m_s(scene).map(|v| v as f32)),
             pad2: 0.0,
+            terrain_x: rows[0],
+            terrain_y: rows[1],
+            terrain_z: rows[2],
+            terrain_last: last.map(|v| v as f32),
+            terrain_rim: (0.25 * last[0].min(last[1])).min(TERRAIN_RIM) as f32,
+            terrain_near: (NEAR_TERRAIN[0] + NEAR_TERRAIN[1] * cell_m) as f32,
             waves: self.hollows.seen_from(at),
         }
+    }
+
+    /// The rows of the block, the last node, and the size of a cell.
+    fn terrain_rows(&self) -> ([[f32; 4]; 3], [f64; 2], f64) {
+        let Some((grid, to_enu)) = &self.terrain else { return ([[0.0; 4]; 3], [1.0; 2], 1.0) };
+        let turned = *to_enu * self.scene.world_to_enu.transpose();
+        let eye = *to_enu * (self.position - grid.origin);
+        let row = |i: usize, unit: f64| (turned.row(i).extend(eye[i]) / unit).as_vec4().to_array();
+        let last = grid.nodes.map(|n| f64::from(n - 1));
+        ([row(0, grid.cell_m), row(1, grid.cell_m), row(2, 1.0)], last, grid.cell_m)
     }
 
     /// Share of the light on level ground that enters a surface of water.
@@ -215,11 +253,12 @@ mod tests {
         );
         same!(place_u, axis_v, place_v, cell, slot, slot_share, film_slope, water_slope, ring_chance, most, pixel);
         same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, wind, falls, waves);
+        same!(terrain_x, terrain_y, terrain_z, terrain_last, terrain_rim, terrain_near);
     }
 
     #[test]
     fn constants_agree_with_the_shader() {
-        let text = shader::assemble("ground/hollows.wgsl").unwrap();
+        let text = shader::assemble("ground/surface.wgsl").unwrap();
         let cells = (PERIOD_M / RING_CELL_M) as u32;
         for line in [
             format!("const HOLLOW_WAVES: u32 = {WAVES}u;"),
@@ -227,6 +266,9 @@ mod tests {
             format!("const RING_CELLS: u32 = {cells}u;"),
             format!("const RING_SLOT: f32 = {RING_SLOT_S};"),
             format!("const RING_LAYERS: u32 = {RING_LAYERS}u;"),
+            format!("const FARTHEST_LEVEL: f32 = {FARTHEST_LEVEL:?};"),
+            format!("const THIN_FILM_SLOPE: f32 = {THIN_FILM_SLOPE};"),
+            format!("const CLOSED_FILM_SLOPE: f32 = {CLOSED_FILM_SLOPE};"),
         ] {
             assert!(text.contains(&line), "{line}");
         }

@@ -4,7 +4,8 @@
 //! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often it is
 //! asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away, hollows leak and
 //! overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no step can overshoot.
-//! Not in it: freezing and thawing, dew, the host's terrain and roofs.
+//! Not in it: freezing and thawing, dew. On the host's terrain ([`super::terrain`]) each cell has film and pores by these laws,
+//! and what runs off stands in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::weather::{Conditions, SurfaceCover, saturation_pressure_hpa};
@@ -13,7 +14,7 @@ use crate::weather::{Conditions, SurfaceCover, saturation_pressure_hpa};
 pub const STEP_S: f64 = 10.0;
 
 /// What the pores of the uppermost ground hold, mm (asphalt: initial losses of 0.3 to 0.6 mm).
-const PORES_MM: f64 = 0.4;
+pub(crate) const PORES_MM: f64 = 0.4;
 /// Time in which dry pores take up most of what lies on them, s.
 const SOAK_S: f64 = 90.0;
 /// Run-off of a film, Nusselt (1916): g sin(slope) / (3 nu) film^3 a metre of width, on a slope of 2 % and 5 m length; mm^-2
@@ -29,6 +30,8 @@ const OVERFLOW_SHARE: f64 = 0.35;
 const LEAK_MM_H: f64 = 0.4;
 /// Film at which 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
 const FILM_MM: f64 = 0.15;
+/// Less than this is nothing, mm.
+const LEAST_MM: f64 = 1e-4;
 /// Wetness of soaked ground without a film ([`SurfaceCover::wetness`]: damp).
 const DAMP: f64 = 0.3;
 
@@ -132,47 +135,94 @@ impl GroundWater {
 
     /// How it looks: wetness and share of puddles.
     pub fn cover(&self) -> (f64, f64) {
-        let film = 1.0 - libm::exp(-self.film_mm / FILM_MM);
-        (DAMP * self.soaked_mm / PORES_MM + (1.0 - DAMP) * film, covered_by(self.hollows_mm))
+        (wetness_of(self.film_mm, self.soaked_mm), covered_by(self.hollows_mm))
     }
 
     /// The state `seconds` later under this forcing.
     pub fn after(&self, forcing: &Forcing, seconds: f64) -> Self {
-        let hours = seconds / 3600.0;
-        let mut next = *self;
-        // Half of the rain before the run-off, half after it: right to second order.
-        let half = 0.5 * forcing.liquid_mm_h * hours;
-        next.film_mm += half;
-        let room = (PORES_MM - next.soaked_mm) * (1.0 - libm::exp(-seconds / SOAK_S));
-        let soaked = next.film_mm.min(room);
-        next.film_mm -= soaked;
-        next.soaked_mm += soaked;
-        // d film / dt = - k film^3, solved.
-        let run = 1.0 + 2.0 * RUN_OFF * next.film_mm * next.film_mm * seconds;
-        let left = next.film_mm / run.sqrt();
-        next.hollows_mm += INTO_HOLLOWS * (next.film_mm - left);
-        next.film_mm = left + half;
-        next.hollows_mm = next.hollows_mm.min(hollows_mm(OVERFLOW_SHARE));
-        next.dried(forcing.evaporation_mm_h * hours, LEAK_MM_H * hours)
+        let step = Step::new(forcing, seconds);
+        let top = step.surface(self.film_mm, self.soaked_mm, forcing.liquid_mm_h * seconds / 3600.0);
+        let hollows_mm = (self.hollows_mm + INTO_HOLLOWS * top.ran_off_mm).min(hollows_mm(OVERFLOW_SHARE));
+        let left = (hollows_mm - (step.evaporated_mm + step.leaked_mm) * covered_by(hollows_mm)).max(0.0);
+        // The last of a puddle is a film in a crack.
+        Self { film_mm: top.film_mm, soaked_mm: top.soaked_mm, hollows_mm: if left < LEAST_MM { 0.0 } else { left } }
+    }
+}
+
+/// What a step does to all places alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Step {
+    /// What open water loses to the air, and standing water to the ground below, mm.
+    pub evaporated_mm: f64,
+    pub leaked_mm: f64,
+    /// Share of their room that pores take up.
+    soaking: f64,
+    /// 2 k t of the run-off.
+    run_off: f64,
+    /// Share of their water that pores keep where there is no film.
+    drying: f64,
+}
+
+/// Film and pores after a step, and where the rest went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surface {
+    pub film_mm: f64,
+    pub soaked_mm: f64,
+    pub ran_off_mm: f64,
+    pub evaporated_mm: f64,
+}
+
+impl Step {
+    pub fn new(forcing: &Forcing, seconds: f64) -> Self {
+        let evaporated_mm = forcing.evaporation_mm_h * seconds / 3600.0;
+        Self {
+            evaporated_mm,
+            leaked_mm: LEAK_MM_H * seconds / 3600.0,
+            soaking: 1.0 - libm::exp(-seconds / SOAK_S),
+            run_off: 2.0 * RUN_OFF * seconds,
+            drying: libm::exp(-evaporated_mm / PORES_MM),
+        }
     }
 
-    /// What is left after `evaporated` mm of open water's evaporation and `leaked` mm from below the hollows.
-    fn dried(mut self, evaporated: f64, leaked: f64) -> Self {
-        let covered = covered_by(self.hollows_mm);
-        self.hollows_mm = (self.hollows_mm - (evaporated + leaked) * covered).max(0.0);
-        // The last of a puddle is a film in a crack.
-        if self.hollows_mm < 1e-4 {
-            self.hollows_mm = 0.0;
-        }
-        let from_film = self.film_mm.min(evaporated);
-        self.film_mm -= from_film;
-        // Pores give up water ever more slowly, at a rate that falls with what is left.
-        self.soaked_mm *= libm::exp(-(evaporated - from_film) / PORES_MM);
-        if self.soaked_mm < 1e-4 {
-            self.soaked_mm = 0.0;
-        }
-        self
+    fn soaked_up(&self, film_mm: f64, soaked_mm: f64) -> f64 {
+        film_mm.min((PORES_MM - soaked_mm) * self.soaking)
     }
+
+    /// Open ground on which `rain_mm` falls.
+    pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> Surface {
+        // Half of the rain before the run-off, half after it: right to second order.
+        let half = 0.5 * rain_mm;
+        let up = self.soaked_up(film_mm + half, soaked_mm);
+        let (film, soaked) = (film_mm + half - up, soaked_mm + up);
+        // d film / dt = - k film^3, solved.
+        let left = film / (1.0 + self.run_off * film * film).sqrt();
+        let wet = left + half;
+        let from_film = wet.min(self.evaporated_mm);
+        // Pores give up water ever more slowly, at a rate that falls with what is left.
+        let kept = match self.evaporated_mm - from_film {
+            0.0 => soaked,
+            more if more == self.evaporated_mm => soaked * self.drying,
+            more => soaked * libm::exp(-more / PORES_MM),
+        };
+        let kept = if kept < LEAST_MM { 0.0 } else { kept };
+        Surface {
+            film_mm: wet - from_film,
+            soaked_mm: kept,
+            ran_off_mm: film - left,
+            evaporated_mm: from_film + (soaked - kept),
+        }
+    }
+
+    /// Ground under standing water, which takes all that its pores do not.
+    pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> Surface {
+        let up = self.soaked_up(film_mm + rain_mm, soaked_mm);
+        Surface { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
+    }
+}
+
+/// How film and pores look: wetness, as [`SurfaceCover::wetness`].
+pub(crate) fn wetness_of(film_mm: f64, soaked_mm: f64) -> f64 {
+    DAMP * soaked_mm / PORES_MM + (1.0 - DAMP) * (1.0 - libm::exp(-film_mm / FILM_MM))
 }
 
 /// Depth of water, mm, at a point of a ground under `water` whose hollow there is `hollow` deep, in units of their root mean

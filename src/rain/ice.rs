@@ -192,8 +192,16 @@ impl StoneSizes {
 
     /// What lands on one side of a surface, as [`super::sizes::DropSizes::on_surface`] has it of drops.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
+        self.on_surface_of(normal, air_m_s, |_| true)
+    }
+
+    /// As [`StoneSizes::on_surface`] of the stones whose fall speed, m/s, `comes` lets through.
+    pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
-        let towards = |p: &Part, d: f64| (p.stone.speed_m_s(d, self.factor) * normal.z - carried).max(0.0);
+        let towards = |p: &Part, d: f64| {
+            let falls = p.stone.speed_m_s(d, self.factor);
+            if comes(falls) { (falls * normal.z - carried).max(0.0) } else { 0.0 }
+        };
         SurfaceFlux {
             drops_per_m2_s: self.sum(|p| p.integral(|d| towards(p, d))),
             rate_mm_h: self.sum(|p| p.integral(|d| RATE * d * d * d * towards(p, d))),

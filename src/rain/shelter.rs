@@ -127,6 +127,11 @@ impl Shelter {
         if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
+    /// Whether it stands: what drives by does not keep the ground dry.
+    pub(crate) fn stands(&self) -> bool {
+        self.velocity_m_s.length() <= 0.1
+    }
+
     /// Whether it can keep rain off a drop within `reach_m` of a camera: nothing is tested that the picture does not need.
     /// `wind` is the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. Errs towards yes.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
@@ -152,7 +157,7 @@ impl Shelter {
             [n.x as f32, n.y as f32, n.z as f32, -n.dot(center) as f32]
         };
         let v = to_enu * self.velocity_m_s;
-        let moves = f32::from(u8::from(v.length() > 0.1));
+        let moves = f32::from(u8::from(!self.stands()));
         [row(0), row(1), row(2), [v.x as f32, v.y as f32, v.z as f32, moves]]
     }
 }

@@ -220,6 +220,12 @@ impl DropSizes {
         self.factor * terminal_speed_m_s(diameter_mm)
     }
 
+    /// Fall speeds, m/s, of the drops in the middle of each third of the water.
+    pub(crate) fn thirds_m_s(&self) -> [f64; 3] {
+        let sizes = self.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]);
+        sizes.map(|d| self.speed_m_s(d))
+    }
+
     /// What lands on level ground in still air; the rate is the one that the sizes were made for.
     pub fn on_level_ground(&self) -> SurfaceFlux {
         self.on_surface(DVec3::Z, DVec3::ZERO)
@@ -229,10 +235,18 @@ impl DropSizes {
     /// moves by `air_m_s` relative to the surface. Each size arrives along its own slant; those that come from behind do not
     /// count.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
+        self.on_surface_of(normal, air_m_s, |_| true)
+    }
+
+    /// As [`DropSizes::on_surface`] of the drops whose fall speed, m/s, `comes` lets through.
+    pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
         let (mut drops, mut water) = (0.0, 0.0);
         for [d, w, v] in NODES.iter() {
             let towards = (self.factor * v * normal.z - carried).max(0.0);
+            if towards <= 0.0 || !comes(self.factor * v) {
+                continue;
+            }
             let flux = w * towards * self.sum(|p| if p.n0 > 0.0 { p.n0 * libm::exp(-p.lambda * d) } else { 0.0 });
             drops += flux;
             water += flux * d * d * d;

@@ -5,9 +5,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, occluder::*,
-    plan::*, query::*, rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, light::*,
+    occluder::*, plan::*, query::*, rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
+    vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -74,6 +74,12 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
+        case("wk_context_set_ground_grid", "context", false, |h| unsafe {
+            wk_context_set_ground_grid(h.cast(), null())
+        }),
+        case("wk_context_get_ground_cells", "context", false, |h| unsafe {
+            wk_context_get_ground_cells(h.cast(), null_mut(), 0, 0, null_mut())
+        }),
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)
         }),

@@ -5,6 +5,7 @@
 //! if a function of the header has none.
 
 mod areas;
+mod ground;
 mod handles;
 mod plan;
 mod queries;

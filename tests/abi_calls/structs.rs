@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, light::*, occluder::*,
-    opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
-    vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, light::*,
+    occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*,
+    veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -116,6 +116,7 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
+        case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {
@@ -177,6 +178,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_surface_config",
     "wk_cloud_slab",
     "wk_ground_light",
+    "wk_ground_cell",
     "wk_segment",
     "wk_between",
     "wk_rain_on",

@@ -4,3 +4,4 @@ mod drawn;
 mod host;
 mod mirrors;
 mod state;
+mod terrain;

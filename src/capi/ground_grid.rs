@@ -1,0 +1,159 @@
+//! Water on the host's terrain
+//!
+//! A host that gives the heights of its terrain on a grid gets wetness and puddles cell by cell: rain areas and standing
+//! boxes (wk_context_set_shelters) decide what falls where, what runs off fills the terrain's hollows up to where they spill.
+//! wk_context_get_ground answers by the place, the stage SURFACE draws it, and wk_context_get_ground_cells hands it over for
+//! the host's own materials. With WK_GROUND_SIMULATED it is a state, which wk_context_save keeps together with the heights; else
+//! the weather's wetness, spread over the hollows.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input,
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    context::GroundCell,
+    error::Status,
+    ground::{GroundGrid, MAX_GRID_NODES},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
+
+/// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square cell about
+/// it; between nodes water goes linearly. Outside is the world's ground, into which the picture fades over two cells.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_ground_grid {
+    /// sizeof(wk_ground_grid) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_GROUND_GRID.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its own.
+    /// Default 0, 0, 0.
+    pub origin_m: [f64; 3],
+    /// From node to node, m. Range [0.01, 10 000], default 1. Puddles smaller than a few cells are not in it.
+    pub cell_m: f64,
+    /// Nodes east and north. Range 2 to 512, default 2, 2.
+    pub nodes: [u32; 2],
+    /// Heights above the origin, m, within 1e5; the node to the east comes next, after a row the next row to the north. Copied by
+    /// the call.
+    pub heights_m: *const f32,
+    /// Numbers in heights_m: the product of `nodes`.
+    pub height_count: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_ground_grid {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_GROUND_GRID,
+        next: null(),
+        origin_m: [0.0, 0.0, 0.0],
+        cell_m: 1.0,
+        nodes: [2, 2],
+        heights_m: null(),
+        height_count: 0,
+        reserved0: 0,
+    };
+}
+
+/// Water of a cell of the host's terrain; plain values of a list: packed it is the upload of a texture of four floats.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_ground_cell {
+    /// Water between and on the grains, mm; none under standing water.
+    pub film_mm: f32,
+    /// In the pores, as a share of what they hold.
+    pub soaked: f32,
+    /// Standing water, mm.
+    pub standing_mm: f32,
+    /// Share under ice, by the weather of the moment.
+    pub ice: f32,
+}
+
+impl wk_ground_cell {
+    fn of(c: &GroundCell) -> Self {
+        Self { film_mm: c.film_mm, soaked: c.soaked, standing_mm: c.standing_mm, ice: c.ice }
+    }
+}
+
+/// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
+/// keeps its water, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
+/// error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_ground_grid(
+    context: *mut wk_context,
+    ground_grid: *const wk_ground_grid,
+) -> wk_status {
+    guard("wk_context_set_ground_grid", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        if ground_grid.is_null() {
+            object.write().set_ground_grid(None)?;
+            return Ok(Status::Ok);
+        }
+        // SAFETY: the caller's promise about `ground_grid`.
+        let c = unsafe { layout::read(&"ground_grid", ground_grid)? };
+        // SAFETY: the caller's promise about its pointers.
+        let heights = unsafe {
+            layout::check_chain(&"ground_grid", c.next, &[])?;
+            let most = (MAX_GRID_NODES * MAX_GRID_NODES) as usize;
+            input::slice("ground_grid.heights_m", c.heights_m, c.height_count as usize, most)?
+        };
+        let grid = GroundGrid {
+            origin: DVec3::from_array(c.origin_m),
+            cell_m: c.cell_m,
+            nodes: c.nodes,
+            heights_m: heights.to_vec(),
+        };
+        object.write().set_ground_grid(Some(grid))?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+/// `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
+/// upload anew what has changed, every 10 s of simulation time at most.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_ground_cells(
+    context: *const wk_context,
+    cells: *mut wk_ground_cell,
+    capacity: u32,
+    cell_size: u32,
+    out_revision: *mut u64,
+) -> wk_status {
+    guard("wk_context_get_ground_cells", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let room = input::Room::new("cells", "cell_size", cells, capacity, cell_size)?;
+        let revision = input::out("out_revision", out_revision)?;
+        let context = object.read();
+        let water = context.ground_cells().ok_or_else(|| {
+            crate::error::Error::new(
+                Status::WrongOrder,
+                "cells come after wk_context_set_ground_grid: there is no terrain",
+            )
+        })?;
+        if capacity > 0 {
+            room.check_capacity("capacity", water.len())?;
+            for (i, cell) in water.enumerate() {
+                // SAFETY: the capacity was checked, and is what the caller promises.
+                unsafe { room.write(i, &wk_ground_cell::of(&cell)) };
+            }
+        }
+        // SAFETY: `revision` was checked and is the caller's.
+        unsafe { revision.write(context.ground_revision()) };
+        Ok(Status::Ok)
+    })
+}

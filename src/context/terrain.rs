@@ -1,0 +1,430 @@
+//! Water on the host's terrain: what falls where on it, and how it is led through time beside that of level, open ground.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{Context, GroundModel};
+use crate::{
+    error::Result,
+    ground::{
+        GroundGrid, GroundWater,
+        terrain::{CellWater, Terrain, TerrainWater},
+        water::{Forcing, STEP_S, Step},
+    },
+    rain::{MAX_AREAS, Shaft, Shelter, drops::factor_in, shelter::sheltered, sizes::DropSizes},
+    scene::WorldFrame,
+    weather::{Conditions, Falling, cover_under_rain},
+};
+
+/// Steps, and cells times steps, that a longer leap in time is simulated over: a day, and no more than some seconds of work. What
+/// was before is taken from level, open ground.
+const MOST_STEPS: f64 = 8640.0;
+const LONGEST_CELL_STEPS: f64 = 3e8;
+/// So far above the ground is what counts as its surface, m.
+const SURFACE_M: f64 = 0.02;
+
+/// Water of a cell of the host's terrain, for its own materials.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct GroundCell {
+    /// Water between and on the grains, mm; none under standing water.
+    pub film_mm: f32,
+    /// In the pores, as a share of what they hold.
+    pub soaked: f32,
+    /// Standing water, mm.
+    pub standing_mm: f32,
+    /// Share under ice, by the weather of the moment.
+    pub ice: f32,
+}
+
+/// The host's terrain and the water on it.
+pub(super) struct HostGround {
+    pub terrain: Terrain,
+    /// Turns the host's axes at the grid's origin, whose altitude this is.
+    to_enu: DMat3,
+    altitude_m: f64,
+    /// Half of the grid's diagonal and its middle; lowest and highest node.
+    reach: (f64, DVec3),
+    range_m: (f64, f64),
+    pub water: TerrainWater,
+    /// Whether `water` is a state of its own by now; else it is what `shown` makes of it.
+    pub begun: bool,
+    shown: Option<Shown>,
+    shadow: Shadow,
+    /// Room for the rates of the cells.
+    rates: Vec<f64>,
+}
+
+/// What water that is no state of its own depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shown {
+    water: GroundWater,
+    falling: Falling,
+    wind: DVec2,
+    humidity: f64,
+    slot: f64,
+    told: u64,
+}
+
+/// How many thirds of the rain the boxes keep off each cell.
+#[derive(Default)]
+struct Shadow {
+    made_for: Option<([f64; 3], DVec2, Vec<Shelter>)>,
+    /// Empty where nothing is kept off anywhere.
+    thirds: Vec<u8>,
+}
+
+impl Shadow {
+    fn share(&self, cell: usize) -> f64 {
+        self.thirds.get(cell).map_or(1.0, |t| f64::from(3 - t) / 3.0)
+    }
+}
+
+/// The rain of an area over a grid.
+#[derive(Clone, Copy)]
+struct Over {
+    shaft: Shaft,
+    /// The same everywhere: share, and how much of it has left its cloud.
+    even: Option<(f64, f64)>,
+    liquid_mm_h: f64,
+}
+
+/// Areas over a grid, in their order.
+struct Overs {
+    list: [Option<Over>; MAX_AREAS],
+    even: bool,
+}
+
+impl Overs {
+    fn all(&self) -> impl Iterator<Item = &Over> {
+        self.list.iter().flatten()
+    }
+}
+
+impl HostGround {
+    pub fn new(grid: GroundGrid, world: &WorldFrame) -> Self {
+        let frame = world.frame_at(grid.origin);
+        let terrain = Terrain::new(grid);
+        let water = TerrainWater::new(&terrain, |_| GroundWater::default());
+        Self {
+            to_enu: frame.world_to_enu,
+            altitude_m: frame.place.altitude_m,
+            reach: terrain.grid.reach(&frame.world_to_enu),
+            range_m: terrain.grid.range(),
+            terrain,
+            water,
+            begun: false,
+            shown: None,
+            shadow: Shadow::default(),
+            rates: Vec::new(),
+        }
+    }
+
+    /// Finds what the standing boxes keep off. `falls_m_s`: of the drops in the middle of each third of the water; `wind` of the
+    /// air, east and north.
+    fn shade(&mut self, falls_m_s: [f64; 3], wind: DVec2, shelters: &[Shelter]) {
+        let standing = || shelters.iter().filter(|s| s.stands());
+        if let Some((falls, blown, list)) = &self.shadow.made_for
+            && (*falls, *blown) == (falls_m_s, wind)
+            && list.iter().eq(standing())
+        {
+            return;
+        }
+        self.shadow.thirds.clear();
+        if standing().next().is_some() {
+            self.shadow.thirds.resize(self.terrain.grid.len(), 0);
+            for fall in falls_m_s {
+                self.shade_third(wind.extend(-fall), standing());
+            }
+        }
+        let mut list = self.shadow.made_for.take().map_or(Vec::new(), |made| made.2);
+        list.clear();
+        list.extend(standing());
+        self.shadow.made_for = Some((falls_m_s, wind, list));
+    }
+
+    fn shade_third<'a>(&mut self, velocity: DVec3, shelters: impl Iterator<Item = &'a Shelter> + Clone) {
+        let grid = &self.terrain.grid;
+        let in_world = self.to_enu.transpose() * velocity;
+        let columns = grid.nodes[0] as usize;
+        // Each box is asked where its shadow may lie; a cell counts once.
+        for (i, shelter) in shelters.clone().enumerate() {
+            let Some([x, y]) = self.shadow_within(shelter, velocity) else { continue };
+            for (row, column) in (y[0]..=y[1]).flat_map(|row| (x[0]..=x[1]).map(move |column| (row, column))) {
+                let cell = row * columns + column;
+                let p = grid.node(cell, &self.to_enu) + self.to_enu.transpose() * (DVec3::Z * SURFACE_M);
+                if sheltered(shelter, p, in_world) && !shelters.clone().take(i).any(|s| sheltered(s, p, in_world)) {
+                    self.shadow.thirds[cell] += 1;
+                }
+            }
+        }
+    }
+
+    /// First and last column and row in which the shadow of a box may lie.
+    fn shadow_within(&self, shelter: &Shelter, velocity: DVec3) -> Option<[[usize; 2]; 2]> {
+        let grid = &self.terrain.grid;
+        let center = self.to_enu * (shelter.center_m - grid.origin);
+        let radius = shelter.half_size_m.length();
+        let after = |height: f64| ((center.z + radius - height) / -velocity.z).max(0.0);
+        let ends = [0.0, after(self.range_m.0)].map(|t| center.truncate() + velocity.truncate() * t);
+        let (low, high) = (ends[0].min(ends[1]) - radius, ends[0].max(ends[1]) + radius);
+        if center.z + radius < self.range_m.0 {
+            return None;
+        }
+        let part = |low: f64, high: f64, nodes: u32| {
+            let last = f64::from(nodes - 1);
+            let (first, end) = ((low / grid.cell_m).ceil().max(0.0), (high / grid.cell_m).floor().min(last));
+            (first <= end).then_some([first as usize, end as usize])
+        };
+        Some([part(low.x, high.x, grid.nodes[0])?, part(low.y, high.y, grid.nodes[1])?])
+    }
+
+    /// Share of an area's rain at a cell, and how much of it has left its cloud.
+    fn share(&self, over: &Over, cell: usize) -> (f64, f64) {
+        over.even.unwrap_or_else(|| {
+            let altitude = self.altitude_m + f64::from(self.terrain.grid.heights_m[cell]);
+            let p = self.terrain.grid.node(cell, &self.to_enu);
+            (over.shaft.share_at(p, &self.to_enu, altitude), over.shaft.begun(altitude))
+        })
+    }
+
+    /// Rain and drizzle at a cell where the weather has `own`, mm/h.
+    fn liquid(&self, overs: &Overs, own: f64, cell: usize) -> f64 {
+        overs.all().fold(own, |sum, over| {
+            let (share, begun) = self.share(over, cell);
+            sum * (1.0 - share) + over.liquid_mm_h * share * begun
+        })
+    }
+
+    /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
+    fn falls_m_s(&self, c: &Conditions, overs: &Overs) -> [f64; 3] {
+        let liquid = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h;
+        let mut heaviest = c.precipitation;
+        for over in overs.all().filter(|o| o.even.is_none_or(|(share, _)| share > 0.0)) {
+            if liquid(&over.shaft.falling) > liquid(&heaviest) {
+                heaviest = over.shaft.falling;
+            }
+        }
+        if liquid(&heaviest) <= 0.0 {
+            heaviest.rain_mm_h = 3.0;
+        }
+        DropSizes::new(&heaviest, factor_in(&c.air, self.altitude_m)).thirds_m_s()
+    }
+
+    /// Leads the water through a step under the weather `c`.
+    fn step(&mut self, c: &Conditions, forcing: &Forcing, seconds: f64, overs: &Overs, shelters: &[Shelter]) -> bool {
+        let rains = forcing.liquid_mm_h > 0.0 || overs.all().any(|o| o.liquid_mm_h > 0.0);
+        if !rains && self.water.is_dry() {
+            return false;
+        }
+        let step = Step::new(forcing, seconds);
+        if !rains {
+            self.water.step(&self.terrain, &step, |_| 0.0);
+            return true;
+        }
+        let falls_m_s = self.falls_m_s(c, overs);
+        self.shade(falls_m_s, DVec2::new(c.wind.east_m_s, c.wind.north_m_s), shelters);
+        let own = c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h;
+        let liquid_stays = 1.0 - c.precipitation.freezing;
+        // What melts falls everywhere alike.
+        let melting = forcing.liquid_mm_h - own * liquid_stays;
+        let hours = seconds / 3600.0;
+        if overs.even {
+            let mm = (self.liquid(overs, own, 0) * liquid_stays + melting) * hours;
+            let shadow = &self.shadow;
+            self.water.step(&self.terrain, &step, |cell| mm * shadow.share(cell));
+        } else {
+            let mut rates = std::mem::take(&mut self.rates);
+            rates.clear();
+            rates.extend((0..self.terrain.grid.len()).map(|cell| {
+                let mm = (self.liquid(overs, own, cell) * liquid_stays + melting) * hours;
+                mm * self.shadow.share(cell)
+            }));
+            self.water.step(&self.terrain, &step, |cell| rates[cell]);
+            self.rates = rates;
+        }
+        true
+    }
+
+    /// Takes the water from what the weather says of all the ground, where it gets to.
+    fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &Overs, shelters: &[Shelter]) {
+        let falls_m_s = self.falls_m_s(c, overs);
+        self.shade(falls_m_s, DVec2::new(c.wind.east_m_s, c.wind.north_m_s), shelters);
+        let own = c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h;
+        let kept = |liquid: f64| {
+            let falling = Falling { rain_mm_h: liquid, drizzle_mm_h: 0.0, ..c.precipitation };
+            let (wetness, puddles) = cover_under_rain(&falling, c.air.relative_humidity);
+            let dry = 1.0 - c.surface.ice;
+            let cover = crate::weather::SurfaceCover { wetness: wetness * dry, puddles: puddles * dry, ..c.surface };
+            GroundWater::of_cover(&cover).max(water)
+        };
+        let mut last = (f64::NAN, *water);
+        let mut at = |cell: usize| {
+            let liquid = self.liquid(overs, own, cell);
+            if liquid != last.0 {
+                last = (liquid, if overs.all().next().is_some() && liquid != own { kept(liquid) } else { *water });
+            }
+            let share = self.shadow.share(cell);
+            GroundWater {
+                film_mm: last.1.film_mm * share,
+                soaked_mm: last.1.soaked_mm * share,
+                hollows_mm: last.1.hollows_mm * share,
+            }
+        };
+        let cells: Vec<GroundWater> = (0..self.terrain.grid.len()).map(&mut at).collect();
+        self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
+    }
+}
+
+impl Context {
+    /// The host's terrain, over which wetness and puddles are found cell by cell; `None` leaves level ground everywhere. The grid
+    /// that is set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
+    /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
+    /// terrain's hollows. Takes some tenths of a second for the largest grids.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_ground_grid(&mut self, grid: Option<GroundGrid>) -> Result<()> {
+        let Some(grid) = grid else {
+            self.host_ground = None;
+            return Ok(());
+        };
+        grid.validate()?;
+        self.desc.world.frame_at(grid.origin).place.validate()?;
+        if self.host_ground.as_ref().is_some_and(|held| held.terrain.grid == grid) {
+            return Ok(());
+        }
+        self.host_ground = Some(Box::new(HostGround::new(grid, &self.desc.world)));
+        self.show_terrain()
+    }
+
+    /// The host's terrain.
+    pub fn ground_grid(&self) -> Option<&GroundGrid> {
+        self.host_ground.as_ref().map(|held| &held.terrain.grid)
+    }
+
+    /// Water of each cell of the host's terrain now, in the order of its heights; `None` without one.
+    pub fn ground_cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
+        let held = self.host_ground.as_ref()?;
+        let ice = self.timeline.at(self.time_s).surface.ice as f32;
+        Some((0..held.terrain.grid.len()).map(move |cell| {
+            let c = held.water.cell(cell);
+            GroundCell {
+                film_mm: c.film_mm as f32,
+                soaked: c.soaked as f32,
+                standing_mm: c.standing_mm.max(0.0) as f32,
+                ice,
+            }
+        }))
+    }
+
+    /// A number that is another whenever the water of the cells has changed.
+    pub fn ground_revision(&self) -> u64 {
+        self.ground_revision
+    }
+
+    /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
+    pub(super) fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
+        let held = self.host_ground.as_ref()?;
+        let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
+        Some((held.water.between(&about), held.water.puddles()))
+    }
+
+    /// The host's terrain with its water and the axes at its origin, for drawing.
+    pub(crate) fn drawn_terrain(&self) -> Option<(&Terrain, &TerrainWater, DMat3)> {
+        self.host_ground.as_ref().map(|held| (&held.terrain, &held.water, held.to_enu))
+    }
+
+    fn overs(&self, held: &HostGround, time_s: f64, c: &Conditions) -> Result<Overs> {
+        let mut overs = Overs { list: [None; MAX_AREAS], even: true };
+        if self.areas.is_empty() {
+            return Ok(overs);
+        }
+        let (reach, middle) = held.reach;
+        let altitude = |m: f64| held.altitude_m + m;
+        let mean = altitude(0.5 * (held.range_m.0 + held.range_m.1));
+        for (place, shaft) in overs.list.iter_mut().zip(self.shafts_at(time_s, c)?) {
+            let [least, most] = shaft.share_within(middle, &held.to_enu, mean, reach);
+            let begun = [held.range_m.0, held.range_m.1].map(|m| shaft.begun(altitude(m)));
+            let even = least == most && (most == 0.0 || begun[0] == begun[1]);
+            overs.even &= even;
+            let liquid_mm_h = if most > 0.0 { shaft.falling.rain_mm_h + shaft.falling.drizzle_mm_h } else { 0.0 };
+            *place = Some(Over { shaft, even: even.then_some((most, begun[0])), liquid_mm_h });
+        }
+        Ok(overs)
+    }
+
+    /// Where a leap to `now_s` is so long that the terrain's water begins anew on the way: from then on it is stepped.
+    pub(super) fn terrain_from_s(&mut self, begun_s: f64, now_s: f64) -> f64 {
+        let Some(held) = &mut self.host_ground else { return f64::INFINITY };
+        let longest_s = (LONGEST_CELL_STEPS / held.terrain.grid.len() as f64).floor().min(MOST_STEPS) * STEP_S;
+        if now_s - begun_s <= longest_s {
+            return f64::NEG_INFINITY;
+        }
+        (held.begun, held.shown) = (false, None);
+        now_s - longest_s
+    }
+
+    /// Leads the terrain's water from `from_s` through a step, under the weather in its middle; `water` is that of level, open
+    /// ground at its beginning.
+    pub(super) fn step_terrain(
+        &mut self,
+        (from_s, seconds): (f64, f64),
+        c: &Conditions,
+        forcing: &Forcing,
+        water: &GroundWater,
+    ) -> Result<()> {
+        let Some(mut held) = self.host_ground.take() else { return Ok(()) };
+        let overs = self.overs(&held, from_s + 0.5 * seconds, c);
+        let stepped = overs.map(|overs| {
+            if !held.begun {
+                held.show(c, water, &overs, &self.shelters);
+                held.begun = true;
+            }
+            held.step(c, forcing, seconds, &overs, &self.shelters)
+        });
+        self.host_ground = Some(held);
+        self.ground_revision += u64::from(stepped?);
+        Ok(())
+    }
+
+    /// Where the terrain's water is no state of its own, brings it up to date with weather, areas and shelter.
+    pub(super) fn show_terrain(&mut self) -> Result<()> {
+        let Some(mut held) = self.host_ground.take_if(|held| !held.begun) else { return Ok(()) };
+        // Looked at as often as a state is stepped: weather and areas may change all the time.
+        let slot_s = ((self.time_s / STEP_S).floor() * STEP_S).max(self.timeline.known_from_s());
+        let c = self.timeline.at(slot_s);
+        let water = match (self.desc.ground, self.ground) {
+            (GroundModel::Simulated, Some(state)) => state.water(),
+            _ => GroundWater::of_cover(&c.surface),
+        };
+        let shown = Shown {
+            water,
+            falling: c.precipitation,
+            wind: DVec2::new(c.wind.east_m_s, c.wind.north_m_s),
+            humidity: c.air.relative_humidity,
+            slot: if self.areas.is_empty() { 0.0 } else { slot_s },
+            told: self.told,
+        };
+        if held.shown != Some(shown) {
+            let overs = self.overs(&held, slot_s, &c);
+            if let Ok(overs) = &overs {
+                held.show(&c, &water, overs, &self.shelters);
+                (held.shown, self.ground_revision) = (Some(shown), self.ground_revision + 1);
+            }
+            self.host_ground = Some(held);
+            return overs.map(|_| ());
+        }
+        self.host_ground = Some(held);
+        Ok(())
+    }
+
+    /// Takes up what a saved state had of the terrain; where it had none, the terrain that is set begins anew.
+    pub(super) fn take_up_terrain(&mut self, loaded: Option<HostGround>) -> Result<()> {
+        self.ground_revision += 1;
+        match (loaded, &mut self.host_ground) {
+            (Some(loaded), _) => self.host_ground = Some(Box::new(loaded)),
+            (None, Some(held)) => (held.begun, held.shown) = (false, None),
+            (None, None) => {}
+        }
+        self.show_terrain()
+    }
+}

@@ -1,0 +1,103 @@
+//! A terrain and its water as text, and back. Numbers are words of their bits, runs of equal ones as "bits*times".
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::terrain::HostGround;
+use crate::{
+    ground::{GroundGrid, MAX_GRID_NODES, terrain::TerrainWater},
+    scene::WorldFrame,
+};
+
+/// A terrain as it is saved, with its water if that is a state.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SavedGround {
+    origin_m: [f64; 3],
+    cell_m: f64,
+    nodes: [u32; 2],
+    heights_m: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    water: Option<[String; 3]>,
+}
+
+fn words(values: impl Iterator<Item = u64>) -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    let mut values = values.peekable();
+    while let Some(value) = values.next() {
+        let mut times = 1;
+        while values.next_if_eq(&value).is_some() {
+            times += 1;
+        }
+        let gap = if text.is_empty() { "" } else { " " };
+        // Writing to a text cannot fail.
+        let _ = if times > 1 { write!(text, "{gap}{value:x}*{times}") } else { write!(text, "{gap}{value:x}") };
+    }
+    text
+}
+
+/// The values that [`words`] wrote, if there are `count`.
+fn values(text: &str, count: usize) -> Option<Vec<u64>> {
+    let mut values = Vec::new();
+    for word in text.split_whitespace() {
+        let (value, times) = word.split_once('*').unwrap_or((word, "1"));
+        let times: usize = times.parse().ok().filter(|n| *n <= count - values.len())?;
+        values.resize(values.len() + times, u64::from_str_radix(value, 16).ok()?);
+    }
+    (values.len() == count).then_some(values)
+}
+
+impl SavedGround {
+    pub fn of(held: &HostGround) -> Self {
+        let grid = &held.terrain.grid;
+        let column = |i: usize| words(held.water.top.iter().map(move |t| t[i].to_bits()));
+        let held_by = || words(held.water.held().iter().map(|v| v.to_bits()));
+        Self {
+            origin_m: grid.origin.to_array(),
+            cell_m: grid.cell_m,
+            nodes: grid.nodes,
+            heights_m: words(grid.heights_m.iter().map(|h| u64::from(h.to_bits()))),
+            water: held.begun.then(|| [column(0), column(1), held_by()]),
+        }
+    }
+
+    /// What was saved, if it can be one of ours.
+    pub fn host_ground(&self, world: &WorldFrame) -> Option<HostGround> {
+        if self.nodes.iter().any(|n| *n > MAX_GRID_NODES) {
+            return None;
+        }
+        let count = self.nodes[0] as usize * self.nodes[1] as usize;
+        let heights_m = values(&self.heights_m, count)?.into_iter().map(|b| Some(f32::from_bits(b.try_into().ok()?)));
+        let (origin, cell_m) = (DVec3::from(self.origin_m), self.cell_m);
+        let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m: heights_m.collect::<Option<_>>()? };
+        grid.validate().ok()?;
+        world.frame_at(origin).place.validate().ok()?;
+        let mut held = HostGround::new(grid, world);
+        if let Some([film, soaked, hollows]) = &self.water {
+            let floats = |text: &str, count| Some(values(text, count)?.into_iter().map(f64::from_bits));
+            let top = floats(film, count)?.zip(floats(soaked, count)?).map(|(f, s)| [f, s]).collect();
+            let held_by = floats(hollows, held.water.held().len())?.collect();
+            held.water = TerrainWater::from_parts(&held.terrain, top, held_by)?;
+            held.begun = true;
+        }
+        Some(held)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_come_back_and_broken_ones_do_not() {
+        let list = [7, 7, 7, 0, u64::MAX, 12, 12];
+        let text = words(list.into_iter());
+        assert_eq!(text, "7*3 0 ffffffffffffffff c*2");
+        assert_eq!(values(&text, 7).unwrap(), list);
+        assert_eq!(values("", 0).unwrap(), []);
+        for (bad, count) in [("7*3", 2), ("7*3", 4), ("7*99999999999999999999", 3), ("x", 1), ("7*-1", 1), ("7*", 1)] {
+            assert_eq!(values(bad, count), None, "{bad}");
+        }
+    }
+}

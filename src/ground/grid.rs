@@ -1,0 +1,162 @@
+//! The host's terrain as Welkin takes it for the water on it: heights on a regular grid.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::error::{Error, Result, check_range};
+
+/// Most nodes of a grid east and north.
+pub const MAX_GRID_NODES: u32 = 512;
+/// Largest height above or below the origin, m.
+const MOST_M: f32 = 1e5;
+/// What lies higher above the terrain than this, m, is on something that stands on it: a bridge, a roof.
+const ABOVE_M: f64 = 3.0;
+
+/// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the square
+/// cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the ground is the
+/// world's own ([`GroundModel`](crate::context::GroundModel)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundGrid {
+    /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.
+    pub origin: DVec3,
+    /// From node to node, m, \[0.01, 10 000\]. Puddles that are smaller than a few cells are not in it.
+    pub cell_m: f64,
+    /// Nodes east and north, each \[2, 512\].
+    pub nodes: [u32; 2],
+    /// Heights above the origin, m, within 1e5; eastern neighbours beside each other, then northern.
+    pub heights_m: Vec<f32>,
+}
+
+impl GroundGrid {
+    /// Refuses what is no grid, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.origin.is_finite() && self.origin.length() <= 1e12) {
+            return Err(Error::range("ground_grid.origin_m", "finite and within 1e12 m", self.origin));
+        }
+        check_range("ground_grid.cell_m", self.cell_m, 0.01, 1e4, "m")?;
+        for (i, nodes) in self.nodes.into_iter().enumerate() {
+            let name = format!("ground_grid.nodes[{i}]");
+            check_range(&name, f64::from(nodes), 2.0, f64::from(MAX_GRID_NODES), "")?;
+        }
+        let count = self.len();
+        if self.heights_m.len() != count {
+            let wanted = format!("{count}, one a node");
+            return Err(Error::range("ground_grid.heights_m' count", &wanted, self.heights_m.len()));
+        }
+        match self.heights_m.iter().position(|h| h.is_nan() || h.abs() > MOST_M) {
+            None => Ok(()),
+            Some(i) => {
+                let name = format!("ground_grid.heights_m[{i}]");
+                Err(Error::range(&name, &format!("finite and within {MOST_M} m"), self.heights_m[i]))
+            }
+        }
+    }
+
+    /// Nodes.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes[0] as usize * self.nodes[1] as usize
+    }
+
+    /// `position` of the host's world in cells east and north of the origin, and its height over it; `to_enu` turns the host's
+    /// axes at the origin.
+    pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> (DVec2, f64) {
+        let p = to_enu * (position - self.origin);
+        (p.truncate() / self.cell_m, p.z)
+    }
+
+    /// Where a node lies in the host's world.
+    pub(crate) fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
+        let columns = self.nodes[0] as usize;
+        let plan = DVec2::new((index % columns) as f64, (index / columns) as f64) * self.cell_m;
+        self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
+    }
+
+    /// Half of its diagonal, m, and its middle in the host's world.
+    pub(crate) fn reach(&self, to_enu: &DMat3) -> (f64, DVec3) {
+        let half = 0.5 * self.cell_m * DVec2::new(f64::from(self.nodes[0] - 1), f64::from(self.nodes[1] - 1));
+        let (low, high) = self.range();
+        let middle = half.extend(0.5 * (low + high));
+        (middle.with_z(0.5 * (high - low)).length(), self.origin + to_enu.transpose() * middle)
+    }
+
+    /// Lowest and highest node, m.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        let ends = self.heights_m.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+        (f64::from(ends.0), f64::from(ends.1))
+    }
+
+    /// The four nodes about a place and their shares; `None` outside.
+    pub(crate) fn about(&self, cells: DVec2) -> Option<[(usize, f64); 4]> {
+        let c = cells.to_array();
+        let inside = c.iter().zip(self.nodes).all(|(x, n)| (0.0..=f64::from(n - 1)).contains(x));
+        inside.then(|| {
+            let low = [0, 1].map(|i| (c[i] as u32).min(self.nodes[i] - 2));
+            let part = [0, 1].map(|i| c[i] - f64::from(low[i]));
+            [[0, 0], [1, 0], [0, 1], [1, 1]].map(|bit: [u32; 2]| {
+                let share = [0, 1].map(|i| if bit[i] == 1 { part[i] } else { 1.0 - part[i] });
+                let index = (low[1] + bit[1]) as usize * self.nodes[0] as usize + (low[0] + bit[0]) as usize;
+                (index, share[0] * share[1])
+            })
+        })
+    }
+
+    /// The nodes about a place of the host's world, if it is on this terrain and not high above it.
+    pub(crate) fn on_terrain(&self, position: DVec3, to_enu: DMat3) -> Option<[(usize, f64); 4]> {
+        let (cells, height) = self.cells_at(position, to_enu);
+        let about = self.about(cells)?;
+        let ground: f64 = about.iter().map(|(i, share)| share * f64::from(self.heights_m[*i])).sum();
+        (height < ground + ABOVE_M).then_some(about)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> GroundGrid {
+        let heights_m = (0..12).map(|i| (i % 4) as f32 * 0.5 + (i / 4) as f32).collect();
+        GroundGrid { origin: DVec3::new(10.0, 20.0, 30.0), cell_m: 2.0, nodes: [4, 3], heights_m }
+    }
+
+    #[test]
+    fn places_between_nodes_have_their_share_of_each() {
+        let grid = grid();
+        for p in [DVec3::new(10.0, 20.0, 30.0), DVec3::new(13.0, 21.5, 30.0), DVec3::new(16.0, 24.0, 33.5)] {
+            let about = grid.on_terrain(p, DMat3::IDENTITY).unwrap();
+            let height: f64 = about.iter().map(|(i, s)| s * f64::from(grid.heights_m[*i])).sum();
+            assert!((height - ((p.x - 10.0) * 0.25 + (p.y - 20.0) * 0.5)).abs() < 1e-12, "{p}: {height}");
+        }
+        for p in [DVec3::new(9.9, 21.0, 30.0), DVec3::new(11.0, 24.1, 30.0), DVec3::new(11.0, 21.0, 34.0)] {
+            assert_eq!(grid.on_terrain(p, DMat3::IDENTITY), None, "{p}");
+        }
+        assert_eq!(grid.node(6, &DMat3::IDENTITY), DVec3::new(14.0, 22.0, 32.0));
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused_by_name() {
+        grid().validate().unwrap();
+        let torn = |v: f32| {
+            let mut torn = grid();
+            torn.heights_m[7] = v;
+            torn
+        };
+        let mut short = grid();
+        short.heights_m.pop();
+        for (bad, name) in [
+            (GroundGrid { origin: DVec3::splat(f64::NAN), ..grid() }, "origin_m must be"),
+            (GroundGrid { cell_m: -1.0, ..grid() }, "cell_m must be in [0.01, 10000]"),
+            (GroundGrid { cell_m: f64::NAN, ..grid() }, "cell_m must be in [0.01, 10000] m, got NaN"),
+            (GroundGrid { nodes: [1, 4], ..grid() }, "nodes[0] must be in [2, 512]"),
+            (GroundGrid { nodes: [4, 513], ..grid() }, "nodes[1] must be in [2, 512]"),
+            (torn(f32::NAN), "heights_m[7] must be finite"),
+            (torn(f32::INFINITY), "heights_m[7] must be finite"),
+            (torn(-2e5), "heights_m[7] must be finite"),
+            (short, "heights_m' count must be 12"),
+        ] {
+            let e = bad.validate().unwrap_err();
+            assert!(e.message.contains(&format!("ground_grid.{name}")), "{name}: {}", e.message);
+        }
+    }
+}

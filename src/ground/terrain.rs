@@ -1,0 +1,332 @@
+//! Water on the host's terrain: of every cell of a [`GroundGrid`] film and pores by the laws of [`super::water`], and in the
+//! hollows of the terrain what runs off.
+//!
+//! What a cell sheds in a step is in its hollow at the end of the step ([`super::basins`]); a full hollow spills into the next,
+//! and what reaches the grid's border is gone. Nothing runs in from outside. Standing water loses Penman's evaporation to the air
+//! and a leak to the ground below, and takes whole what falls on it. So rain = change of film, pores and standing water +
+//! evaporated + leaked + drained.
+
+use super::{
+    GroundGrid, GroundWater,
+    basins::{Basins, OUT},
+    pools::Pools,
+    uniform::{film_level, look_of},
+    water::{PORES_MM, Step, Surface, wetness_of},
+};
+
+/// Depth of water where there is none and no hollow's level is known, mm: as far as puddles' edges run out between cells.
+const BARE_MM: f32 = -50.0;
+
+/// The host's terrain and its hollows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Terrain {
+    pub grid: GroundGrid,
+    basins: Basins,
+}
+
+impl Terrain {
+    pub fn new(grid: GroundGrid) -> Self {
+        let basins = Basins::new(&grid.heights_m, grid.nodes[0] as usize);
+        Self { grid, basins }
+    }
+}
+
+/// What a step brought and took, mm times cells.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Flows {
+    pub rain: f64,
+    pub evaporated: f64,
+    pub leaked: f64,
+    pub drained: f64,
+}
+
+/// Water of one cell.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct CellWater {
+    pub film_mm: f64,
+    /// In the pores, as a share of what they hold.
+    pub soaked: f64,
+    /// Above the ground; how far below the hollow's level it lies, or [`BARE_MM`], where negative.
+    pub standing_mm: f64,
+}
+
+impl CellWater {
+    /// Depth over the ground, mm.
+    pub fn depth_mm(&self) -> f64 {
+        self.film_mm + self.standing_mm.max(0.0)
+    }
+
+    /// As [`SurfaceCover::wetness`](crate::weather::SurfaceCover::wetness).
+    pub fn wetness(&self) -> f64 {
+        if self.standing_mm > 0.0 { 1.0 } else { wetness_of(self.film_mm, self.soaked * PORES_MM) }
+    }
+}
+
+/// The water on a terrain.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TerrainWater {
+    /// Film and pores, mm.
+    pub top: Vec<[f64; 2]>,
+    pools: Pools,
+    /// Depths as in [`CellWater::standing_mm`].
+    standing: Vec<f32>,
+    dry: bool,
+    /// Room for a step: what pits get, levels of the hollows now and before.
+    inflow: Vec<f64>,
+    levels: [Vec<f64>; 2],
+}
+
+impl TerrainWater {
+    /// On a terrain that is as wet as `water` says of open, level ground at each cell; what it says of hollows stands in the
+    /// terrain's own, gathered from what drains there.
+    pub fn new(terrain: &Terrain, water: impl Fn(usize) -> GroundWater) -> Self {
+        let basins = &terrain.basins;
+        let top: Vec<GroundWater> = (0..terrain.grid.len()).map(water).collect();
+        let mut inflow = vec![0.0; basins.list.len()];
+        for (w, pit) in top.iter().zip(&basins.drains_to).filter(|(_, pit)| **pit != OUT) {
+            inflow[*pit as usize] += w.hollows_mm;
+        }
+        let mut pools = Pools::new(basins);
+        inflow.iter().enumerate().filter(|(_, v)| **v > 0.0).for_each(|(pit, v)| {
+            pools.pour(basins, pit as u32, *v);
+        });
+        Self::with(terrain, top.iter().map(|w| [w.film_mm, w.soaked_mm]).collect(), pools)
+    }
+
+    /// A saved one, if it can be of this terrain.
+    pub fn from_parts(terrain: &Terrain, top: Vec<[f64; 2]>, held: Vec<f64>) -> Option<Self> {
+        let sound = |[film, soaked]: &[f64; 2]| (0.0..1e4).contains(film) && (0.0..=PORES_MM).contains(soaked);
+        let pools = Pools::from_held(&terrain.basins, held)?;
+        (top.len() == terrain.grid.len() && top.iter().all(sound)).then(|| Self::with(terrain, top, pools))
+    }
+
+    fn with(terrain: &Terrain, top: Vec<[f64; 2]>, pools: Pools) -> Self {
+        let hollows = terrain.basins.list.len();
+        let mut new = Self {
+            dry: top.iter().all(|t| *t == [0.0; 2]) && pools.are_dry(),
+            standing: vec![BARE_MM; top.len()],
+            top,
+            pools,
+            inflow: vec![0.0; hollows],
+            levels: [vec![0.0; hollows], vec![f64::INFINITY; hollows]],
+        };
+        new.level(&terrain.basins);
+        new
+    }
+
+    /// What each hollow holds.
+    pub fn held(&self) -> &[f64] {
+        &self.pools.held
+    }
+
+    /// Whether there is no water at all.
+    pub fn is_dry(&self) -> bool {
+        self.dry
+    }
+
+    /// Leads it through a step in which so many millimetres fall on each cell.
+    pub fn step(&mut self, terrain: &Terrain, step: &Step, rain_mm: impl Fn(usize) -> f64) -> Flows {
+        let basins = &terrain.basins;
+        let mut flows = Flows::default();
+        let mut wet = false;
+        // Neighbours mostly have the same water and the same rain.
+        let mut last: Option<([f64; 2], f64, bool, Surface)> = None;
+        for (cell, top) in self.top.iter_mut().enumerate() {
+            let (rain, under) = (rain_mm(cell), self.standing[cell] > 0.0);
+            let next = match &last {
+                Some((same, fell, below, next)) if same == top && *fell == rain && *below == under => *next,
+                _ if under => step.below_water(top[0], top[1], rain),
+                _ => step.surface(top[0], top[1], rain),
+            };
+            last = Some((*top, rain, under, next));
+            *top = [next.film_mm, next.soaked_mm];
+            wet |= next.film_mm > 0.0 || next.soaked_mm > 0.0;
+            flows.rain += rain;
+            flows.evaporated += next.evaporated_mm;
+            match basins.drains_to[cell] {
+                OUT => flows.drained += next.ran_off_mm,
+                pit => self.inflow[pit as usize] += next.ran_off_mm,
+            }
+        }
+        for (pit, water) in self.inflow.iter_mut().enumerate().filter(|(_, v)| **v > 0.0) {
+            flows.drained += self.pools.pour(basins, pit as u32, std::mem::take(water));
+        }
+        if !self.pools.are_dry() {
+            let sinks = step.evaporated_mm + step.leaked_mm;
+            let gone = self.pools.sink(basins, sinks);
+            flows.evaporated += gone * step.evaporated_mm / sinks;
+            flows.leaked += gone * step.leaked_mm / sinks;
+            wet = true;
+        }
+        self.dry = !wet;
+        self.level(basins);
+        flows
+    }
+
+    /// Brings the depths up to date with what the hollows hold.
+    fn level(&mut self, basins: &Basins) {
+        let [now, before] = &mut self.levels;
+        self.pools.levels(basins, now);
+        for hollow in 0..now.len() {
+            if now[hollow] == before[hollow] {
+                continue;
+            }
+            for (cell, height_mm) in basins.own_cells(hollow) {
+                let depth = (now[hollow] - height_mm) as f32;
+                self.standing[cell] = if depth.is_finite() { depth } else { BARE_MM };
+            }
+        }
+        self.levels.swap(0, 1);
+    }
+
+    /// Water of a cell.
+    pub fn cell(&self, cell: usize) -> CellWater {
+        let [film_mm, soaked_mm] = self.top[cell];
+        CellWater { film_mm, soaked: soaked_mm / PORES_MM, standing_mm: f64::from(self.standing[cell]) }
+    }
+
+    /// Water between cells.
+    pub fn between(&self, about: &[(usize, f64); 4]) -> CellWater {
+        about.iter().fold(CellWater::default(), |sum, (cell, share)| {
+            let c = self.cell(*cell);
+            CellWater {
+                film_mm: sum.film_mm + share * c.film_mm,
+                soaked: sum.soaked + share * c.soaked,
+                standing_mm: sum.standing_mm + share * c.standing_mm,
+            }
+        })
+    }
+
+    /// What the surface pass reads of each cell, by rows: share of the pores' look that is soaked, level of the film in units of
+    /// the pattern's hollows ([`super::Hollows`]), depth of standing water as in [`CellWater`], mm, and the height, m.
+    pub fn texels(&self, terrain: &Terrain, texels: &mut Vec<[f32; 4]>) {
+        texels.clear();
+        let mut last = ([f64::NAN; 2], [0.0; 2]);
+        let heights = &terrain.grid.heights_m;
+        texels.extend(self.top.iter().zip(&self.standing).zip(heights).map(|((top, standing), height)| {
+            if *standing > 0.0 {
+                return [1.0, film_level(1.0) as f32, *standing, *height];
+            }
+            if last.0 != *top {
+                let (soaked, film) = look_of(wetness_of(top[0], top[1]));
+                last = (*top, [soaked, film_level(film)]);
+            }
+            [last.1[0] as f32, last.1[1] as f32, *standing, *height]
+        }));
+    }
+
+    /// Share of the cells under standing water.
+    pub fn puddles(&self) -> f64 {
+        self.standing.iter().filter(|s| **s > 0.0).count() as f64 / self.standing.len() as f64
+    }
+
+    /// All of it, mm times cells.
+    #[cfg(test)]
+    fn total(&self, terrain: &Terrain) -> f64 {
+        self.top.iter().map(|t| t[0] + t[1]).sum::<f64>() + self.pools.total(&terrain.basins)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::ground::{
+        basins::tests::rough,
+        water::{Forcing, STEP_S},
+    };
+
+    fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> Terrain {
+        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m };
+        grid.validate().unwrap();
+        Terrain::new(grid)
+    }
+
+    fn rain(mm_h: f64, evaporation_mm_h: f64) -> (Step, f64) {
+        let forcing = Forcing { liquid_mm_h: mm_h, evaporation_mm_h };
+        (Step::new(&forcing, STEP_S), mm_h * STEP_S / 3600.0)
+    }
+
+    #[test]
+    fn what_falls_is_on_the_ground_or_has_gone_where_it_is_said_to() {
+        let terrain = terrain(48, 40, rough(48, 40, 2));
+        let mut water = TerrainWater::new(&terrain, |_| GroundWater::default());
+        assert!(water.is_dry());
+        let (mut fallen, mut gone) = (0.0, 0.0);
+        for i in 0..2400 {
+            // Two showers of other rains in the east and west, with roofs; then wind and sun.
+            let (step, mm) = rain(if i % 1200 < 500 { 9.0 } else { 0.0 }, if i % 1200 < 500 { 0.02 } else { 0.6 });
+            let over = |cell: usize| if cell % 48 < 20 { mm } else { mm * ((cell / 48) % 4) as f64 / 3.0 };
+            let flows = water.step(&terrain, &step, over);
+            fallen += flows.rain;
+            gone += flows.evaporated + flows.leaked + flows.drained;
+            let held = water.total(&terrain);
+            assert!((fallen - gone - held).abs() <= 1e-6 * fallen, "step {i}: {fallen} {gone} {held}");
+            assert!(flows.evaporated >= 0.0 && flows.leaked >= 0.0 && flows.drained >= 0.0, "{flows:?}");
+        }
+        assert!(fallen > 30_000.0 && gone > 0.3 * fallen, "{fallen} {gone}");
+    }
+
+    #[test]
+    fn a_puddle_stands_in_the_deepest_cell_first_and_dries_last() {
+        let size = 25u32;
+        let bowl = |i: u32| {
+            let (x, y) = (f64::from(i % size) - 14.0, f64::from(i / size) - 9.0);
+            (0.002 * (x * x + y * y)).min(0.12) as f32
+        };
+        let terrain = terrain(size, size, (0..size * size).map(bowl).collect());
+        let deepest = (9 * size + 14) as usize;
+        let mut water = TerrainWater::new(&terrain, |_| GroundWater::default());
+        let under = |w: &TerrainWater| (0..w.top.len()).filter(|c| w.cell(*c).standing_mm > 0.0).collect::<Vec<_>>();
+        let (wet, mm) = rain(20.0, 0.0);
+        let mut first = Vec::new();
+        for _ in 0..360 {
+            water.step(&terrain, &wet, |_| mm);
+            if first.is_empty() {
+                first = under(&water);
+            }
+        }
+        assert_eq!(first, [deepest]);
+        let full = under(&water).len();
+        let deep = water.cell(deepest);
+        assert!(
+            full > 50 && deep.standing_mm > 40.0 && deep.film_mm == 0.0 && deep.wetness() == 1.0,
+            "{full} {deep:?}"
+        );
+        let level = (0..water.top.len())
+            .filter(|c| water.cell(*c).standing_mm > 0.0)
+            .map(|c| f64::from(terrain.grid.heights_m[c]) * 1e3 + water.cell(c).standing_mm)
+            .collect::<Vec<_>>();
+        assert!(level.iter().all(|l| (l - level[0]).abs() < 1e-2), "water is level: {level:?}");
+        let (dry, _) = rain(0.0, 0.5);
+        let (mut hours, mut left) = (0.0, full);
+        while !water.is_dry() && hours < 400.0 {
+            water.step(&terrain, &dry, |_| 0.0);
+            hours += STEP_S / 3600.0;
+            let now = under(&water);
+            // The last of the film still runs in for a while.
+            assert!((hours < 1.0 || now.len() <= left) && (now.is_empty() || now.contains(&deepest)));
+            left = now.len();
+        }
+        assert!((40.0..200.0).contains(&hours), "{hours} h");
+        assert_eq!(water.puddles(), 0.0);
+    }
+
+    #[test]
+    fn as_much_water_as_is_reported_stands_in_the_hollows() {
+        let terrain = terrain(60, 50, rough(60, 50, 4));
+        let reported = GroundWater { film_mm: 0.2, soaked_mm: 0.4, hollows_mm: 0.9 };
+        let water = TerrainWater::new(&terrain, |_| reported);
+        let caught = terrain.basins.drains_to.iter().filter(|d| **d != OUT).count() as f64;
+        let standing = water.pools.total(&terrain.basins);
+        // Some hollows hold less than drains into them.
+        assert!((0.95..1.0).contains(&(standing / (0.9 * caught))), "{standing} of {caught}");
+        assert!(water.puddles() > 0.02, "{}", water.puddles());
+        let again = TerrainWater::from_parts(&terrain, water.top.clone(), water.held().to_vec()).unwrap();
+        assert_eq!(again, water);
+        let mut bad = water.top.clone();
+        bad[3][1] = f64::NAN;
+        assert!(TerrainWater::from_parts(&terrain, bad, water.held().to_vec()).is_none());
+    }
+}
