@@ -216,8 +216,9 @@ impl RustHost {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&self.idle);
         pass.set_bind_group(0, &self.held, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-        pass.dispatch_workgroups(1, 1, 1);
+        for _ in 0..3 {
+            pass.dispatch_workgroups(1, 1, 1);
+        }
         pass.dispatch_workgroups_indirect(&self.times, 0);
         drop(pass);
         for label in ["drops", "composite"] {

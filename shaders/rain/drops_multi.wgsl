@@ -10,25 +10,29 @@ fn depth_at(uv: vec2f) -> f32 {
     return textureLoad(host_depth, vec2i(min(uv * size, size - 1.0)), 0).r;
 }
 
-@vertex
-fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
-    var out: RainVarying;
-    out.position = vec4f(2.0, 2.0, 2.0, 1.0);
-    let landing = landing_of(instance);
+// The crown of a slot.
+fn splashed(slot: u32) -> Crown {
+    let landing = landing_of(slot);
     var z = splash.ground;
     var surface = vec3f(0.0);
     for (var i = 0u; i < SEARCH; i++) {
         let seen = seen_at(vec3f(landing.xy, z));
         if landing.fade <= 0.0 || seen.z == 0.0 {
-            return out;
+            return Crown();
         }
         surface = surface_of(seen.xy, depth_at(uv_of(seen.xy)));
         z = surface.z;
     }
     if !is_found(landing, surface) {
-        return out;
+        return Crown();
     }
-    return crown(landing, z, corner);
+    return crown_of(landing, z);
+}
+
+// Every slot, where there are no compute shaders.
+@vertex
+fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32) -> RainVarying {
+    return crown_corner(splashed(slot), corner);
 }
 
 @fragment

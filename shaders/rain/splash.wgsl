@@ -89,29 +89,54 @@ fn above_ground(at: vec3f) -> vec3f {
     return at + vec3f(0.0, 0.0, 0.02 + 0.004 * length(at));
 }
 
-// A corner of the crown: it rises, opens and falls (sizes in drop diameters after Yarin 2006, Drop Impact Dynamics).
-fn crown(landing: Landing, z: f32, corner: u32) -> RainVarying {
-    var out: RainVarying;
-    out.position = vec4f(2.0, 2.0, 2.0, 1.0);
+// What a splash draws.
+struct Crown {
+    // Its foot, camera-relative, m.
+    at: vec3f,
+    // Half of its width, m; 0: nothing is drawn.
+    width: f32,
+    // Premultiplied.
+    light: vec4f,
+    // m.
+    height: f32,
+}
+
+// The crown that stands at a landing, at height `z`: it rises, opens and falls (sizes in drop diameters after Yarin 2006, Drop
+// Impact Dynamics).
+fn crown_of(landing: Landing, z: f32) -> Crown {
     let at = vec3f(landing.xy, z);
     if sheltered(above_ground(at), rain.wind - vec3f(0.0, 0.0, splash.speed), true) {
-        return out;
+        return Crown();
     }
     let age = landing.age;
     let d = length(at);
     let full = vec2f(2.0 + 5.0 * age, 20.0 * age * (1.0 - age) + 0.5) * splash.diameter;
     let size = max(full, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
-    let side = select(-1.0, 1.0, (corner & 1u) != 0u);
-    let top = select(0.0, 1.0, (corner & 2u) != 0u);
-    let toward = at / d;
-    let across = normalize(cross(toward, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0));
-    var clip = rain.clip * vec4f(at + across * (side * size.x) + vec3f(0.0, 0.0, top * size.y), 1.0);
-    clip.y *= rain.y_sign;
-    out.position = vec4f(clip.xy, 0.0, clip.w);
-    out.range = d - 0.2;
-    out.across = side;
     // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
     let cover = 0.35 * landing.fade * (1.0 - age * age) * (full.x * full.y) / (size.x * size.y) * exp(-rain.extinction * d);
-    out.light = vec4f(drop_light(at, toward) * cover, cover);
-    return out;
+    return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), size.y);
+}
+
+fn crown_corner(crown: Crown, corner: u32) -> RainVarying {
+    let d = max(length(crown.at), 1e-3);
+    let side = select(-1.0, 1.0, (corner & 1u) != 0u);
+    let top = select(0.0, 1.0, (corner & 2u) != 0u);
+    let across = normalize(cross(crown.at / d, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0));
+    let place = crown.at + across * (side * crown.width) + vec3f(0.0, 0.0, top * crown.height);
+    var clip = rain.clip * vec4f(place, 1.0);
+    clip.y *= rain.y_sign;
+    let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
+    return RainVarying(position, crown.light, d - 0.2, side);
+}
+
+struct ListedCrown {
+    @location(0) at_width: vec4f,
+    @location(1) light: vec4f,
+    @location(2) height: f32,
+}
+
+// Crowns that were made before (rain/crowns_single.wgsl and crowns_multi.wgsl).
+@vertex
+fn crown_vertex(@builtin(vertex_index) corner: u32, listed: ListedCrown) -> RainVarying {
+    return crown_corner(Crown(listed.at_width.xyz, listed.at_width.w, listed.light, listed.height), corner);
 }

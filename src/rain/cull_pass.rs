@@ -179,7 +179,7 @@ impl CullPass {
     pub fn find(
         &mut self,
         device: &Device,
-        encoder: &mut wgpu::CommandEncoder,
+        pass: &mut wgpu::ComputePass<'_>,
         (around_layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
         lattice: Lattice<'_>,
     ) -> Result<()> {
@@ -192,7 +192,6 @@ impl CullPass {
         else {
             return Ok(());
         };
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &list.groups[0], &[]);
         pass.set_bind_group(2, around, &[]);
@@ -214,7 +213,13 @@ impl CullPass {
     pub fn prepare_draw(&mut self, device: &Device, frame: &wgpu::BindGroupLayout, depth: (bool, bool)) -> Result<()> {
         let slot = &mut self.draws[key([false, depth.0, depth.1])];
         if slot.is_none() {
-            *slot = Some(draw_pipeline(device, frame, depth)?);
+            let attribute = |shader_location, offset, format| wgpu::VertexAttribute { format, offset, shader_location };
+            let attributes = [
+                attribute(0, 0, wgpu::VertexFormat::Float32x4),
+                attribute(1, 16, wgpu::VertexFormat::Float32x3),
+                attribute(2, 32, wgpu::VertexFormat::Float32x4),
+            ];
+            *slot = Some(listed_pipeline(device, frame, ("listed_vertex", &attributes, STREAK_BYTES), depth)?);
         }
         Ok(())
     }
@@ -280,11 +285,11 @@ fn key(bits: [bool; 3]) -> usize {
     bits.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
 }
 
-fn group_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+pub(super) fn group_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
 }
 
-fn compute_pipeline(
+pub(super) fn compute_pipeline(
     device: &Device,
     (shader, entry): (&str, &str),
     layouts: &[Option<&wgpu::BindGroupLayout>],
@@ -306,27 +311,26 @@ fn compute_pipeline(
     }))
 }
 
-fn draw_pipeline(
+/// A draw of what compute shaders have made: what each instance brings to which entry point, in how many bytes.
+pub(super) fn listed_pipeline(
     device: &Device,
     frame: &wgpu::BindGroupLayout,
+    (vertex, attributes, bytes): (&str, &[wgpu::VertexAttribute], u64),
     (multi, has_depth): (bool, bool),
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
-    let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x3];
-    let light = wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x4, offset: 32, shader_location: 2 };
-    let attributes = [attributes[0], attributes[1], light];
     Ok(pass::quads(
         device,
         &QuadsDesc {
-            label: "listed drops",
-            vertex: (&module, "listed_vertex", &[]),
+            label: "listed",
+            vertex: (&module, vertex, &[]),
             fragment: (&module, "rain_fragment", &constants),
             layouts: &[Some(frame)],
             buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: STREAK_BYTES,
+                array_stride: bytes,
                 step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
+                attributes,
             })],
             format: FORMAT,
         },

@@ -11,6 +11,7 @@ mod around;
 pub mod candidates;
 mod cone_pass;
 pub mod cones;
+mod crown_pass;
 mod cull_pass;
 mod curtain;
 pub mod drops;

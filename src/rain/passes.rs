@@ -7,6 +7,7 @@ use super::{
     around::{self, Around},
     cone_pass::ConePass,
     cones::ConeUniform,
+    crown_pass::CrownPass,
     cull_pass::{CullPass, Lattice},
     lattice::SHELLS,
     splash::SplashUniform,
@@ -33,10 +34,10 @@ pub(crate) struct RainLayer {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     around: wgpu::BindGroupLayout,
-    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps. The drops' is
-    /// for devices that cannot draw by lists.
+    /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps; for devices
+    /// that cannot draw by lists.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
-    cull: Option<Box<CullPass>>,
+    listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
     stepped: Option<Box<StepPass>>,
     /// Hail and pellets, when some fell.
@@ -71,10 +72,10 @@ pub(crate) struct Drawn<'a> {
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: both,
+        visibility: all,
         ty: wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
@@ -88,7 +89,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             uniform(0, size_of::<RainUniform>()),
             wgpu::BindGroupLayoutEntry {
                 binding: 1,
-                visibility: both,
+                visibility: all,
                 ty: wgpu::BindingType::Texture {
                     sample_type: wgpu::TextureSampleType::Float { filterable: false },
                     view_dimension: wgpu::TextureViewDimension::D2,
@@ -126,7 +127,7 @@ impl RainLayer {
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             around: around::layout(&device.device),
             pipelines: [const { [None, None] }; 16],
-            cull: None,
+            listed: None,
             cones: None,
             stepped: None,
             stones: None,
@@ -140,8 +141,8 @@ impl RainLayer {
     pub fn bytes(&self) -> u64 {
         let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
         let cones = self.cones.as_ref().map_or(0, ConePass::bytes);
-        let cull = self.cull.as_ref().map_or(0, |c| c.bytes());
-        layer + cones + cull + self.stepped.as_ref().map_or(0, |s| s.bytes())
+        let listed = self.listed.as_ref().map_or(0, |l| l.0.bytes() + l.1.bytes());
+        layer + cones + listed + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
@@ -207,18 +208,14 @@ impl RainLayer {
             let pass = self.stepped.get_or_insert_with(|| Box::new(StepPass::new(device)));
             pass.step(device, encoder, &self.blocks, stepped)?;
         }
-        let listed = CullPass::serves(device);
-        if listed {
-            let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
-            let lattice = Lattice { per_shell: drawn.rain.per_shell, states, areas, maps: drawn.maps };
-            let pass = self.cull.get_or_insert_with(|| Box::new(CullPass::new(&device.device, &self.blocks)));
-            pass.prepare_draw(device, frame[0], (multi, depth.is_some()))?;
-            pass.find(device, encoder, (frame[1], over.1), lattice)?;
-        }
-        let vertices = [(!listed).then_some("rain_vertex"), depth.is_some().then_some("splash_vertex")];
-        for (slot, vertex) in self.pipelines[key].iter_mut().zip(vertices) {
-            if let (None, Some(vertex)) = (&slot, vertex) {
-                *slot = Some(pipeline(device, frame, vertex, kind, areas)?);
+        let splashes = drawn.splashes * u32::from(depth.is_some());
+        if CullPass::serves(device) {
+            self.list(device, encoder, drawn, (multi, depth.is_some()), splashes)?;
+        } else {
+            for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
+                if slot.is_none() {
+                    *slot = Some(pipeline(device, frame, vertex, kind, areas)?);
+                }
             }
         }
         self.draw_into(encoder, over, |pass, layer| {
@@ -229,21 +226,50 @@ impl RainLayer {
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, drawn.around.bind_group(), &[]);
             }
-            let [falling, splashing] = &layer.pipelines[key];
-            match (&layer.cull, falling) {
-                (Some(cull), _) if listed => cull.draw(pass, (multi, depth.is_some())),
-                (_, Some(falling)) => {
+            match (layer.listed.as_deref(), &layer.pipelines[key]) {
+                (Some((cull, crowns)), _) => {
+                    cull.draw(pass, (multi, depth.is_some()));
+                    if splashes > 0 {
+                        crowns.draw(pass, [multi, areas, drawn.maps], splashes);
+                    }
+                }
+                (None, [Some(falling), Some(splashing)]) => {
                     pass.set_pipeline(falling);
                     pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+                    pass.set_pipeline(splashing);
+                    pass.draw(0..4, 0..splashes);
                 }
                 _ => {}
             }
-            if let (Some(splashing), 1..) = (splashing, drawn.splashes) {
-                pass.set_pipeline(splashing);
-                pass.draw(0..4, 0..drawn.splashes);
-            }
             layer.draw_stones(pass, kind, drawn);
         });
+        Ok(())
+    }
+
+    /// Finds the drops and splashes that the picture shows.
+    fn list(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        drawn: &Drawn<'_>,
+        depth: (bool, bool),
+        splashes: u32,
+    ) -> Result<()> {
+        let frame = [&self.layouts[usize::from(depth.0)], &self.around];
+        let make = || Box::new((CullPass::new(&device.device, &self.blocks), CrownPass::new(&device.device)));
+        let (cull, crowns) = &mut **self.listed.get_or_insert_with(make);
+        let around = drawn.around.bind_group();
+        let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
+        let (areas, maps) = (drawn.local.is_some(), drawn.maps);
+        cull.prepare_draw(device, frame[0], depth)?;
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let lattice = Lattice { per_shell: drawn.rain.per_shell, states, areas, maps };
+        cull.find(device, &mut pass, (frame[1], around), lattice)?;
+        if let (Some((.., own)), 1..) = (&self.bound, splashes) {
+            let kind = [depth.0, areas, maps];
+            crowns.prepare(device, frame, kind)?;
+            crowns.make(&mut pass, [own, around], kind, splashes);
+        }
         Ok(())
     }
 

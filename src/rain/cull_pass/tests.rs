@@ -71,7 +71,9 @@ impl Bench {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let layout = around::layout(&self.device.device);
         let lattice = Lattice { per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
-        self.pass.find(&self.device, &mut encoder, (&layout, self.around.bind_group()), lattice).unwrap();
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        self.pass.find(&self.device, &mut pass, (&layout, self.around.bind_group()), lattice).unwrap();
+        drop(pass);
         self.device.submit_and_wait(encoder).unwrap();
         let found: Vec<u32> = self.read(&self.pass.found);
         let streaks: Vec<[f32; 12]> = self.read(&self.pass.list.as_ref().unwrap().streaks);
