@@ -97,6 +97,9 @@ const FARTHEST_LEVEL: f32 = 6.0;
 const THIN_FILM_SLOPE: f32 = 0.3;
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
+// Slope of the clear ice that freezing rain leaves.
+const GLAZE_SLOPE: f32 = 0.04;
+
 // Radius that a lamp of the host is taken to have, m.
 const LAMP_RADIUS: f32 = 0.1;
 
@@ -157,7 +160,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     var gets = 1.0;
     if SHELTER {
         // What falls past boxes the terrain's cells know.
-        gets = rained_on(at, facing.normal, range, here.share < 0.5);
+        gets = rained_on(at, facing.normal, range, here.share < 0.5 || ground.glaze > 0.0);
     }
     let bare = facing.sure * (1.0 - plants(albedo));
     let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
@@ -171,8 +174,8 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
         pool = mix(pool, pooled(here.depth) * smoothstep(0.5, 0.8, level), here.share);
         soaked_share = mix(soaked_share, here.soaked, here.share);
         film_level = mix(min(film_level, FARTHEST_LEVEL), here.film_level, here.share);
-        let filmed = normal_share(-here.film_level);
-        film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, filmed), here.share);
+        let closed = normal_share(-here.film_level);
+        film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, closed), here.share);
     }
     pool *= bare * gets;
     // A pixel too long to see rings sees a rougher surface.
@@ -181,13 +184,14 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let slopes = ring_slopes(ground, place, select(0u, RING_LAYERS, rings)) * seen;
     let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
     let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
-    // In the hollows the film is deeper and smoother.
-    let film = Film(facing.normal, film_slope * (1.2 - 0.4 * normal_share(hollow.x)));
+    // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as bright.
+    let filmed = kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
+    let film = Film(facing.normal, mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ground.glaze * gets));
 
     // Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
-    let soaked = soaked_share * kept * (0.5 + 0.5 * bare) * gets;
+    let soaked = max(soaked_share, ground.glaze) * kept * (0.5 + 0.5 * bare) * gets;
     let wet = mix(vec3f(1.0), below, soaked);
-    let cover = covered_share(hollow, film_level, FILM_EDGE) * kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
+    let cover = max(covered_share(hollow, film_level, FILM_EDGE), ground.glaze) * filmed;
     let thin = mirror(film, to_eye);
     let deep = mirror(water, to_eye);
     let thin_share = thin.share * cover * (1.0 - pool);

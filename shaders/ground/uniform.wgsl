@@ -49,7 +49,8 @@ struct GroundUniform {
     ring_slope2: f32,
     // (Radius of the lamp's disc / 4)^2, rad^2.
     disc2: f32,
-    pad: f32,
+    // Share of level ground under clear ice.
+    glaze: f32,
     // Of the air that carries the rain, m/s.
     wind: vec3f,
     pad1: f32,

@@ -18,7 +18,15 @@ const MOST_UNITS: f64 = 6e4;
 pub(super) fn is_wet(frame: &Frame<'_>, context: &Context, scene: &Scene) -> bool {
     let cover = context.ground_cover_at(frame.camera.position, scene.conditions.surface);
     let terrain = context.drawn_terrain().is_some_and(|(_, water, _)| !water.is_dry());
-    frame.depth.is_some() && (terrain || cover.wetness > 0.0 || cover.puddles > 0.0)
+    let glaze = glaze(context, frame, scene);
+    frame.depth.is_some() && (terrain || cover.wetness > 0.0 || cover.puddles > 0.0 || glaze > 0.0)
+}
+
+/// Share of level ground under clear ice: as the freezing rain of the moment keeps it.
+fn glaze(context: &Context, frame: &Frame<'_>, scene: &Scene) -> f64 {
+    let c = context.with_areas(frame.camera.position, context.time_s(), scene.conditions);
+    let falls = (c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h) * c.precipitation.freezing > 0.0;
+    if falls { c.surface.ice } else { 0.0 }
 }
 
 /// The cells of the host's terrain on the GPU; there is none where there is no terrain.
@@ -100,6 +108,7 @@ pub(super) fn uniform(
             .with_areas(frame.camera.position, context.time_s(), scene.conditions)
             .precipitation
             .rain_mm_h,
+        glaze: glaze(context, frame, scene),
         hollows: context.hollows(),
         position: frame.camera.position,
         time_s: context.time_s(),

@@ -61,7 +61,7 @@ pub(crate) struct GroundUniform {
     pub curvature: f32,
     pub ring_slope2: f32,
     pub disc2: f32,
-    pub pad: f32,
+    pub glaze: f32,
     pub wind: [f32; 3],
     pub pad1: f32,
     pub falls: [f32; 3],
@@ -81,6 +81,8 @@ pub(crate) struct Seen<'a> {
     pub cover: &'a SurfaceCover,
     /// Rain on it, mm/h.
     pub rain_mm_h: f64,
+    /// Share of level ground under clear ice.
+    pub glaze: f64,
     pub hollows: &'a Hollows,
     /// Of the camera in the host's world, m.
     pub position: DVec3,
@@ -185,7 +187,7 @@ impl Seen<'_> {
             curvature: self.curvature as f32,
             ring_slope2: (RING_SLOPE2_PER_MM_H * rain.min(50.0)) as f32,
             disc2: (lamp.angular_radius / 4.0).powi(2) as f32,
-            pad: 0.0,
+            glaze: self.glaze as f32,
             wind: self.wind_m_s.map_or([0.0; 3], |w| w.as_vec3().to_array()),
             pad1: 0.0,
             falls: self.wind_m_s.map_or([0.0; 3], |_| falls_m_s(scene).map(|v| v as f32)),
@@ -253,7 +255,7 @@ mod tests {
         );
         same!(place_u, axis_v, place_v, cell, slot, slot_share, film_slope, water_slope, ring_chance, most, pixel);
         same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, wind, falls, waves);
-        same!(terrain_x, terrain_y, terrain_z, terrain_last, terrain_rim, terrain_near);
+        same!(glaze, terrain_x, terrain_y, terrain_z, terrain_last, terrain_rim, terrain_near);
     }
 
     #[test]

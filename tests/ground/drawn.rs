@@ -61,6 +61,42 @@ fn patches_darken_by_the_law_of_wet_albedo() {
 }
 
 #[test]
+fn freezing_rain_leaves_an_even_gloss() {
+    let mut host = Host::new();
+    let set = |host: &mut Host, name: &str| {
+        let weather = Weather { wind: welkin::weather::Wind::of(0.0, 0.0), ..Weather::preset(name).unwrap() };
+        host.context.set_weather(&weather, host.context.time_s(), 0.0).unwrap();
+    };
+    let spread = |pixels: &[[f32; 4]]| {
+        let mean = pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / pixels.len() as f64;
+        let variance = pixels.iter().map(|p| (f64::from(p[1]) - mean).powi(2)).sum::<f64>() / pixels.len() as f64;
+        (mean, variance.sqrt() / mean)
+    };
+    // From high enough to see puddles where there are any.
+    let high = DVec3::new(0.0, 0.0, 15.0);
+    let down = look(high, 0.0, -90.0, 0.9);
+    let picture = |host: &mut Host, light: f64| host.shoot(down, Stages::SURFACE, |d| ground(high, d, [light; 3]));
+    set(&mut host, "freezing_rain");
+    assert_eq!(host.context.conditions_at(EYE, 0.0).unwrap().surface.wetness, 0.0);
+    let (ice, even) = spread(&picture(&mut host, 2000.0));
+    assert!((0.4..0.9).contains(&(ice / 2000.0)), "{ice}");
+    assert!(spread(&picture(&mut host, 0.0)).0 > 0.0, "it mirrors the sky");
+    set(&mut host, "heavy_rain");
+    let (_, puddled) = spread(&picture(&mut host, 2000.0));
+    assert!(even < 0.01 && puddled > 2.0 * even, "{even} {puddled}");
+    set(&mut host, "freezing_rain");
+    let roof = welkin::rain::Shelter {
+        center_m: DVec3::new(0.0, 0.0, 8.0),
+        axes: glam::DMat3::IDENTITY,
+        half_size_m: DVec3::new(50.0, 50.0, 0.2),
+        velocity_m_s: DVec3::ZERO,
+        planes: welkin::rain::Planes::NONE,
+    };
+    host.context.set_shelters(&[roof]).unwrap();
+    assert_eq!(spread(&picture(&mut host, 2000.0)), (2000.0, 0.0));
+}
+
+#[test]
 fn walls_are_less_wet_and_undersides_dry() {
     let mut host = Host::new();
     host.ground_is(SurfaceState::Wet);

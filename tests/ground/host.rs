@@ -67,7 +67,10 @@ pub fn ground(position: DVec3, direction: DVec3, luminance: [f64; 3]) -> Hit {
 
 impl Host {
     pub fn new() -> Self {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        Self::on(Device::headless(&DeviceOptions::default()).expect("a software driver is installed"))
+    }
+
+    pub fn on(device: Arc<Device>) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
         // A coarse sky, built in an instant.
         let sky = SkySettings {
