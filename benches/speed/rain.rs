@@ -27,8 +27,8 @@ struct Bench {
 }
 
 impl Bench {
-    fn new() -> Fallible<Self> {
-        let device = Device::headless(&DeviceOptions::default())?;
+    fn new(options: &DeviceOptions) -> Fallible<Self> {
+        let device = Device::headless(options)?;
         let shared = Arc::new(Shared::new(&device)?);
         let mut context = Context::new(device.clone(), shared, ContextDesc::default())?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 35.0 }))?;
@@ -185,11 +185,30 @@ fn maps(bench: &mut Bench) -> Fallible<()> {
     Ok(bench.context.set_occluder_maps(&[])?)
 }
 
+/// What drops cost that are found by compute shaders, against those that are drawn one by one without.
+fn one_by_one(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
+    let mut other = Bench::new(&DeviceOptions { force_tier0: true, ..DeviceOptions::default() })?;
+    other.weather(100.0, 1.0)?;
+    for &drops in each {
+        bench.drops(drops)?;
+        other.drops(drops)?;
+        let (mut listed, mut all) = (Vec::new(), Vec::new());
+        for _ in 0..=8 {
+            listed.push(bench.frame()?);
+            all.push(other.frame()?);
+        }
+        let (a, b) = (median(&mut listed[1..]), median(&mut all[1..]));
+        println!("  {drops} drops cost {:.2} of what they cost one by one, without compute shaders", a / b);
+    }
+    Ok(())
+}
+
 pub fn run() -> Fallible<()> {
-    let mut bench = Bench::new()?;
+    let mut bench = Bench::new(&DeviceOptions::default())?;
     println!("rain: {} at {} x {}", bench.device.caps().adapter_name, SIZE.width, SIZE.height);
     bench.weather(100.0, 1.0)?;
     let base = 100_000;
+    one_by_one(&mut bench, &[base, 4 * base])?;
     for drops in [50_000, 200_000, 400_000] {
         let (a, b) = bench.compare(8, |s| s.drops(base), |s| s.drops(drops))?;
         println!(
