@@ -210,6 +210,43 @@ fn areas_wet_their_part_and_hollows_fill_and_dry() {
     assert_eq!(context.ground_at(deep).unwrap().water_mm, 0.0);
 }
 
+/// Hills of Tennessee (USGS/NASA SRTM), a part of 120 x 100 nodes of about 80 m.
+#[test]
+fn in_real_hills_water_stands_in_their_closed_hollows_alone() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jacksboro_dem.png");
+    let dem = image::open(data).unwrap().into_luma16();
+    let (columns, rows) = (120u32, 100u32);
+    // Its first row is the northern one.
+    let height = |x: u32, y: u32| f32::from(dem.get_pixel(140 + x, 240 - y).0[0]);
+    let heights_m: Vec<f32> = (0..rows).flat_map(|y| (0..columns).map(move |x| height(x, y))).collect();
+    // Cells that lie lower than all of their neighbours, and higher.
+    let at = |x: u32, y: u32| heights_m[(y * columns + x) as usize];
+    let around = |x: u32, y: u32| {
+        (y - 1..=y + 1).flat_map(move |v| (x - 1..=x + 1).map(move |u| (u, v))).filter(move |p| *p != (x, y))
+    };
+    let inner = || (1..rows - 1).flat_map(|y| (1..columns - 1).map(move |x| (x, y)));
+    let is_pit = |&(x, y): &(u32, u32)| around(x, y).all(|(u, v)| at(u, v) > at(x, y));
+    let is_top = |&(x, y): &(u32, u32)| around(x, y).all(|(u, v)| at(u, v) < at(x, y));
+    let (pits, tops): (Vec<_>, Vec<_>) = (inner().filter(is_pit).collect(), inner().filter(is_top).collect());
+    assert!(pits.len() > 20 && tops.len() > 20, "{} {}", pits.len(), tops.len());
+    let host = Host::new();
+    let mut context = simulated(&host);
+    let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 80.0, nodes: [columns, rows], heights_m: heights_m.clone() };
+    context.set_ground_grid(Some(grid)).unwrap();
+    context.set_weather(&rain(15.0, 3.0), 0.0, 0.0).unwrap();
+    context.update(3600.0).unwrap();
+    let water = cells(&context);
+    let of = |&(x, y): &(u32, u32)| water[(y * columns + x) as usize];
+    assert!(pits.iter().all(|p| of(p).standing_mm > 5.0 && of(p).film_mm == 0.0), "pits fill");
+    assert!(tops.iter().all(|p| of(p).standing_mm == 0.0 && of(p).film_mm > 0.5), "tops shed");
+    let share = water.iter().filter(|c| c.standing_mm > 0.0).count() as f64 / water.len() as f64;
+    assert!((0.005..0.2).contains(&share), "{share}");
+    // Of 15 mm a cell no more stands than fell, and a good part of it has run out of the grid.
+    let standing = water.iter().map(|c| f64::from(c.standing_mm)).sum::<f64>() / water.len() as f64;
+    assert!(standing > 0.5 && standing < 14.0, "{standing} mm");
+    println!("{} pits, {share:.3} of the ground under water, {standing:.2} mm over all of it", pits.len());
+}
+
 #[test]
 fn a_reported_ground_is_spread_over_the_hollows() {
     let mut host = Host::new();
