@@ -12,7 +12,7 @@ use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::rain::{
-    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, candidates::RainMethod, drops, lattice, light,
+    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, candidates::RainMethod, cones, drops, lattice, light,
     sizes::DropSizes, source::SourceLod,
 };
 use welkin::scene::{Camera, HostLight};
@@ -35,7 +35,7 @@ const EYE: DVec3 = DVec3::new(0.0, 0.0, 12.0);
 /// Where the wall stands that hides the horizon, m ahead.
 const WALL_M: f64 = 60.0;
 /// Up to where the truth has drops.
-const FAR_M: f64 = 14.0;
+const FAR_M: f64 = cones::BANDS_M[cones::CONES];
 const NEAREST: (f64, f64) = (0.125, 0.25);
 const HALF: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;

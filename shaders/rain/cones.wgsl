@@ -16,7 +16,8 @@ struct ConeUniform {
     // Mean fall speed, m/s.
     fall: f32,
     east: vec3f,
-    pad0: f32,
+    // Nearest cone that shows anything.
+    first: u32,
     north: vec3f,
     pad1: f32,
     // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
@@ -89,17 +90,33 @@ fn pattern(look: Look, moved: vec4f) -> f32 {
     return max(mix(1.0, dot(shown, seen) / mean, sqrt(min(ALL_STREAKS / max(wanted, 1.0), 1.0))), 0.0);
 }
 
+// Places in a band at which it is asked what keeps the rain off: streaks of a band have no distance of their own.
+const PLACES: u32 = 3u;
+
+// Share of a band before what is at `range` along the ray `d` that the rain comes to.
+fn open_share(d: vec3f, band: vec4f, range: f32, velocity: vec3f) -> f32 {
+    let wanted = range > band.x && band.w > 0.0;
+    let far = min(range, band.y);
+    var share = 0.0;
+    for (var i = 0u; i < PLACES; i++) {
+        let p = d * mix(band.x, far, (f32(i) + 0.5) / f32(PLACES));
+        share += select(1.0, 0.0, sheltered(p, velocity, wanted));
+    }
+    return share / f32(PLACES);
+}
+
 // All cones before what is at `range` along the ray `d`: premultiplied light, and what they hide.
 fn rain_on_cones(d: vec3f, range: f32) -> vec4f {
     let at = on_cone(d);
     let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var seen = vec4f(0.0);
     var light = drop_light(d, d);
-    for (var j = 0u; j < CONES; j++) {
+    for (var j = cones.first; j < CONES; j++) {
         let band = cones.bands[j];
-        let before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
+        var before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
         let p = d * band.z;
-        if before * band.w <= 0.0 || sheltered(p, velocity, before * band.w > 0.0) {
+        before *= open_share(d, band, range, velocity);
+        if before * band.w <= 0.0 {
             continue;
         }
         let look = look_at(at, cones.shapes[j]);

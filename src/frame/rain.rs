@@ -18,7 +18,7 @@ use crate::{
         RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw,
         cones::{BANDS_M, CONES},
         drops,
-        lattice::{HIDDEN_M, REACH_M, SHELLS},
+        lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
         pattern, splash,
     },
     scene::ViewRays,
@@ -30,6 +30,8 @@ use crate::{
 pub(super) struct Rain {
     layer: RainLayer,
     pub settings: RainSettings,
+    /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
+    pub shares: [f32; 2],
     /// Drops a class of each rain of late, and what they were counted for.
     counted: Vec<(Falling, f64, u32, Classes)>,
     /// Columns of rain areas about the camera, and what they let fall round it.
@@ -38,6 +40,9 @@ pub(super) struct Rain {
     areas: Option<Box<AreaPass>>,
     ice: Ice,
 }
+
+/// Where a drop goes farther than this during the exposure, m, cones begin to take over from near drops, and have done so.
+const LONGEST_M: (f64, f64) = (0.5, 1.0);
 
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
 const COUNTED: usize = 32;
@@ -50,6 +55,7 @@ impl Rain {
         Self {
             layer: RainLayer::new(device),
             settings,
+            shares: [1.0; 2],
             counted: Vec::new(),
             field: AreaField::empty(),
             local: None,
@@ -72,10 +78,28 @@ impl Rain {
         Ok(())
     }
 
-    /// Whether drops, cones or stones fall near the camera.
+    /// Whether drops fall near the camera, as far as the settings draw them.
+    pub fn rains(&self) -> bool {
+        self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
+    }
+
+    /// Whether drops, cones or stones are drawn.
     fn falls_here(&self) -> bool {
-        let wet = self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field));
-        wet || self.ice.falls(&self.settings)
+        (self.rains() && self.shares[0] > 0.0) || self.ice.falls(&self.settings)
+    }
+
+    /// How many drops are drawn round the camera.
+    pub fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
+        self.classes(device, scene, &scene.conditions.precipitation).per_shell * self.shells() as u32
+    }
+
+    /// Shells of the lattice that are drawn.
+    fn shells(&self) -> usize {
+        match self.settings.model {
+            RainModel::Drops | RainModel::Integrated => SHELLS,
+            RainModel::Automatic => 1,
+            RainModel::Veil | RainModel::Cones => 0,
+        }
     }
 
     /// Whether anything is drawn before the picture.
@@ -97,25 +121,46 @@ impl Rain {
     /// diffraction), and the distance up to which they do.
     pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> [f32; 2] {
         let falling = scene.conditions.precipitation;
-        let far = self.settings.model == RainModel::Cones || self.has_far_cones(context);
-        let reach = if far { BANDS_M[CONES] } else { HIDDEN_M };
+        let reach = self.reach(context);
         let most = self.settings.most_on(device);
         // Stones are rare: they hide as much as if they did within the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
         [self.near(device, scene, &falling) + ice / reach, reach].map(|v| v as f32)
     }
 
-    /// Whether cones stand for what drops do not reach: where lamps light it, which the veil does not know.
-    fn has_far_cones(&self, context: &Context) -> bool {
-        let drops = !matches!(self.settings.model, RainModel::Cones | RainModel::Veil);
-        drops && !context.lights().is_empty()
+    /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
+    fn has_cones(&self, context: &Context) -> bool {
+        match self.settings.model {
+            RainModel::Automatic | RainModel::Cones => true,
+            RainModel::Drops | RainModel::Integrated => !context.lights().is_empty(),
+            RainModel::Veil => false,
+        }
+    }
+
+    /// Distance up to which what falls is drawn, m.
+    fn reach(&self, context: &Context) -> f64 {
+        if self.has_cones(context) { BANDS_M[CONES] } else { HIDDEN_M }
+    }
+
+    /// Share of the near drops that is drawn one by one, the rest on cones, where they go so far (m) during the exposure:
+    /// streaks that are longer than drops are far cannot be quads.
+    fn share_of_drops(&self, travel_m: f64) -> f64 {
+        match self.settings.model {
+            RainModel::Automatic => {
+                let (from, to) = LONGEST_M;
+                let long = ((travel_m - from) / (to - from)).clamp(0.0, 1.0);
+                f64::from(self.shares[1]) * (1.0 - long)
+            }
+            RainModel::Drops | RainModel::Integrated => 1.0,
+            RainModel::Veil | RainModel::Cones => 0.0,
+        }
     }
 
     /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
     fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
         match self.settings.model {
             RainModel::Veil => 0.0,
-            _ => 0.5 * self.classes(device, scene, falling).extinction_per_m,
+            _ => 0.5 * f64::from(self.shares[0]) * self.classes(device, scene, falling).extinction_per_m,
         }
     }
 
@@ -128,7 +173,8 @@ impl Rain {
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
-        let most = self.settings.most_on(device);
+        // Those that are not drawn leave their room to the rest.
+        let most = self.settings.most_on(device).saturating_mul((SHELLS / self.shells().max(1)) as u32);
         let station = &scene.conditions.air;
         let factor = drops::factor_in(station, station.station_altitude_m);
         let same = |c: &&(Falling, f64, u32, Classes)| c.0 == *falling && c.1 == factor && c.2 == most;
@@ -157,6 +203,7 @@ impl Rain {
             return Ok(false);
         }
         let falling = scene.conditions.precipitation;
+        self.field.near_m = self.reach(context);
         self.field.own_near = self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
             let shaft = *self.field.columns[i].shaft();
@@ -205,14 +252,7 @@ impl Rain {
         if !self.falls_here() {
             return Ok(0);
         }
-        let on_cones = self.settings.model == RainModel::Cones;
-        let (classes, local) = if on_cones {
-            // They have the rain of the camera's place all round.
-            let here = context.with_areas(frame.camera.position, context.time_s(), scene.conditions);
-            (self.classes(device, scene, &here.precipitation), None)
-        } else {
-            self.falling_here(device, scene)
-        };
+        let (classes, local) = self.falling_here(device, scene);
         let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
         let enu = |v: DVec3| scene.world_to_enu * v;
         let shot = Shot {
@@ -231,15 +271,23 @@ impl Rain {
             time_s: context.time_s(),
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
-        let block = RainUniform::new(context.seed(), &classes, &DropLight::of(scene).exposed(exposure), &shot, &air);
+        let mut block =
+            RainUniform::new(context.seed(), &classes, &DropLight::of(scene).exposed(exposure), &shot, &air);
+        let [share, shown] = self.shares.map(f64::from);
+        let fall = DVec3::Z * classes.flux[classes.flux.len() / 2].1;
+        let travel = (air.velocity_m_s - fall - shot.velocity_m_s).length() * shot.exposure_s;
+        let near = self.share_of_drops(travel);
+        block.weight *= (share * near) as f32;
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from, to| context.carried(from, to);
-        let cones = (on_cones || self.has_far_cones(context)).then(|| {
-            let all = ConeUniform::new(block.seed, &classes, &shot, &air, &carried);
-            if on_cones { all } else { all.beyond(0.9 * HIDDEN_M) }
+        let cones = self.has_cones(context).then(|| {
+            // They have the rain of the camera's place all round.
+            let here = context.with_areas(frame.camera.position, context.time_s(), scene.conditions).precipitation;
+            let all = ConeUniform::new(block.seed, &self.classes(device, scene, &here), &shot, &air, &carried);
+            all.behind((hidden_m(self.shells()), near), share)
         });
         let around = context.wind_grid().map(|g| {
             let to_enu = context.world().frame_at(g.origin).world_to_enu;
@@ -257,18 +305,18 @@ impl Rain {
         let drawn = Drawn {
             rain: &block,
             cones: cones.as_ref(),
-            drops: !on_cones,
+            shells: if near > 0.0 { self.shells() as u32 } else { 0 },
             stepped: stepped.as_ref(),
             around: told,
             maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
-            splash: &splashes.uniform(shot.position_m, height_m, air.time_s),
-            splashes: splashes.instances(),
+            splash: &splashes.uniform((shot.position_m, height_m), air.time_s, share * f64::from(shown)),
+            splashes: if self.shells() > 0 { splashes.instances() } else { 0 },
             local: local.as_ref(),
             over,
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        Ok(if on_cones { 0 } else { classes.per_shell * SHELLS as u32 } + stones.map_or(0, |s| s.drawn))
+        Ok(classes.per_shell * drawn.shells + stones.map_or(0, |s| s.drawn))
     }
 }

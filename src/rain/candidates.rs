@@ -35,7 +35,13 @@ impl RainMethod {
                 // As much as the fog does anyway, and no layer.
                 RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
                 RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
-                RainModel::Automatic | RainModel::Drops => drops(s.most_drops.unwrap_or(400_000)),
+                // Three cones, and as many drops as one shell of four has.
+                RainModel::Automatic => Work {
+                    view: Units::default().plus(DROP, 0.25 * f64::from(s.most_drops.unwrap_or(400_000))),
+                    pixel: LAYER.plus(CONES, 0.75),
+                    ..Work::default()
+                },
+                RainModel::Drops => drops(s.most_drops.unwrap_or(400_000)),
                 RainModel::Integrated => {
                     let n = s.most_drops.unwrap_or(400_000);
                     let drawn = drops(n);
@@ -61,7 +67,7 @@ pub fn candidates() -> Vec<Candidate> {
         ("drops-50k", drops(50_000)),
         ("drops-100k", drops(100_000)),
         ("drops-400k", drops(400_000)),
-        ("drops", offered(RainModel::Automatic, None)),
+        ("drops-and-cones", offered(RainModel::Automatic, None)),
         ("integrated-100k", integrated(100_000)),
         ("integrated-400k", integrated(400_000)),
         ("source-20k", source(20_000, 0)),

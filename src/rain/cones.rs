@@ -22,7 +22,7 @@ use half::f16;
 
 use super::{
     Classes,
-    lattice::{SIDE_M, random3},
+    lattice::{HIDDEN_M, SIDE_M, random3},
     sizes::{DropSizes, Weight},
     uniforms::{Air, Shot},
 };
@@ -31,8 +31,9 @@ use super::{
 pub const CONES: usize = 4;
 /// Distances, m, between which the drops of each cone are.
 pub const BANDS_M: [f64; CONES + 1] = {
-    let reach = 14.0;
-    [0.1875, reach / 8.0, reach / 4.0, reach / 2.0, reach]
+    // Drops fade away about two of the inner ends: those of the innermost shell, and of all.
+    let drops = HIDDEN_M;
+    [0.1875, 0.5 * drops, drops, 2.0 * drops, 4.0 * drops]
 };
 /// Texels along either side of the texture.
 pub(crate) const SIDE: u32 = 256;
@@ -52,7 +53,7 @@ pub(crate) struct ConeUniform {
     pub axis: [f32; 3],
     pub fall: f32,
     pub east: [f32; 3],
-    pub pad0: f32,
+    pub first: u32,
     pub north: [f32; 3],
     pub pad1: f32,
     pub bands: [[f32; 4]; CONES],
@@ -134,10 +135,14 @@ impl ConeUniform {
         c
     }
 
-    /// Those cones alone that stand for drops from `distance_m` on.
-    pub fn beyond(mut self, distance_m: f64) -> Self {
-        let nearer = |b: &&mut [f32; 4]| f64::from(b[0]) < distance_m;
-        self.bands.iter_mut().filter(nearer).for_each(|b| b[3] = 0.0);
+    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls is as faint
+    /// as `share` says.
+    pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
+        for (j, band) in self.bands.iter_mut().enumerate() {
+            let nearer = BANDS_M[j] < 0.99 * distance_m;
+            band[3] *= (share * if nearer { 1.0 - drops } else { 1.0 }) as f32;
+        }
+        self.first = self.bands.iter().position(|b| b[3] > 0.0).unwrap_or(CONES) as u32;
         self
     }
 

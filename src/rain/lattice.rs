@@ -34,6 +34,11 @@ pub const HIDDEN_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
 /// Drops nearer than this fade away, m: `NEAREST` of `shaders/rain/drops.wgsl`.
 const NEAREST_M: f64 = 0.25;
 
+/// [`HIDDEN_M`] of so many shells alone, m.
+pub fn hidden_m(shells: usize) -> f64 {
+    shells.checked_sub(1).map_or(0.0, |last| 0.25 * (1.0 + FADE) * side_m(last))
+}
+
 /// Side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
     SIDE_M * WIDER[shell]

@@ -9,7 +9,6 @@ use super::{
     cones::ConeUniform,
     crown_pass::CrownPass,
     cull_pass::{CullPass, Lattice},
-    lattice::SHELLS,
     splash::SplashUniform,
     step_pass::{StepPass, Stepped},
     stone_pass::StonePass,
@@ -52,8 +51,8 @@ pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
     /// Cones in place of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
-    /// Whether drops are drawn too.
-    pub drops: bool,
+    /// Shells of drops that are drawn.
+    pub shells: u32,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
     /// What keeps rain off, and lamps.
@@ -196,7 +195,7 @@ impl RainLayer {
         }
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
-            if !drawn.drops {
+            if drawn.shells == 0 && drawn.splashes == 0 {
                 self.draw_into(encoder, over, |pass, layer| {
                     layer.cones.iter().for_each(|c| c.draw(pass, kind));
                     layer.draw_stones(pass, kind, drawn);
@@ -235,7 +234,7 @@ impl RainLayer {
                 }
                 (None, [Some(falling), Some(splashing)]) => {
                     pass.set_pipeline(falling);
-                    pass.draw(0..4, 0..drawn.rain.per_shell * SHELLS as u32);
+                    pass.draw(0..4, 0..drawn.rain.per_shell * drawn.shells);
                     pass.set_pipeline(splashing);
                     pass.draw(0..4, 0..splashes);
                 }

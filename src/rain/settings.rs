@@ -9,7 +9,8 @@ use crate::{
 /// With what a view draws rain; what falls is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
-    /// Welkin chooses; today always [`RainModel::Drops`].
+    /// Each drop to 1.9 m, and cones beyond, to 14.8 m; under a budget ([`crate::plan`]) less if the picture does not need it.
+    /// Where drops go farther than half a metre to a metre during the exposure, cones take over near the camera too.
     #[default]
     Automatic,
     /// No drops: all rain is extinction. Costs nothing beyond the fog.
@@ -17,7 +18,8 @@ pub enum RainModel {
     /// Streaks on four nested cones about the camera ([`super::cones`]): the cost is a matter of the picture's size alone.
     /// No splashes.
     Cones,
-    /// Each drop where (seed, number, time) puts it, without a state ([`super::lattice`]).
+    /// Drops alone, to 4 m, each where (seed, number, time) puts it, without a state ([`super::lattice`]); cones beyond where
+    /// lamps light the rain.
     Drops,
     /// Drops that are stepped through a wind that varies in space ([`super::integrated`]). Needs compute shaders.
     Integrated,

@@ -17,8 +17,6 @@ use crate::scene::depth::RANGE_SKY_M;
 
 /// How far below the station's altitude columns reach, m: into the valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
-/// Distance up to which drops are drawn in place of the veil, m.
-pub(crate) const NEAR_M: f64 = HIDDEN_M;
 /// Way into a dense column from which most of its light comes, m.
 const FRONT_M: f64 = 500.0;
 /// Gauss's four points in \[0, 1\], and their weights.
@@ -111,6 +109,8 @@ pub(crate) struct AreaField {
     /// The own rain's upper end over the camera, m, and what its drops hide near it, 1/m.
     pub own_top: f64,
     pub own_near: f64,
+    /// Distance up to which drops or cones are drawn in place of the veil, m.
+    pub near_m: f64,
     /// Wave numbers to the right, ahead and up (1/m), and phases (rad) of the pattern.
     pub waves: [[f64; 4]; WAVES],
 }
@@ -276,7 +276,7 @@ impl AreaField {
     /// No columns.
     pub fn empty() -> Self {
         let own = OwnRain { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
-        Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, waves: [[0.0; 4]; WAVES] }
+        Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, near_m: HIDDEN_M, waves: [[0.0; 4]; WAVES] }
     }
 
     /// About an eye: its place in the host's world, its axes and altitude.
@@ -365,7 +365,7 @@ impl AreaField {
         }
         let mut depth = c.extinction * fell - self.own.extinction_per_m * shared;
         // What drops near the eye hide is drawn as drops.
-        let near = range.min(NEAR_M);
+        let near = range.min(self.near_m);
         let half = origin + d * (0.5 * near);
         depth -= (c.near - self.own_near) * near * self.share(i, half);
         Some(depth)

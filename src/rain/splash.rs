@@ -96,7 +96,7 @@ impl Splashes {
     /// What has landed and stands at `time_s` round a camera at `position_m` (east, north, up of a point fixed to the world),
     /// ten metres to either side: the twin of `landing_of` in `shaders/rain/splash.wgsl`, whatever lies below.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
-        let (u, seed) = (self.uniform(position_m, 0.0, time_s), short_seed(seed));
+        let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0), short_seed(seed));
         let unit = |v: u32| f64::from(v >> 8) / 16_777_216.0;
         (0..self.instances()).filter_map(move |instance| {
             let (slot, index) = (instance % u.slots, instance / u.slots);
@@ -118,8 +118,9 @@ impl Splashes {
         self.standing().ceil() as u32
     }
 
-    /// For a camera at `position_m` (east, north, up of a point fixed to the world) `height_m` above the ground.
-    pub(crate) fn uniform(&self, position_m: DVec3, height_m: f64, time_s: f64) -> SplashUniform {
+    /// For a camera at a place (east, north, up of a point fixed to the world, m) so high above the ground, m; so large a
+    /// share of them is shown.
+    pub(crate) fn uniform(&self, (position_m, height_m): (DVec3, f64), time_s: f64, shown: f64) -> SplashUniform {
         let cell = |x: f64| (x / SIDE_M).floor();
         let turns = time_s / LIFE_S;
         let part = turns - turns.floor();
@@ -133,7 +134,7 @@ impl Splashes {
             cells: CELLS,
             tick: (turns.floor() as i64) as u32,
             part: part as f32,
-            share: (self.standing() / f64::from(self.slots().max(1))) as f32,
+            share: (shown * self.standing() / f64::from(self.slots().max(1))) as f32,
             diameter: (self.diameter_mm * 1e-3) as f32,
             speed: self.speed_m_s as f32,
             ground: -height_m as f32,

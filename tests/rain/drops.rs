@@ -5,7 +5,7 @@ use welkin::{
     context::GivenDirection,
     frame::Stages,
     rain::{
-        Classes, RainSettings,
+        Classes, RainModel, RainSettings,
         lattice::{self, SHELLS},
     },
     weather::{Weather, derive},
@@ -16,13 +16,14 @@ use crate::scene::{Host, rain, upright};
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
 pub const WHITE: f64 = 3e4;
 
-/// A host at night before a white wall at the horizon, so that each pixel says what the drops let through.
+/// A host at night before a white wall at the horizon, so that each pixel says what the drops let through: drops alone.
 pub fn white(size: (u32, u32)) -> Host {
     night(Host::new(size))
 }
 
 /// See [`white`].
 pub fn night(mut host: Host) -> Host {
+    host.view.set_rain(RainSettings { model: RainModel::Drops, ..RainSettings::default() }).unwrap();
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
     host.boxes = vec![upright([0.0, 400.0, 0.0], [2000.0, 1.0, 2000.0])];
     host.look(DVec3::new(0.0, 0.0, 300.0), DVec3::Y);
@@ -145,7 +146,7 @@ fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
     let mut host = white((480, 270));
     let weather = rain(10.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
-    let few = RainSettings { shutter_s: 1e-3, most_drops: Some(2000), ..Default::default() };
+    let few = RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(2000), ..Default::default() };
     host.view.set_rain(few).unwrap();
     let classes = classes(&weather, 2000);
     for (t, eye) in [(3.0, DVec3::new(0.0, 0.0, 300.0)), (123_456.7, DVec3::new(1.3, 0.4, 301.0))] {

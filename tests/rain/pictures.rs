@@ -118,6 +118,7 @@ fn every_model_shows_the_same_rain() {
         host.context.update(t + 1.0).unwrap();
         host.velocity_m_s = DVec3::Y * speed;
         for (model, name) in [
+            (RainModel::Automatic, "automatic"),
             (RainModel::Veil, "veil"),
             (RainModel::Cones, "cones"),
             (RainModel::Drops, "drops"),

@@ -14,7 +14,7 @@ use welkin::{
     frame::Stages,
     gpu::{Device, DeviceOptions},
     rain::{
-        Classes, RainSettings,
+        Classes, RainModel, RainSettings,
         lattice::{self, Drop, SPEED_UNIT},
     },
     weather::{Weather, derive},
@@ -49,7 +49,12 @@ fn tell(host: &mut Host) {
     host.context.set_weather(&rain(20.0, 8.0), 10.0, 5.0).unwrap();
     host.context.set_weather(&shower(), 40.0, 30.0).unwrap();
     host.view
-        .set_rain(RainSettings { shutter_s: SHUTTER_S, most_drops: Some(MOST), ..RainSettings::default() })
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: SHUTTER_S,
+            most_drops: Some(MOST),
+            ..RainSettings::default()
+        })
         .unwrap();
 }
 
@@ -301,7 +306,12 @@ fn dark() -> Host {
     let mut host = night(Host::new(SIZE));
     projectors()[0].of(&mut host);
     host.view
-        .set_rain(RainSettings { shutter_s: SHUTTER_S, most_drops: Some(MOST), ..RainSettings::default() })
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: SHUTTER_S,
+            most_drops: Some(MOST),
+            ..RainSettings::default()
+        })
         .unwrap();
     host
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use welkin::{
     rain::{
-        Classes, RainSettings,
+        Classes, RainModel, RainSettings,
         drops::{streak_length_m, terminal_speed_m_s},
         lattice::{self, CLASSES, SPEED_UNIT},
     },
@@ -102,7 +102,14 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
     let mut t = 10.0;
     for (speed, shutter_s) in [(0.0, 0.02), (25.0, 0.008)] {
         host.velocity_m_s = DVec3::X * speed;
-        host.view.set_rain(RainSettings { shutter_s, most_drops: Some(MOST), ..RainSettings::default() }).unwrap();
+        host.view
+            .set_rain(RainSettings {
+                model: RainModel::Drops,
+                shutter_s,
+                most_drops: Some(MOST),
+                ..RainSettings::default()
+            })
+            .unwrap();
         let mut ratios = vec![Vec::new(); CLASSES];
         for _ in 0..90 {
             t += 0.37;
