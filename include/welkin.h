@@ -3493,6 +3493,10 @@ typedef uint32_t wk_budget_has_flags;
 #define WK_BUDGET_HAS_MILLISECONDS 4
 /** importance_air, importance_fog and importance_sky */
 #define WK_BUDGET_HAS_IMPORTANCE 8
+/** pinned_parts says of WK_PART_RAIN and WK_PART_DROPS too whether they are drawn; without this bit both are. */
+#define WK_BUDGET_HAS_PINNED_RAIN 16
+/** importance_rain and importance_drops */
+#define WK_BUDGET_HAS_RAIN_IMPORTANCE 32
 
 /** Parts of the weather that a picture may do without. */
 typedef uint32_t wk_part_flags;
@@ -3503,6 +3507,13 @@ typedef uint32_t wk_part_flags;
 #define WK_PART_FOG 2
 /** The clear sky above the horizon, behind clouds. */
 #define WK_PART_SKY 4
+/**
+ * Streaks and splashes of rain: left out, all rain is a veil, and without WK_PART_FOG too nothing of it is drawn. Where the
+ * view has no rain model of the host's choice.
+ */
+#define WK_PART_RAIN 8
+/** Each drop near the camera by itself, and splashes: left out, cones stand for them. */
+#define WK_PART_DROPS 16
 
 /** How wrong a view's pictures may be, and how long they may take. */
 typedef struct wk_budget {
@@ -3535,6 +3546,10 @@ typedef struct wk_budget {
     double importance_fog;
     /** As importance_air. */
     double importance_sky;
+    /** Optional, both: likewise of rain. Range [0, 1], default 0.7 and 0.7. */
+    double importance_rain;
+    /** As importance_rain. */
+    double importance_drops;
 } wk_budget;
 
 /** Every field of `wk_budget` at its default. */
@@ -3548,7 +3563,9 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0, \
     /* importance_air */ 0.0, \
     /* importance_fog */ 0.0, \
-    /* importance_sky */ 0.0 \
+    /* importance_sky */ 0.0, \
+    /* importance_rain */ 0.0, \
+    /* importance_drops */ 0.0 \
 }
 
 /** What of a budget could not be kept, by the estimates. */
@@ -3754,7 +3771,11 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 /** With what a view draws rain; what falls is the same. */
 typedef uint32_t wk_rain_model;
 
-/** Welkin chooses; in this version always WK_RAIN_MODEL_DROPS. */
+/**
+ * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m, or cones near the camera too where drops go farther than
+ * half a metre to a metre during the exposure; under a wk_budget less where the picture does not need it or the time does not
+ * allow it (WK_PART_RAIN, WK_PART_DROPS).
+ */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
 #define WK_RAIN_MODEL_VEIL 1
@@ -3763,7 +3784,7 @@ typedef uint32_t wk_rain_model;
  * splashes.
  */
 #define WK_RAIN_MODEL_CONES 2
-/** Each drop where seed and time put it. */
+/** Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
 /**
  * Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders

@@ -8,7 +8,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    plan::{Budget, Part},
+    plan::{Budget, PARTS, Part},
     scene::Camera,
     weather::Weather,
 };
@@ -69,18 +69,18 @@ impl Bench {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn frame_with(&mut self, parts: [bool; 3]) -> Fallible<f64> {
+    fn frame_with(&mut self, parts: [bool; PARTS]) -> Fallible<f64> {
         self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() })?;
         self.frame()
     }
 
     /// Time of a frame with these parts in times of the one with none before it: the median of many, so that whatever else
     /// the machine does falls on both.
-    fn ratio(&mut self, parts: [bool; 3]) -> Fallible<f64> {
+    fn ratio(&mut self, parts: [bool; PARTS]) -> Fallible<f64> {
         // The first of each compiles.
         let mut ratios = Vec::new();
         for _ in 0..42 {
-            let none = self.frame_with([false; 3])?;
+            let none = self.frame_with([false; PARTS])?;
             ratios.push(self.frame_with(parts)? / none);
         }
         Ok(median(&mut ratios[1..]))
@@ -107,11 +107,26 @@ fn median(of: &mut [f64]) -> f64 {
 fn predictions(bench: &mut Bench) -> Fallible<()> {
     let (mut within, mut all, mut worst) = (0, 0, 0.0f64);
     let mut clock = View::new(&bench.context)?;
-    clock.set_budget(Budget { pinned: Some([false; 3]), ..Budget::default() })?;
-    for (weather, horizon) in [("clear", 0), ("clear", 180), ("fog", 120), ("overcast", 300), ("mist", 60)] {
+    clock.set_budget(Budget { pinned: Some([false; PARTS]), ..Budget::default() })?;
+    let scenes = [
+        ("clear", 0),
+        ("clear", 180),
+        ("fog", 120),
+        ("overcast", 300),
+        ("mist", 60),
+        ("rain", 180),
+        ("heavy_rain", 90),
+    ];
+    for (weather, horizon) in scenes {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
-        for parts in [[true; 3], [false, true, true], [true, false, true], [false; 3], [true, true, false]] {
+        for parts in [
+            [true; PARTS],
+            [false, true, true, true, true],
+            [true, false, true, true, true],
+            [false; PARTS],
+            [true, true, false, true, true],
+        ] {
             let budget = Budget { pinned: Some(parts), tolerance: Some(0.01), ..Budget::default() };
             bench.view.set_budget(budget)?;
             let (mut said, mut times) = (None, Vec::new());
@@ -147,11 +162,16 @@ pub fn run() -> Fallible<()> {
     {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
-        let mut only = [false; 3];
+        let mut only = [false; PARTS];
         only[part] = true;
         println!("  {} in {weather}: {:.2}", Part::ALL[part].name(), bench.ratio(only)? - 1.0);
     }
     bench.world(180);
+    bench.set("heavy_rain", bench.frame_id as f64 + 1.0)?;
+    let cones = bench.ratio([false, false, false, true, false])? - 1.0;
+    let drops = bench.ratio([false, false, false, true, true])? - 1.0 - cones;
+    let each = drops * f64::from(SIZE.width * SIZE.height) / f64::from(bench.view.report().drops.max(1));
+    println!("  rain: {cones:.2}; drops {drops:.2}, {each:.2} pixels each");
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
     bench.view.set_budget(Budget { tolerance: Some(1e-6), ..Budget::default() })?;
     for _ in 0..16 {

@@ -36,9 +36,13 @@ struct FrameUniform {
     direct_share: f32,
     // Of what falls: what drawn drops hide, 1/m, up to which distance, m; the veil leaves that to them.
     drops: vec2f,
-    // How much of air, fog and clear sky is drawn, 1 all of it, 0 not at all (src/plan);
-    // w: the compositions that the gauge makes, everything and without each part.
+    // How much of air, fog, clear sky and drops is drawn, 1 all of it, 0 not at all (src/plan).
     drawn: vec4f,
+    // How often the gauge composes: everything, and without each part.
+    compositions: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

@@ -42,7 +42,7 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     f.radiance *= drawn.y;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
     // What drops near the eye hide is drawn as drops.
-    let thinner = min(f.transmittance * exp(frame.drops.x * min(range, frame.drops.y)), vec3f(1.0));
+    let thinner = min(f.transmittance * exp(drawn.w * frame.drops.x * min(range, frame.drops.y)), vec3f(1.0));
     f.radiance *= (1.0 - thinner) / max(1.0 - f.transmittance, vec3f(1e-6));
     f.transmittance = thinner;
     var before = Veil(vec3f(0.0), vec3f(1.0));

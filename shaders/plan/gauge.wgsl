@@ -1,6 +1,7 @@
 // What each part of the weather is worth in this very picture: at a coarse grid of its pixels, the composition with
-// everything and without one part after the other. Output: relative change of luminance without air, without fog,
-// without clear sky; alpha is 1 where the host drew something, -1 where it drew nothing, 0 under the mask.
+// everything and without one part after the other. Output, by halves: relative change of luminance without air, without fog,
+// without clear sky, and with a veil in place of drops but nothing else for them; 1 where the host drew something, -1 where it
+// drew nothing, 0 under the mask; exposed luminance; optical depth of what drops hide.
 //!include "frame/composite.wgsl"
 
 // Pixels of the picture are looked at through these, written by the variant for one or several samples.
@@ -23,17 +24,24 @@ fn exposed(host: vec3f, veil: Veil) -> f32 {
     return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-fn gauged(p: Looked) -> vec4f {
+fn gauged(p: Looked) -> vec4u {
     let ray = view_ray(frame.depth, p.ndc);
     // Everything, then without one part after the other. A loop over a count that no compiler knows: unrolled, the fog
     // took a software driver a minute to compile.
-    var shown = vec4f(0.0);
-    for (var k = 0u; k < u32(frame.drawn.w); k++) {
-        drawn = vec4f(select(vec3f(1.0), vec3f(0.0), vec3u(k) == vec3u(1u, 2u, 3u)), 0.0);
+    var shown = array<f32, 5>();
+    for (var k = 0u; k < frame.compositions; k++) {
+        drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane));
     }
     // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.
-    let change = (shown.yzw - shown.x) / (shown.x + 0.01) * (1.0 - p.mask);
-    let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * (1.0 - p.mask);
-    return vec4f(clamp(change, vec3f(-6e4), vec3f(6e4)), kind);
+    let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));
+    let change = clamp((less - shown[0]) / (shown[0] + 0.01) * (1.0 - p.mask), vec4f(-6e4), vec4f(6e4));
+    let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * select(1.0, 0.0, p.mask > 0.5);
+    let hidden = frame.drops.x * min(p.range, frame.drops.y);
+    return vec4u(
+        pack2x16float(change.xy),
+        pack2x16float(change.zw),
+        pack2x16float(vec2f(kind, min(shown[0], 6e4))),
+        pack2x16float(vec2f(hidden, 0.0)),
+    );
 }

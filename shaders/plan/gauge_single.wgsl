@@ -9,7 +9,7 @@ override HAS_DEPTH: bool = true;
 override HAS_MASK: bool = false;
 
 @fragment
-fn gauge(in: FullscreenVarying) -> @location(0) vec4f {
+fn gauge(in: FullscreenVarying) -> @location(0) vec4u {
     let size = vec2f(textureDimensions(host_color));
     let place = floor(in.uv * size);
     let pixel = vec2i(place);

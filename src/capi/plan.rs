@@ -28,7 +28,7 @@ use super::{
 };
 use crate::{
     error::{Error, Status},
-    plan::{Budget, GaveWay, Part, PartPlan, Reason},
+    plan::{Budget, GaveWay, PARTS, PartPlan, Reason},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
@@ -42,6 +42,12 @@ pub const WK_PART_FOG: wk_part_flags = 2;
 /// The clear sky above the horizon, behind clouds.
 pub const WK_PART_SKY: wk_part_flags = 4;
 
+/// Streaks and splashes of rain: left out, all rain is a veil, and without WK_PART_FOG too nothing of it is drawn. Where the
+/// view has no rain model of the host's choice.
+pub const WK_PART_RAIN: wk_part_flags = 8;
+/// Each drop near the camera by itself, and splashes: left out, cones stand for them.
+pub const WK_PART_DROPS: wk_part_flags = 16;
+
 /// Which optional fields of a wk_budget are set.
 pub type wk_budget_has_flags = u32;
 /// tolerance
@@ -52,6 +58,10 @@ pub const WK_BUDGET_HAS_PINNED_PARTS: wk_budget_has_flags = 2;
 pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 4;
 /// importance_air, importance_fog and importance_sky
 pub const WK_BUDGET_HAS_IMPORTANCE: wk_budget_has_flags = 8;
+/// pinned_parts says of WK_PART_RAIN and WK_PART_DROPS too whether they are drawn; without this bit both are.
+pub const WK_BUDGET_HAS_PINNED_RAIN: wk_budget_has_flags = 16;
+/// importance_rain and importance_drops
+pub const WK_BUDGET_HAS_RAIN_IMPORTANCE: wk_budget_has_flags = 32;
 
 /// Why a part is drawn or not.
 pub type wk_plan_reason = u32;
@@ -107,6 +117,10 @@ pub struct wk_budget {
     pub importance_fog: f64,
     /// As importance_air.
     pub importance_sky: f64,
+    /// Optional, both: likewise of rain. Range [0, 1], default 0.7 and 0.7.
+    pub importance_rain: f64,
+    /// As importance_rain.
+    pub importance_drops: f64,
 }
 
 impl wk_budget {
@@ -121,6 +135,8 @@ impl wk_budget {
         importance_air: 0.0,
         importance_fog: 0.0,
         importance_sky: 0.0,
+        importance_rain: 0.0,
+        importance_drops: 0.0,
     };
 }
 
@@ -248,9 +264,13 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
             asked.tolerance = (c.has & WK_BUDGET_HAS_TOLERANCE != 0).then_some(c.tolerance);
             asked.milliseconds = (c.has & WK_BUDGET_HAS_MILLISECONDS != 0).then_some(c.milliseconds);
             if c.has & WK_BUDGET_HAS_IMPORTANCE != 0 {
-                asked.importance = [c.importance_air, c.importance_fog, c.importance_sky];
+                asked.importance[..3].copy_from_slice(&[c.importance_air, c.importance_fog, c.importance_sky]);
             }
-            let pinned = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY].map(|p| c.pinned_parts & p != 0);
+            if c.has & WK_BUDGET_HAS_RAIN_IMPORTANCE != 0 {
+                asked.importance[3..].copy_from_slice(&[c.importance_rain, c.importance_drops]);
+            }
+            let rain = if c.has & WK_BUDGET_HAS_PINNED_RAIN != 0 { 0 } else { WK_PART_RAIN | WK_PART_DROPS };
+            let pinned = FLAGS.map(|p| (c.pinned_parts | rain) & p != 0);
             asked.pinned = (c.has & WK_BUDGET_HAS_PINNED_PARTS != 0).then_some(pinned);
         }
         asked.validate()?;
@@ -282,7 +302,7 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
         // SAFETY: the caller's promise about `out_plan`.
         let place = unsafe { layout::out_struct(&"out_plan", out_plan)? };
         let plan = *object.lock().plan();
-        let drawn = plan.parts.iter().zip([WK_PART_AIR, WK_PART_FOG, WK_PART_SKY]);
+        let drawn = plan.parts.iter().zip(FLAGS);
         place.set(&wk_plan {
             drawn: drawn.filter(|(p, _)| p.share > 0.0).fold(0, |all, (_, flag)| all | flag),
             error: plan.error.p95,
@@ -313,9 +333,9 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 ) -> wk_status {
     guard("wk_view_get_part_plan", |call| {
         let object = call.get::<ViewObject>("view", view)?;
-        let flags = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY];
-        let Some(i) = flags.iter().position(|f| *f == part) else {
-            return Err(Error::range("part", "one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY", part));
+        let Some(i) = FLAGS.iter().position(|f| *f == part) else {
+            let names = "one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_DROPS";
+            return Err(Error::range("part", names, part));
         };
         // SAFETY: the caller's promise about `out_part`.
         let place = unsafe { layout::out_struct(&"out_part", out_part)? };
@@ -365,4 +385,5 @@ pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_vo
     })
 }
 
-const _: () = assert!(Part::ALL.len() == 3, "every part has its WK_PART_ constant");
+/// In the order of [`Part::ALL`].
+const FLAGS: [wk_part_flags; PARTS] = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_DROPS];

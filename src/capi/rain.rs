@@ -30,14 +30,16 @@ include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 
 /// With what a view draws rain; what falls is the same.
 pub type wk_rain_model = u32;
-/// Welkin chooses; in this version always WK_RAIN_MODEL_DROPS.
+/// Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m, or cones near the camera too where drops go farther than
+/// half a metre to a metre during the exposure; under a wk_budget less where the picture does not need it or the time does not
+/// allow it (WK_PART_RAIN, WK_PART_DROPS).
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
 /// Streaks on four nested cones about the camera: the cheapest that moves, at a cost that does not depend on the rate. No
 /// splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
-/// Each drop where seed and time put it.
+/// Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 /// Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders
 /// (wk_caps.tier 1).

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    Frame, FrameFlags, Shared,
+    ColorSpace, Frame, FrameFlags, Shared,
     areas::{AreaPass, Columns},
     stones::Ice,
 };
@@ -15,7 +15,7 @@ use crate::{
     gpu::Device,
     rain::{
         Air, AreaField, Around, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw,
+        RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw, Streaks,
         cones::{BANDS_M, CONES},
         drops,
         lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
@@ -31,7 +31,7 @@ pub(super) struct Rain {
     layer: RainLayer,
     pub settings: RainSettings,
     /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
-    pub shares: [f32; 2],
+    shares: [f32; 2],
     /// Drops a class of each rain of late, and what they were counted for.
     counted: Vec<(Falling, f64, u32, Classes)>,
     /// Columns of rain areas about the camera, and what they let fall round it.
@@ -102,9 +102,24 @@ impl Rain {
         }
     }
 
-    /// Whether anything is drawn before the picture.
+    /// Whether anything falls that the settings draw before the picture.
     pub fn shows(&self) -> bool {
+        self.rains() || self.ice.falls(&self.settings) || !self.field.columns.is_empty()
+    }
+
+    /// Whether anything of it is drawn in this frame.
+    pub fn draws(&self) -> bool {
         self.falls_here() || !self.field.columns.is_empty()
+    }
+
+    /// Whether the plan decides how much of the rain is drawn: where no model was asked for.
+    pub fn is_planned(&self) -> bool {
+        self.settings.model == RainModel::Automatic && self.rains()
+    }
+
+    /// Draws so much of all rain, and so much of that near the camera drop by drop.
+    pub fn follow(&mut self, shares: [f32; 2]) {
+        self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
     /// Bytes of GPU memory held.
@@ -117,15 +132,18 @@ impl Rain {
         self.layer.view(device, color.size())
     }
 
-    /// What drops or cones of the weather's own rain hide, as an extinction (their discs: half of theirs, the rest is
-    /// diffraction), and the distance up to which they do.
-    pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> [f32; 2] {
+    /// What drops or cones of the weather's own rain hide where all are drawn, as an extinction (their discs: half of theirs,
+    /// the rest is diffraction), the distance up to which they do, and the share of it that is drawn.
+    pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> ([f32; 2], f32) {
         let falling = scene.conditions.precipitation;
         let reach = self.reach(context);
         let most = self.settings.most_on(device);
         // Stones are rare: they hide as much as if they did within the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
-        [self.near(device, scene, &falling) + ice / reach, reach].map(|v| v as f32)
+        let rain = self.near(device, scene, &falling);
+        let share =
+            if rain > 0.0 { (f64::from(self.shares[0]) * rain + ice / reach) / (rain + ice / reach) } else { 1.0 };
+        ([rain + ice / reach, reach].map(|v| v as f32), share as f32)
     }
 
     /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
@@ -160,7 +178,7 @@ impl Rain {
     fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
         match self.settings.model {
             RainModel::Veil => 0.0,
-            _ => 0.5 * f64::from(self.shares[0]) * self.classes(device, scene, falling).extinction_per_m,
+            _ => 0.5 * self.classes(device, scene, falling).extinction_per_m,
         }
     }
 
@@ -204,10 +222,11 @@ impl Rain {
         }
         let falling = scene.conditions.precipitation;
         self.field.near_m = self.reach(context);
-        self.field.own_near = self.near(device, scene, &falling);
+        let share = f64::from(self.shares[0]);
+        self.field.own_near = share * self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
             let shaft = *self.field.columns[i].shaft();
-            let near = self.near(device, scene, &shaft.falling);
+            let near = share * self.near(device, scene, &shaft.falling);
             self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
         }
         self.field.waves = pattern(context.seed() as u32);
@@ -241,6 +260,37 @@ impl Rain {
         }
     }
 
+    fn shot<'a>(&self, frame: &Frame<'_>, height: u32, (scene, rays): (&Scene, &'a ViewRays)) -> Shot<'a> {
+        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
+        Shot {
+            clip: frame.camera.projection * view,
+            rays,
+            height,
+            y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
+            position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
+            velocity_m_s: scene.world_to_enu * frame.camera_velocity_m_s,
+            exposure_s: self.settings.shutter_s,
+        }
+    }
+
+    /// What streaks are worth in a picture so many pixels high, if the plan decides about them.
+    pub fn streaks(
+        &mut self,
+        device: &Device,
+        (frame, height, exposure): (&Frame<'_>, u32, f64),
+        (context, scene, rays): (&Context, &Scene, &ViewRays),
+    ) -> Option<Streaks> {
+        if !self.is_planned() {
+            return None;
+        }
+        let (classes, _) = self.falling_here(device, scene);
+        let wind = context.carrying_wind(context.time_s()).ok()?;
+        let tone = (frame.color_space != ColorSpace::SceneLinear).then(|| context.tone_curve());
+        let light = (DropLight::of(scene).exposed(exposure), tone);
+        let shot = self.shot(frame, height, (scene, rays));
+        Some(Streaks::new((&classes, wind), &shot, light, !context.lights().is_empty()))
+    }
+
     /// Draws the drops round the camera into the layer; answers how many.
     pub fn draw(
         &mut self,
@@ -253,17 +303,7 @@ impl Rain {
             return Ok(0);
         }
         let (classes, local) = self.falling_here(device, scene);
-        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
-        let enu = |v: DVec3| scene.world_to_enu * v;
-        let shot = Shot {
-            clip: frame.camera.projection * view,
-            rays,
-            height: color.height(),
-            y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
-            position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
-            velocity_m_s: enu(frame.camera_velocity_m_s),
-            exposure_s: self.settings.shutter_s,
-        };
+        let shot = self.shot(frame, color.height(), (scene, rays));
         let c = &scene.conditions;
         let air = Air {
             displacement_m: context.wind_displacement(context.time_s())?,

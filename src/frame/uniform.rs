@@ -27,8 +27,10 @@ pub(crate) struct FrameUniform {
     pub medium_share: f32,
     pub direct_share: f32,
     pub drops: [f32; 2],
-    /// How much of air, fog and clear sky is drawn.
+    /// How much of air, fog, clear sky and what drops hide is drawn.
     pub drawn: [f32; 4],
+    pub compositions: u32,
+    pub pad: [u32; 3],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -77,6 +79,8 @@ pub(super) fn uniform(
         encode: u32::from(encode),
         drops: [0.0; 2],
         drawn,
+        compositions: 0,
+        pad: [0; 3],
     }
 }
 
@@ -114,6 +118,6 @@ mod tests {
             y_sign,
             dither_step
         );
-        same!(pixel_angle, encode, medium_share, direct_share, drops, drawn);
+        same!(pixel_angle, encode, medium_share, direct_share, drops, drawn, compositions);
     }
 }

@@ -346,32 +346,41 @@ impl View {
         if variant.stages == Stages(0) {
             return Ok(());
         }
-        let drops = self.rain.shows().then(|| self.rain.layer(&self.device, color).clone());
-        let cells = self.terrain.follow(&self.device, context, variant.stages.has(Stages::SURFACE)).cloned();
-        self.bind(frame, color, [drops, cells])?;
         let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
         self.report.exposure = exposure;
         let situation = situation(frame, scene);
         if self.planned_for != Some(frame.frame_id) {
             self.planned_for = Some(frame.frame_id);
+            let rain = variant.stages.has(Stages::PARTICLES) && self.rain.is_planned();
             let present = Present {
                 parts: [
                     variant.has_depth && variant.stages.has(Stages::MEDIUM),
                     variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
                     variant.stages.has(Stages::BACKGROUND),
+                    rain,
+                    rain,
                 ],
                 pixels: u64::from(color.width()) * u64::from(color.height()),
                 lamps: 1 + u32::from(scene.moon.matters),
+                drops: if rain { self.rain.drops(&self.device, scene) } else { 0 },
             };
             let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
             self.planner.begin(&self.device, &situation, &present, pure);
             self.report.prediction = self.planner.prediction();
         }
         let drawn = self.planner.drawn();
+        self.rain.follow(self.planner.rain());
+        let drops = self.rain.draws().then(|| self.rain.layer(&self.device, color).clone());
+        if drops.is_none() {
+            variant.stages = variant.stages.without(Stages::PARTICLES);
+        }
+        let cells = self.terrain.follow(&self.device, context, variant.stages.has(Stages::SURFACE)).cloned();
+        self.bind(frame, color, [drops, cells])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
-            block.drops = self.rain.hidden(&self.device, context, scene);
+            (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
         }
+        block.compositions = Planner::compositions(self.rain.is_planned());
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
@@ -411,7 +420,9 @@ impl View {
         crate::gpu::pass::draw(to.encoder, "composite", pipeline, &groups, target);
         self.report.passes += 1;
         if variant.stages.has(Stages::MEDIUM)
-            && let Some(gauge) = self.planner.due(&situation)
+            && let Some(gauge) = self.planner.due(&situation, || {
+                self.rain.streaks(&self.device, (frame, color.height(), exposure), (context, scene, rays))
+            })
         {
             let (multi, constants) = (variant.samples > 1, variant.constants());
             gauge.record(&self.device, to.encoder, (multi, &constants), &composite.layouts(multi), &groups)?;

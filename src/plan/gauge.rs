@@ -8,7 +8,7 @@ use std::sync::{
     atomic::{AtomicU32, Ordering},
 };
 
-use super::parts::Sample;
+use super::parts::{GAUGED, PARTS, Sample};
 use crate::{
     error::Result,
     gpu::{
@@ -22,8 +22,9 @@ pub const GRID: (u32, u32) = (64, 36);
 /// Frames from one gauge to the next.
 pub const EVERY: u32 = 8;
 
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-const BYTES_PER_ROW: u32 = GRID.0 * 8;
+/// Halves, two in each.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
 const IDLE: u32 = 0;
 const RECORDED: u32 = 1;
@@ -122,7 +123,7 @@ impl Gauge {
 
     /// Goes on with a readback under way, without waiting: call once a frame, after the host has submitted what was
     /// recorded. The samples, when they have arrived.
-    pub fn advance(&mut self, device: &Device) -> Option<&[Sample]> {
+    pub fn advance(&mut self, device: &Device) -> Option<&mut [Sample]> {
         if self.state.load(Ordering::Acquire) == RECORDED {
             self.state.store(MAPPING, Ordering::Release);
             let state = self.state.clone();
@@ -145,10 +146,14 @@ impl Gauge {
         self.samples.clear();
         if let Ok(bytes) = self.buffer.get_mapped_range(..) {
             let half = |b: &[u8], i: usize| half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
-            self.samples.extend(bytes.chunks_exact(8).map(|b| [0, 1, 2, 3].map(|i| half(b, i))));
+            self.samples.extend(bytes.chunks_exact(16).map(|b| {
+                let mut change = [0.0; PARTS];
+                (0..=GAUGED).for_each(|i| change[i] = half(b, i));
+                Sample { change, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
+            }));
         }
         self.buffer.unmap();
         self.state.store(IDLE, Ordering::Release);
-        Some(&self.samples)
+        Some(&mut self.samples)
     }
 }

@@ -9,11 +9,14 @@
 //! this picture times how much its effect matters to those who look. More is drawn again only when it would leave room to
 //! spare, so that a load at the border does not swing.
 
-use super::parts::Estimate;
+use super::parts::{Estimate, PARTS};
 
 /// How much parts matter to viewers, in the order of [`Part::ALL`](super::Part::ALL): air between things and fog as the
-/// atmosphere on objects, 0.9, the sky 0.2 (importance weights of the experiment in the machinery trainer's thesis).
-pub const IMPORTANCE: [f64; 3] = [0.9, 0.9, 0.2];
+/// atmosphere on objects, 0.9, the sky 0.2, rain 0.7 (importance weights of the experiment in the machinery trainer's thesis).
+pub const IMPORTANCE: [f64; PARTS] = [0.9, 0.9, 0.2, 0.7, 0.7];
+
+/// Sets of parts.
+pub(super) const SETS: usize = 1 << PARTS;
 
 /// More is drawn again where it would take no more than this share of the budget.
 const ROOM: f64 = 0.85;
@@ -36,14 +39,14 @@ pub enum GaveWay {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Amount {
     pub pixels: f64,
-    pub parts: [f64; 3],
+    pub parts: [f64; PARTS],
     pub before_fog: f64,
 }
 
 impl Amount {
     /// Without the parts of `set` (bit i is `Part::ALL[i]`).
     pub fn without(mut self, set: usize) -> Self {
-        (0..3).filter(|i| set & (1 << i) != 0).for_each(|i| self.parts[i] = 0.0);
+        (0..PARTS).filter(|i| set & (1 << i) != 0).for_each(|i| self.parts[i] = 0.0);
         if set & 0b011 != 0 {
             self.before_fog = 0.0;
         }
@@ -52,11 +55,11 @@ impl Amount {
 
     /// All of it, by the constants.
     pub fn total(&self) -> f64 {
-        self.weighed(&[1.0; 3])
+        self.weighed(&[1.0; PARTS])
     }
 
-    fn weighed(&self, ratios: &[f64; 3]) -> f64 {
-        self.pixels + ratios[0] * self.before_fog + (0..3).map(|i| ratios[i] * self.parts[i]).sum::<f64>()
+    fn weighed(&self, ratios: &[f64; PARTS]) -> f64 {
+        self.pixels + ratios[0] * self.before_fog + (0..PARTS).map(|i| ratios[i] * self.parts[i]).sum::<f64>()
     }
 }
 
@@ -89,7 +92,7 @@ pub(super) struct Governor {
     recent: [f64; SEEN],
     reports: usize,
     /// What the parts cost here over what the constants say.
-    ratios: [f64; 3],
+    ratios: [f64; PARTS],
     /// The set that was absent at the last report, and how many reports it has been.
     absent: usize,
     since: u32,
@@ -99,7 +102,7 @@ pub(super) struct Governor {
 
 impl Default for Governor {
     fn default() -> Self {
-        Self { recent: [0.0; SEEN], reports: 0, ratios: [1.0; 3], absent: 0, since: 0, before: None }
+        Self { recent: [0.0; SEEN], reports: 0, ratios: [1.0; PARTS], absent: 0, since: 0, before: None }
     }
 }
 
@@ -144,7 +147,7 @@ impl Governor {
         let found = (rest * (more / less - 1.0) / theirs).clamp(0.5, 2.0);
         let factor = 1.0 + (found - 1.0) * theirs / (theirs + HALF_BELIEVED * rest);
         let before = all.without(to).weighed(&self.ratios);
-        for i in (0..3).filter(|i| parts & (1 << i) != 0 && all.parts[*i] > 0.0) {
+        for i in (0..PARTS).filter(|i| parts & (1 << i) != 0 && all.parts[*i] > 0.0) {
             self.ratios[i] = (self.ratios[i] * factor).clamp(1.0 / MOST_RATIO, MOST_RATIO);
         }
         let after = all.without(to).weighed(&self.ratios);
@@ -184,7 +187,7 @@ impl Governor {
     /// The set to leave out, as an index into `choices`; `before` is the one left out now.
     pub fn choose(
         &self,
-        choices: &[Choice; 8],
+        choices: &[Choice; SETS],
         tolerance: Option<f64>,
         budget_ms: Option<f64>,
         before: usize,
@@ -219,14 +222,20 @@ impl Governor {
 mod tests {
     use super::*;
 
+    /// With no rain.
+    fn five(v: [f64; 3]) -> [f64; PARTS] {
+        [v[0], v[1], v[2], 0.0, 0.0]
+    }
+
     /// Air, fog and sky worth so much, on a picture of work 1 + their work.
-    fn choices(worth: [f64; 3], parts: [f64; 3]) -> [Choice; 8] {
+    fn choices(worth: [f64; 3], parts: [f64; 3]) -> [Choice; SETS] {
+        let parts = five(parts);
         std::array::from_fn(|set| {
             let left = |i: &usize| set & (1 << i) != 0;
             let sum = |v: [f64; 3]| (0..3).filter(left).map(|i| v[i]).sum::<f64>();
             let p95 = sum(worth);
             Choice {
-                possible: true,
+                possible: set < 8,
                 error: Estimate { p95, bound: p95, worst: p95 },
                 loss: (0..3).filter(left).map(|i| IMPORTANCE[i] * worth[i]).sum(),
                 amount: Amount { pixels: 1.0, parts, before_fog: 0.0 }.without(set),
@@ -299,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_part_that_is_not_there_learns_nothing_from_another_that_comes_with_it() {
-        let clear = Amount { pixels: 1.0, parts: [0.4, 0.0, 0.05], before_fog: 0.0 };
+        let clear = Amount { pixels: 1.0, parts: five([0.4, 0.0, 0.05]), before_fog: 0.0 };
         let mut governor = Governor::default();
         (0..20).for_each(|_| governor.report(clear.without(0b011).total(), &clear, 0b011));
         (0..20).for_each(|_| governor.report(1.5 * clear.total(), &clear, 0));
@@ -318,7 +327,7 @@ mod tests {
     /// A machine whose parts cost other shares of a pixel than the constants say, with a timer that answers late.
     struct Machine {
         ms: f64,
-        ratios: [f64; 3],
+        ratios: [f64; PARTS],
         late: usize,
         noise: f64,
         drawn: Vec<usize>,
@@ -337,7 +346,8 @@ mod tests {
     fn a_part_that_is_dearer_here_than_where_it_was_measured_does_not_swing() {
         // Everything 19.9 ms of 19: by the constants air would leave enough room to come back.
         let choices = choices([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
-        let mut machine = Machine { ms: 10.0, ratios: [2.0, 1.0, 1.0], late: 2, noise: 0.02, drawn: Vec::new() };
+        let mut machine =
+            Machine { ms: 10.0, ratios: [2.0, 1.0, 1.0, 1.0, 1.0], late: 2, noise: 0.02, drawn: Vec::new() };
         let (mut governor, mut random, mut set, mut switches) = (Governor::default(), 7, 0, Vec::new());
         for frame in 0..300 {
             if let Some(ms) = machine.frame(&choices[0].amount, set, &mut random) {
@@ -358,14 +368,14 @@ mod tests {
         for seed in 0..64 {
             let mut random = seed;
             let mut between = |low: f64, high: f64| low + (high - low) * chance(&mut random);
-            let ratios = [between(0.5, 2.0), between(0.5, 2.0), between(0.5, 2.0)];
+            let ratios = [0; PARTS].map(|_| between(0.5, 2.0));
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
             let mut governor = Governor::default();
             // Every part comes and goes in a hundred frames each, under scenes with more or less of it.
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
-                let parts = [0.4 * objects, 0.27, 0.07 * (1.0 - objects)];
+                let parts = five([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);
                 let all = Amount { pixels: 1.0, parts, before_fog: 0.4 };
                 let absent = [0, 1, 0, 2, 0, 5, 0, 3, 7, 0, 1, 3][step];
                 for frame in 0..24 {

@@ -32,7 +32,7 @@ mod saved;
 pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
 pub use difference::{Difference, difference};
 pub use governor::GaveWay;
-pub use parts::{Estimate, Part, Reason};
+pub use parts::{Estimate, PARTS, Part, Reason};
 pub use planner::{Budget, PartPlan, Plan, Prediction};
 pub(crate) use planner::{Planner, Present, Situation};
 pub(crate) use saved::{read, write};

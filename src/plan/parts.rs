@@ -16,11 +16,21 @@ pub enum Part {
     Fog,
     /// The clear sky above the horizon, behind clouds: left out, a closed deck hides it.
     Sky,
+    /// Streaks and splashes of rain: left out, all rain is a veil. Without fog too, nothing of it is drawn.
+    Rain,
+    /// Each drop near the camera by itself, and splashes: left out, cones stand for them.
+    Drops,
 }
+
+/// Number of parts.
+pub const PARTS: usize = Part::ALL.len();
+/// Those that the gauge draws with and without; of streaks it sees what the veil in their place would add, the rest of what they
+/// are worth is known in closed form.
+pub(super) const GAUGED: usize = 3;
 
 impl Part {
     /// All, in the order of every list here.
-    pub const ALL: [Self; 3] = [Self::Air, Self::Fog, Self::Sky];
+    pub const ALL: [Self; 5] = [Self::Air, Self::Fog, Self::Sky, Self::Rain, Self::Drops];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -28,6 +38,8 @@ impl Part {
             Self::Air => "air",
             Self::Fog => "fog",
             Self::Sky => "sky",
+            Self::Rain => "rain",
+            Self::Drops => "drops",
         }
     }
 }
@@ -91,9 +103,25 @@ impl Estimate {
 /// Leaving out takes a tenth more certainty than staying out, so that a picture at the border does not flicker.
 pub(super) const CERTAINTY: f64 = 0.9;
 
-/// What a gauge saw at one pixel: change of luminance without each part, and whether the host drew there (1), did not
-/// (-1), or keeps the pixel for itself (0).
-pub type Sample = [f32; 4];
+/// What a gauge saw at one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Change of luminance without each part.
+    pub change: [f32; PARTS],
+    /// Whether the host drew there (1), did not (-1), or keeps the pixel for itself (0).
+    pub kind: f32,
+    /// Luminance with everything but drops, 1 = white.
+    pub luminance: f32,
+    /// Optical depth of what drops hide on the mean.
+    pub hidden: f32,
+}
+
+/// Whether a set of parts can be left out where those of `present` are there: without streaks there are no near drops.
+pub(super) fn is_possible(set: usize, present: &[bool; PARTS]) -> bool {
+    let [rain, drops] = [Part::Rain, Part::Drops].map(|p| 1 << p as usize);
+    let there = (0..PARTS).all(|i| set & (1 << i) == 0 || present[i]);
+    there && (set & rain == 0 || set & drops != 0 || !present[Part::Drops as usize])
+}
 
 /// Estimates the error of leaving out sets of parts; holds its memory between calls.
 pub(super) struct Estimator {
@@ -108,8 +136,10 @@ impl Estimator {
     /// The error of leaving out the parts of `set` (bit i is `Part::ALL[i]`).
     pub fn estimate(&mut self, samples: &[Sample], set: usize) -> Estimate {
         self.scratch.clear();
-        for s in samples.iter().filter(|s| s[3] != 0.0) {
-            let change: f32 = (0..3).filter(|i| set & (1 << i) != 0).map(|i| s[i]).sum();
+        // Cones are no worse where there are none.
+        let set = if set & (1 << Part::Rain as usize) != 0 { set & !(1 << Part::Drops as usize) } else { set };
+        for s in samples.iter().filter(|s| s.kind != 0.0) {
+            let change: f32 = (0..PARTS).filter(|i| set & (1 << i) != 0).map(|i| s.change[i]).sum();
             self.scratch.push(if change.is_finite() { change.abs() } else { f32::MAX });
         }
         let n = self.scratch.len();
@@ -139,8 +169,10 @@ mod tests {
     /// The set that a tolerance leaves out.
     fn choose(samples: &[Sample], present: [bool; 3], work: [f64; 3], tolerance: f64) -> usize {
         let mut estimator = Estimator::new(2000);
+        let with_rain = |v: [bool; 3]| [v[0], v[1], v[2], false, false];
+        let work = [work[0], work[1], work[2], 0.0, 0.0];
         let choices = std::array::from_fn(|set| Choice {
-            possible: (0..3).all(|i| set & (1 << i) == 0 || present[i]),
+            possible: is_possible(set, &with_rain(present)),
             error: estimator.estimate(samples, set),
             loss: 0.0,
             amount: Amount { pixels: 6.0, parts: work, before_fog: 0.0 }.without(set),
@@ -151,7 +183,12 @@ mod tests {
     fn picture(changes: impl Fn(usize) -> [f32; 3]) -> Vec<Sample> {
         (0..2000)
             .map(|i| (i, changes(i)))
-            .map(|(i, c)| [c[0], c[1], c[2], if i % 2 == 0 { 1.0 } else { -1.0 }])
+            .map(|(i, c)| Sample {
+                change: [c[0], c[1], c[2], 0.0, 0.0],
+                kind: if i % 2 == 0 { 1.0 } else { -1.0 },
+                luminance: 0.2,
+                hidden: 0.0,
+            })
             .collect()
     }
 
@@ -191,7 +228,7 @@ mod tests {
     #[test]
     fn masked_pixels_do_not_count() {
         let mut half = picture(|i| [if i < 1000 { 0.5 } else { 0.0 }, 0.0, 0.0]);
-        half[..1000].iter_mut().for_each(|s| s[3] = 0.0);
+        half[..1000].iter_mut().for_each(|s| s.kind = 0.0);
         assert_eq!(Estimator::new(2000).estimate(&half, 1), Estimate::default());
     }
 }

@@ -1,16 +1,17 @@
 //! A view's planner: from gauged pictures to parts that are drawn, faded or left out.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{
     Price,
-    gauge::{EVERY, Gauge},
-    governor::{Amount, Choice, GaveWay, Governor, IMPORTANCE},
-    parts::{Estimate, Estimator, Part, Reason, Sample},
+    gauge::{EVERY, GRID, Gauge},
+    governor::{Amount, Choice, GaveWay, Governor, IMPORTANCE, SETS},
+    parts::{Estimate, Estimator, GAUGED, PARTS, Part, Reason, Sample, is_possible},
 };
 use crate::{
     error::{Error, Result, check_range},
     gpu::Device,
+    rain::Streaks,
     sky::SkySettings,
     weather::Conditions,
 };
@@ -26,10 +27,10 @@ pub struct Budget {
     pub milliseconds: Option<f64>,
     /// How much parts matter to those who look, [0, 1], in the order of [`Part::ALL`]: what is left out first under a
     /// budget of time. Default [`IMPORTANCE`].
-    pub importance: [f64; 3],
+    pub importance: [f64; PARTS],
     /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance and the time, so that all channels of a
     /// simulator draw alike; what of these they do not keep is still said ([`Plan::gave_way`]). Default `None`: plan.
-    pub pinned: Option<[bool; 3]>,
+    pub pinned: Option<[bool; PARTS]>,
 }
 
 impl Budget {
@@ -59,7 +60,7 @@ impl Budget {
 
     /// The parts that are pinned out, as a set.
     fn pinned_out(&self) -> Option<usize> {
-        self.pinned.map(|drawn| (0..3).filter(|i| !drawn[*i]).fold(0, |set, i| set | 1 << i))
+        self.pinned.map(|drawn| (0..PARTS).filter(|i| !drawn[*i]).fold(0, |set, i| set | 1 << i))
     }
 }
 
@@ -88,7 +89,7 @@ pub struct PartPlan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     /// One entry for each of [`Part::ALL`].
-    pub parts: [PartPlan; 3],
+    pub parts: [PartPlan; PARTS],
     /// Estimated error of all that is left out together.
     pub error: Estimate,
     /// Work of the picture as planned, in units of a pixel with none of the parts.
@@ -103,7 +104,7 @@ pub struct Plan {
 
 impl Plan {
     /// Which parts are drawn once they have faded, in the order of [`Part::ALL`]; a part that there is none of would be.
-    pub fn drawn(&self) -> [bool; 3] {
+    pub fn drawn(&self) -> [bool; PARTS] {
         self.parts.map(|p| match p.reason {
             Reason::WithinTolerance | Reason::OutOfTime => false,
             Reason::Pinned => p.share > 0.0,
@@ -147,9 +148,11 @@ impl Default for Plan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Present {
     /// Whether weather and stages draw it at all.
-    pub parts: [bool; 3],
+    pub parts: [bool; PARTS],
     pub pixels: u64,
     pub lamps: u32,
+    /// Drops that are drawn one by one.
+    pub drops: u32,
 }
 
 /// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
@@ -158,6 +161,9 @@ const AIR: (f64, f64) = (0.4, 0.2);
 const SKY: (f64, f64) = (0.07, 0.05);
 const FOG: f64 = 0.26;
 const AIR_BEFORE_FOG: f64 = 0.3;
+/// The layer of rain, its cones and splashes, a pixel; and a drop of the lattice that is drawn one by one.
+const RAIN: f64 = 1.3;
+const DROP: f64 = 8.0;
 /// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
 const AIR_UNDRAWN: f64 = 0.6;
 
@@ -195,6 +201,8 @@ struct Gauging {
     there: Situation,
     absent: usize,
     bound: Option<f64>,
+    /// What streaks of rain are worth in it, where they fall.
+    streaks: Option<Streaks>,
 }
 
 /// Least and largest share of a rebuild of the sky's tables that one frame pays: finer strips are not cut.
@@ -216,7 +224,7 @@ pub(crate) struct Planner {
     planned: Option<Situation>,
     last: Option<Situation>,
     /// Every set of parts that could be left out, as last gauged.
-    choices: [Choice; 8],
+    choices: [Choice; SETS],
     /// Work of the picture with everything.
     all: Amount,
     left_out: usize,
@@ -237,7 +245,7 @@ impl Planner {
             gauging: None,
             planned: None,
             last: None,
-            choices: [Choice::default(); 8],
+            choices: [Choice::default(); SETS],
             all: Amount::default(),
             left_out: 0,
             frames: 0,
@@ -285,7 +293,7 @@ impl Planner {
     /// The parts of which nothing is drawn: one that fades is paid whole.
     fn absent(&self) -> usize {
         let gone = |i: &usize| self.plan.parts[*i].share == 0.0 && self.left_out & (1 << i) != 0;
-        (0..3).filter(gone).fold(0, |set, i| set | 1 << i)
+        (0..PARTS).filter(gone).fold(0, |set, i| set | 1 << i)
     }
 
     /// Draw everything until the next gauge answers.
@@ -325,6 +333,10 @@ impl Planner {
     fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Present) {
         let Some(samples) = self.gauge.as_mut().and_then(|g| g.advance(device)) else { return };
         let Some(gauging) = self.gauging.take().filter(|g| g.there.is_near(here)) else { return };
+        // Without streaks to say what they are worth, the veil in their place says nothing either.
+        if let Some(streaks) = &gauging.streaks {
+            see_streaks(samples, streaks);
+        }
         let importance = self.budget.importance;
         let to = (&mut self.choices, &mut self.plan);
         self.all = weigh(&mut self.estimator, samples, present, importance, to);
@@ -390,20 +402,43 @@ impl Planner {
     /// How much of each part the frame draws, and how often the gauge composes.
     pub fn drawn(&self) -> [f32; 4] {
         let p = &self.plan.parts;
-        [p[0].share, p[1].share, p[2].share, 1.0 + p.len() as f32]
+        [p[0].share, p[1].share, p[2].share, 1.0]
+    }
+
+    /// How often the gauge composes: with streaks of rain once more.
+    pub fn compositions(rain: bool) -> u32 {
+        1 + GAUGED as u32 + u32::from(rain)
+    }
+
+    /// How much of all rain is drawn as streaks, and how much of that near the camera drop by drop.
+    pub fn rain(&self) -> [f32; 2] {
+        [Part::Rain, Part::Drops].map(|p| self.plan.parts[p as usize].share)
     }
 
     /// The gauge, if this frame should be gauged.
-    pub fn due(&mut self, here: &Situation) -> Option<&mut Gauge> {
+    /// `streaks` says what rain is worth, if it falls.
+    pub fn due(&mut self, here: &Situation, streaks: impl FnOnce() -> Option<Streaks>) -> Option<&mut Gauge> {
         let absent = self.absent();
         let gauge = self.gauge.as_mut()?;
         if !self.budget.gauges() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
         let bound = self.prediction.error.map(|e| e.bound);
-        self.gauging = Some(Gauging { there: *here, absent, bound });
+        self.gauging = Some(Gauging { there: *here, absent, bound, streaks: streaks() });
         self.frames = 0;
         Some(gauge)
+    }
+}
+
+/// Adds what streaks are worth to samples row by row.
+fn see_streaks(samples: &mut [Sample], streaks: &Streaks) {
+    let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
+    for (i, sample) in samples.iter_mut().enumerate().filter(|(_, s)| s.kind != 0.0) {
+        let (x, y) = (i % GRID.0 as usize, i / GRID.0 as usize);
+        let ndc = DVec2::new(half(x, GRID.0), -half(y, GRID.1));
+        let [rain, drops] = streaks.change(i, ndc, [sample.luminance, sample.hidden].map(f64::from));
+        sample.change[Part::Rain as usize] += rain;
+        sample.change[Part::Drops as usize] = drops;
     }
 }
 
@@ -412,28 +447,33 @@ fn weigh(
     estimator: &mut Estimator,
     samples: &[Sample],
     present: &Present,
-    importance: [f64; 3],
-    (choices, plan): (&mut [Choice; 8], &mut Plan),
+    importance: [f64; PARTS],
+    (choices, plan): (&mut [Choice; SETS], &mut Plan),
 ) -> Amount {
-    let share = |kind: f32| samples.iter().filter(|s| s[3] == kind).count() as f64 / samples.len().max(1) as f64;
+    let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
     let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
     let lamps = f64::from(present.lamps.saturating_sub(1));
     let air = AIR.0 + AIR.1 * lamps;
-    let work =
-        [(objects + AIR_UNDRAWN * sky) * air, (objects + sky) * FOG, sky * (SKY.0 + SKY.1 * lamps)].map(|w| w * pixels);
+    let air_and_sky = ((objects + AIR_UNDRAWN * sky) * air, sky * (SKY.0 + SKY.1 * lamps));
+    let a_pixel = [air_and_sky.0, (objects + sky) * FOG, air_and_sky.1, RAIN, 0.0];
+    let mut work = a_pixel.map(|w| w * pixels);
+    work[Part::Drops as usize] = DROP * f64::from(present.drops);
     let both = present.parts[0] && present.parts[1];
     let before_fog = if both { (objects + sky) * AIR_BEFORE_FOG / AIR.0 * air * pixels } else { 0.0 };
-    let all = Amount { pixels, parts: [0, 1, 2].map(|i| if present.parts[i] { work[i] } else { 0.0 }), before_fog };
+    let all =
+        Amount { pixels, parts: std::array::from_fn(|i| if present.parts[i] { work[i] } else { 0.0 }), before_fog };
     for (set, choice) in choices.iter_mut().enumerate() {
-        choice.error = estimator.estimate(samples, set);
+        choice.possible = is_possible(set, &present.parts);
+        if choice.possible || set.count_ones() == 1 {
+            choice.error = estimator.estimate(samples, set);
+        }
     }
     for (i, part) in plan.parts.iter_mut().enumerate() {
         part.worth = choices[1 << i].error;
         part.work = if present.parts[i] { all.total() - all.without(1 << i).total() } else { work[i] };
     }
     for (set, choice) in choices.iter_mut().enumerate() {
-        let parts = || (0..3).filter(|i| set & (1 << i) != 0);
-        choice.possible = parts().all(|i| present.parts[i]);
+        let parts = || (0..PARTS).filter(|i| set & (1 << i) != 0);
         choice.loss = parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum();
         choice.amount = all.without(set);
     }

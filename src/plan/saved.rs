@@ -5,18 +5,19 @@
 
 use toml::{Table, Value};
 
-use super::parts::Part;
+use super::parts::{PARTS, Part};
 use crate::{
     error::{Error, Result, Status},
     sky::{SkyModel, SkySettings},
 };
 
-const VERSION: u32 = 1;
+/// 2 since rain has parts.
+const VERSION: u32 = 2;
 /// A plan has some hundreds.
 const MOST_BYTES: usize = 1 << 16;
 
 /// The parts that are drawn, under these settings.
-pub(crate) fn write(drawn: [bool; 3], sky: &SkySettings) -> String {
+pub(crate) fn write(drawn: [bool; PARTS], sky: &SkySettings) -> String {
     let mut text = format!("version = {VERSION}\n\n[sky]\nmodel = \"{}\"\n", sky.model.name());
     for (name, value, ..) in sky.numbers() {
         text += &format!("{name} = {value}\n");
@@ -33,7 +34,7 @@ pub(crate) fn write(drawn: [bool; 3], sky: &SkySettings) -> String {
 /// # Errors
 /// [`Status::Parse`] for what is no plan or of another version, by line and column or by the field's name;
 /// [`Status::InvalidArgument`] if the settings are others.
-pub(crate) fn read(bytes: &[u8], sky: &SkySettings) -> Result<[bool; 3]> {
+pub(crate) fn read(bytes: &[u8], sky: &SkySettings) -> Result<[bool; PARTS]> {
     if bytes.len() > MOST_BYTES {
         return Err(fault(&format!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
@@ -50,7 +51,7 @@ pub(crate) fn read(bytes: &[u8], sky: &SkySettings) -> Result<[bool; 3]> {
     let names: Vec<&str> = std::iter::once("model").chain(numbers.iter().map(|n| n.0)).collect();
     only(settings, ".sky", &names)?;
     only(drawn, ".drawn", &Part::ALL.map(Part::name))?;
-    let mut answer = [false; 3];
+    let mut answer = [false; PARTS];
     for (part, answer) in Part::ALL.iter().zip(&mut answer) {
         let found = drawn.get(part.name());
         *answer = found
@@ -112,8 +113,8 @@ mod tests {
     #[test]
     fn every_plan_comes_back_as_it_was() {
         let sky = SkySettings::default();
-        for set in 0..8 {
-            let drawn = [0, 1, 2].map(|i| set & (1 << i) != 0);
+        for set in 0..1 << PARTS {
+            let drawn = std::array::from_fn(|i| set & (1 << i) != 0);
             assert_eq!(read(write(drawn, &sky).as_bytes(), &sky).unwrap(), drawn);
         }
     }
@@ -121,7 +122,7 @@ mod tests {
     #[test]
     fn what_is_cut_or_mangled_is_refused_or_says_the_same() {
         let sky = SkySettings::default();
-        let drawn = [true, false, true];
+        let drawn = [true, false, true, true, false];
         let text = write(drawn, &sky);
         let mut refused = 0;
         let mut tried = |bytes: &[u8], what: &str| match read(bytes, &sky) {
@@ -156,14 +157,18 @@ mod tests {
     #[test]
     fn faults_name_the_field_and_what_is_accepted() {
         let sky = SkySettings::default();
-        let text = write([true; 3], &sky);
+        let text = write([true; PARTS], &sky);
         let says = |from: &str, to: &str| read(text.replacen(from, to, 1).as_bytes(), &sky).unwrap_err().message;
         for (from, to, want) in [
-            ("version = 1", "version = 2\nparts = 5", "plan.version must be 1, got 2"),
-            ("version = 1", "", "plan.version must be 1, got nothing"),
+            ("version = 2", "version = 3\nparts = 5", "plan.version must be 2, got 3"),
+            ("version = 2", "", "plan.version must be 2, got nothing"),
             ("fog = true", "fog = 1", "plan.drawn.fog must be true or false, got 1"),
             ("fog = true\n", "", "plan.drawn.fog must be true or false, got nothing"),
-            ("fog = true", "fog = true\nhail = true", "plan.drawn.hail is unknown: the fields are air, fog, sky"),
+            (
+                "fog = true",
+                "fog = true\nhail = true",
+                "plan.drawn.hail is unknown: the fields are air, fog, sky, rain, drops",
+            ),
             ("[drawn]", "[done]", "plan.done is unknown"),
             ("suns = 64", "suns = 48", "plan.sky.suns must be 64 as in this view's context, got 48"),
             ("suns = 64", "suns = 1e9", "plan.sky.suns must be a whole number in [16, 128], got 1000000000"),

@@ -75,12 +75,16 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         let b = wk_budget { importance_fog, ..budget(WK_BUDGET_HAS_IMPORTANCE) };
         refused(b, "budget.importance of fog must be in [0, 1], got");
     }
+    for importance_drops in [-0.1, 1.1] {
+        let b = wk_budget { importance_drops, ..budget(WK_BUDGET_HAS_RAIN_IMPORTANCE) };
+        refused(b, "budget.importance of drops must be in [0, 1], got");
+    }
     for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
         assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().starts_with("wk_view_report_time: milliseconds must be in (0, 1e5] ms"), "{}", message());
         assert_eq!(report(&world).has & WK_REPORT_HAS_REPORTED_MS, 0);
     }
-    for part in [0, WK_PART_AIR | WK_PART_FOG, 8, u32::MAX] {
+    for part in [0, WK_PART_AIR | WK_PART_FOG, 32, u32::MAX] {
         let mut plan = init::<wk_part_plan>("wk_part_plan");
         assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());
@@ -93,15 +97,22 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
 #[test]
 fn a_plan_goes_from_one_view_to_another() {
     let (one, other) = (World::new(), World::new());
-    let everything = WK_PART_AIR | WK_PART_FOG | WK_PART_SKY;
+    let rain = WK_PART_RAIN | WK_PART_DROPS;
+    let everything = WK_PART_AIR | WK_PART_FOG | WK_PART_SKY | rain;
     assert_eq!((drawn(&one), drawn(&other)), (everything, everything));
     let pins = wk_budget { pinned_parts: WK_PART_SKY, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
     // SAFETY: live pointers.
     assert_eq!(unsafe { wk_view_set_budget(one.view, &pins) }, WK_OK);
-    assert_eq!(drawn(&one), WK_PART_SKY);
+    assert_eq!(drawn(&one), WK_PART_SKY | rain);
+    // Hosts that know of rain pin it too.
+    let has = WK_BUDGET_HAS_PINNED_PARTS | WK_BUDGET_HAS_PINNED_RAIN;
+    let pins = wk_budget { pinned_parts: WK_PART_SKY | WK_PART_RAIN, ..budget(has) };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_view_set_budget(one.view, &pins) }, WK_OK);
+    assert_eq!(drawn(&one), pins.pinned_parts);
     let plan = saved(&one);
     assert_eq!(load(&other, &plan).0, WK_OK, "{}", message());
-    assert_eq!(drawn(&other), WK_PART_SKY);
+    assert_eq!(drawn(&other), WK_PART_SKY | WK_PART_RAIN);
     assert_eq!(saved(&other), plan);
     let mut part = init::<wk_part_plan>("wk_part_plan");
     // SAFETY: live pointers.
@@ -119,15 +130,15 @@ fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
     let pins = wk_budget { pinned_parts: WK_PART_FOG, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
     // SAFETY: live pointers.
     assert_eq!(unsafe { wk_view_set_budget(world.view, &pins) }, WK_OK);
-    assert_eq!(drawn(&world), WK_PART_FOG);
+    assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS);
     let plan = saved(&world);
     let text = String::from_utf8(plan.clone()).unwrap().replace("= false", "= true");
-    let later = text.replace("version = 1", "version = 7");
+    let later = text.replace("version = 2", "version = 7");
     let finer = text.replace("suns = 64", "suns = 96");
     for (bytes, status, says) in [
-        (&[][..], WK_ERROR_PARSE, "plan.version must be 1, got nothing"),
+        (&[][..], WK_ERROR_PARSE, "plan.version must be 2, got nothing"),
         (&text.as_bytes()[..text.len() / 2], WK_ERROR_PARSE, "plan"),
-        (later.as_bytes(), WK_ERROR_PARSE, "plan.version must be 1, got 7"),
+        (later.as_bytes(), WK_ERROR_PARSE, "plan.version must be 2, got 7"),
         (finer.as_bytes(), WK_ERROR_INVALID_ARGUMENT, "plan.sky.suns must be 64 as in this view's context, got 96"),
         (&[0xff, 0, 0xff], WK_ERROR_PARSE, "plan: invalid utf-8"),
         (&[0; 4096], WK_ERROR_PARSE, "plan: TOML parse error at line 1"),
@@ -136,7 +147,7 @@ fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
         let (got, message) = load(&world, bytes);
         assert_eq!(got, status, "{message}");
         assert!(message.starts_with("wk_view_load_plan: ") && message.contains(says), "{says}: {message}");
-        assert_eq!(drawn(&world), WK_PART_FOG, "{says}");
+        assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS, "{says}");
     }
     // SAFETY: NULL, or sizes that are the buffer's.
     unsafe {
@@ -149,7 +160,7 @@ fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
         assert_eq!(wk_view_save_plan(world.view, at, 8, null_mut()), WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("out_size must not be NULL"), "{}", message());
     }
-    assert_eq!(drawn(&world), WK_PART_FOG);
+    assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use welkin::{
     frame::FrameFlags,
-    plan::{Budget, GaveWay, Reason},
+    plan::{Budget, GaveWay, PARTS, Reason},
 };
 
 use crate::{
@@ -57,7 +57,7 @@ fn a_plan_that_is_no_plan_changes_nothing() {
     let text = bench.view.save_plan().unwrap();
     // The benches' sky has 4 orders, and a plan for one with the default's 5 would not look alike.
     for (from, to, says) in [
-        ("version = 1", "version = 2", "plan.version must be 1, got 2"),
+        ("version = 2", "version = 3", "plan.version must be 2, got 3"),
         ("air = false", "", "plan.drawn.air"),
         ("orders = 4", "orders = 5", "plan.sky.orders must be 4"),
     ] {
@@ -86,10 +86,10 @@ fn a_pinned_plan_says_what_it_does_not_keep() {
         assert_eq!(plan.drawn(), parts);
         plan
     };
-    let plan = pinned([true, false, true], Some(0.01), None);
+    let plan = pinned([true, false, true, true, true], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Tolerance && plan.error.p95 > 0.1, "{plan:?}");
-    let plan = pinned([true; 3], Some(0.01), None);
+    let plan = pinned([true; PARTS], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Nothing && plan.error.p95 == 0.0, "{plan:?}");
-    assert_eq!(pinned([true; 3], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
-    assert_eq!(pinned([true; 3], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
+    assert_eq!(pinned([true; PARTS], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
+    assert_eq!(pinned([true; PARTS], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
 }

@@ -1,11 +1,12 @@
 //! The plan against pictures: what it leaves out is within the tolerance, what it keeps is needed.
 
 mod kept;
+mod rain;
 mod scenes;
 mod time;
 
 use scenes::{Bench, Shot};
-use welkin::plan::{Budget, GaveWay, Reason, difference, parts::WORST};
+use welkin::plan::{Budget, GaveWay, PARTS, Reason, difference, parts::WORST};
 
 /// Frames until a gauge has answered and what it chose has faded.
 const SETTLED: u64 = 22;
@@ -148,9 +149,9 @@ fn a_budget_of_time_is_kept_by_leaving_out_and_room_brings_parts_back() {
             assert!(plan.parts.iter().any(|p| p.reason == Reason::OutOfTime), "{plan:?}");
         }
     }
-    assert_eq!(shares[59], [1.0; 3], "10 ms fit");
+    assert_eq!(shares[59], [1.0; PARTS], "10 ms fit");
     assert!(shares[149].iter().any(|s| *s < 1.0));
-    assert_eq!(shares[319], [1.0; 3], "there is room again");
+    assert_eq!(shares[319], [1.0; PARTS], "there is room again");
 }
 
 #[test]
@@ -161,7 +162,7 @@ fn times_and_importance_out_of_range_are_refused() {
         let budget = Budget { milliseconds: Some(ms), ..Budget::default() };
         assert!(bench.view.set_budget(budget).unwrap_err().message.contains("budget.milliseconds"));
     }
-    let budget = Budget { importance: [0.5, 2.0, 0.5], ..Budget::default() };
+    let budget = Budget { importance: [0.5, 2.0, 0.5, 0.5, 0.5], ..Budget::default() };
     let message = bench.view.set_budget(budget).unwrap_err().message;
     assert!(message.contains("budget.importance of fog") && message.contains('1'), "{message}");
 }

@@ -7,13 +7,14 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Exposure, Frame, FrameFlags, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
-    plan::{Budget, Plan},
+    plan::{Budget, PARTS, Plan},
     scene::Camera,
     sky::SkySettings,
     weather::Weather,
 };
 
-const SIZE: (u32, u32) = (192, 108);
+/// Size of the pictures.
+pub const SIZE: (u32, u32) = (192, 108);
 
 /// One scene as a host would set it up.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub struct Shot {
     pub fov_deg: f64,
     /// Nothing of the host's world is farther.
     pub far_m: f64,
+    /// Whether what falls is drawn too.
+    pub particles: bool,
     pub has_depth: bool,
     pub tolerance: f64,
 }
@@ -52,6 +55,7 @@ impl Shot {
             pitch_deg: if height_m > 100.0 { -25.0 * u(3) } else { 12.0 * u(3) - 6.0 },
             fov_deg: 25.0 + 65.0 * u(4),
             far_m: if height_m > 100.0 { 60_000.0 } else { 40.0 * 1000f64.powf(u(5)) },
+            particles: false,
             has_depth: u(6) > 0.15,
             tolerance: [0.005, 0.01, 0.02, 0.05][(u(7) * 4.0) as usize],
         }
@@ -197,6 +201,7 @@ impl Bench {
         let view = if planned { &mut self.view } else { &mut self.plain };
         // What a plan decides on.
         let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
+        let stages = if shot.particles { stages.with(Stages::PARTICLES) } else { stages };
         view.record(&self.context, &frame, stages).unwrap();
         let pixels = readback::rgba(&self.device, &self.color).unwrap();
         let luminance = |p: &[f32; 4]| 0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2]);
@@ -206,6 +211,12 @@ impl Bench {
     /// The picture with everything in it.
     pub fn everything(&mut self, shot: &Shot) -> Vec<f64> {
         self.draw(shot, false, FrameFlags::NO_HISTORY)
+    }
+
+    /// Time goes on.
+    pub fn pass(&mut self, seconds: f64) {
+        self.time_s += seconds;
+        self.context.update(self.time_s).unwrap();
     }
 
     /// The picture that the planned view draws after so many frames.
@@ -229,7 +240,7 @@ impl Bench {
     }
 
     /// The picture with just these parts.
-    pub fn pinned(&mut self, shot: &Shot, parts: [bool; 3]) -> Vec<f64> {
+    pub fn pinned(&mut self, shot: &Shot, parts: [bool; PARTS]) -> Vec<f64> {
         self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() }).unwrap();
         self.draw(shot, true, FrameFlags(0))
     }

@@ -1,0 +1,98 @@
+//! How much the streaks of rain stand out of a picture, in closed form: for the planner, and for whoever asks what drops are worth.
+//!
+//! Streaks are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared covers
+//! (Campbell 1909). A drop of diameter D at distance r, drawn L long and w wide (its own width, or what is left of a pixel), hides
+//! on the mean its disc over L w of it, across as a parabola; as many as n a volume r^2 dr make
+//! 1.2 n disc^2 / ((L + w) w) dr. With w = D near the eye and w = a r beyond, its integral has a closed form: each doubling of the
+//! distance adds as much as the one before.
+
+use glam::{DVec2, DVec3};
+
+use super::{DropLight, Shot, uniforms::Classes};
+use crate::{frame::ToneCurve, scene::ViewRays, sky::spectral::luminance};
+
+/// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
+const LEAST_PIXELS: f64 = 1.2;
+/// What cones miss of the contrast of streaks: their error in the lab's chart over that of a veil without any
+/// (docs/lab/rain.csv, .51 % of 1.63 %).
+const CONES_MISS: f64 = 0.31;
+
+/// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span an angle
+/// (rad) and before which drops move `along_m` across the line of sight during the exposure.
+pub fn cover_variance(classes: &Classes, pixel_angle: f64, along_m: f64, (near_m, far_m): (f64, f64)) -> f64 {
+    let a = (LEAST_PIXELS * pixel_angle).max(1e-9);
+    let l = along_m.max(1e-4);
+    let of = |(diameter_mm, speed, flux): (f64, f64, f64)| {
+        let d = 1e-3 * diameter_mm;
+        let disc = std::f64::consts::FRAC_PI_4 * d * d;
+        // Up to here it is wider than a pixel.
+        let wide = (d / a).clamp(near_m, far_m);
+        let antiderivative = |r: f64| libm::log(r / (l + a * r)) / (a * l);
+        let sum = (wide - near_m) / ((l + d) * d) + antiderivative(far_m) - antiderivative(wide);
+        1.2 * flux / speed * disc * disc * sum
+    };
+    classes.flux.iter().filter(|c| c.1 > 0.0).map(|c| of(*c)).sum()
+}
+
+/// Angles between line of sight and drops at which the variance is tabulated.
+const ANGLES: usize = 9;
+/// Between which drops are counted, m: where near ones have faded, and up to where they are drawn.
+const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
+
+/// What the streaks of a picture change in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Streaks {
+    rays: ViewRays,
+    y_sign: f64,
+    /// Where drops go as seen from the camera.
+    axis: DVec3,
+    /// Deviation of what they hide, by the sine of the angle from there.
+    deviations: [f64; ANGLES],
+    light: DropLight,
+    tone: Option<ToneCurve>,
+    /// Lamps may make them as bright as they like.
+    lamps: bool,
+}
+
+impl Streaks {
+    /// For a camera and what it is told; the light is exposed, and passed through a tone curve where the picture has been.
+    pub fn new(
+        (classes, wind_m_s): (&Classes, DVec3),
+        shot: &Shot<'_>,
+        (light, tone): (DropLight, Option<ToneCurve>),
+        lamps: bool,
+    ) -> Self {
+        let fall = DVec3::Z * classes.flux[classes.flux.len() / 2].1;
+        let relative = wind_m_s - fall - shot.velocity_m_s;
+        let travel = relative.length() * shot.exposure_s;
+        let pixel = shot.rays.pixel_angle(shot.height);
+        let deviations = std::array::from_fn(|i| {
+            let sine = i as f64 / (ANGLES - 1) as f64;
+            cover_variance(classes, pixel, sine * travel, COUNTED_M).sqrt()
+        });
+        let axis = relative.normalize_or(DVec3::NEG_Z);
+        Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, light, tone, lamps }
+    }
+
+    /// What pixel number `i` of a picture changes without streaks, over its luminance and a hundredth of white, beside what the
+    /// veil in their place adds: so much that many pixels together spread as those of pictures do. And with cones in place of
+    /// drops.
+    /// `picture` and `hidden` are its luminance without streaks and the optical depth of what they hide.
+    pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; 2] {
+        let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
+        let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
+        let low = (at as usize).min(ANGLES - 2);
+        let part = at - low as f64;
+        let deviation = self.deviations[low] * (1.0 - part) + self.deviations[low + 1] * part;
+        let bright = luminance(&self.light.radiance(d).to_array());
+        let bright = self.tone.map_or(bright, |t| t.apply(bright));
+        let contrast = if self.lamps { 1e3 } else { (bright - picture) / (picture + 0.01) };
+        // Evenly spread in two dimensions (Roberts 2018), and normal (Box and Muller 1958).
+        let spread = |step: f64| ((i as f64 + 0.5) * step).fract();
+        let (u, v) = (spread(0.754_877_666_246_692_8), spread(0.569_840_290_998_053_3));
+        let normal = (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
+        let streaks = normal * deviation * contrast;
+        // On the mean they bring their own light.
+        [(streaks - hidden * contrast) as f32, (CONES_MISS * streaks) as f32]
+    }
+}
