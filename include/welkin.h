@@ -3772,9 +3772,8 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 typedef uint32_t wk_rain_model;
 
 /**
- * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m, or cones near the camera too where drops go farther than
- * half a metre to a metre during the exposure; under a wk_budget less where the picture does not need it or the time does not
- * allow it (WK_PART_RAIN, WK_PART_DROPS).
+ * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
+ * the time does not allow it (WK_PART_RAIN, WK_PART_DROPS).
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */

@@ -208,7 +208,7 @@ impl RustHost {
     /// picture.
     fn bare(&self) {
         let device = &self.device.device;
-        for _ in 0..5 {
+        for _ in 0..6 {
             self.device.queue.write_buffer(&self.uniform, 0, &[0; 512]);
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });

@@ -24,6 +24,11 @@ fn exposed(host: vec3f, veil: Veil) -> f32 {
     return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
+// The upper halves of two numbers: eight bits of each are enough.
+fn halves(a: f32, b: f32) -> u32 {
+    return ((bitcast<u32>(a) + 0x8000u) >> 16u) | ((bitcast<u32>(b) + 0x8000u) & 0xffff0000u);
+}
+
 fn gauged(p: Looked) -> vec4u {
     let ray = view_ray(frame.depth, p.ndc);
     // Everything, then without one part after the other. A loop over a count that no compiler knows: unrolled, the fog
@@ -39,9 +44,9 @@ fn gauged(p: Looked) -> vec4u {
     let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * select(1.0, 0.0, p.mask > 0.5);
     let hidden = frame.drops.x * min(p.range, frame.drops.y);
     return vec4u(
-        pack2x16float(change.xy),
-        pack2x16float(change.zw),
-        pack2x16float(vec2f(kind, min(shown[0], 6e4))),
-        pack2x16float(vec2f(hidden, 0.0)),
+        halves(change.x, change.y),
+        halves(change.z, change.w),
+        halves(kind, min(shown[0], 6e4)),
+        halves(hidden, 0.0),
     );
 }

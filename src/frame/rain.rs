@@ -41,9 +41,6 @@ pub(super) struct Rain {
     ice: Ice,
 }
 
-/// Where a drop goes farther than this during the exposure, m, cones begin to take over from near drops, and have done so.
-const LONGEST_M: (f64, f64) = (0.5, 1.0);
-
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
 const COUNTED: usize = 32;
 
@@ -160,15 +157,10 @@ impl Rain {
         if self.has_cones(context) { BANDS_M[CONES] } else { HIDDEN_M }
     }
 
-    /// Share of the near drops that is drawn one by one, the rest on cones, where they go so far (m) during the exposure:
-    /// streaks that are longer than drops are far cannot be quads.
-    fn share_of_drops(&self, travel_m: f64) -> f64 {
+    /// Share of the near drops that is drawn one by one, the rest on cones.
+    fn share_of_drops(&self) -> f64 {
         match self.settings.model {
-            RainModel::Automatic => {
-                let (from, to) = LONGEST_M;
-                let long = ((travel_m - from) / (to - from)).clamp(0.0, 1.0);
-                f64::from(self.shares[1]) * (1.0 - long)
-            }
+            RainModel::Automatic => self.shares[1].into(),
             RainModel::Drops | RainModel::Integrated => 1.0,
             RainModel::Veil | RainModel::Cones => 0.0,
         }
@@ -260,6 +252,27 @@ impl Rain {
         }
     }
 
+    /// What falls at the camera itself, which cones show all round: parts of each rain, as the drops near a rim are.
+    fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
+        let weather = scene.conditions.precipitation;
+        let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
+            Local::Pure(falling) => (falling, 0),
+            Local::Mixed(falling, bits) => (falling, bits),
+        };
+        let base = self.classes(device, scene, &base);
+        let mut left = 1.0;
+        let mut mixture = None;
+        for i in (0..self.field.columns.len()).filter(|i| bits & (1 << i) != 0) {
+            let share = self.field.share(i, DVec3::ZERO);
+            let shaft = *self.field.columns[i].shaft();
+            left -= share;
+            let area = self.classes(device, scene, &shaft.falling);
+            let before = mixture.get_or_insert_with(|| base.part(0.0));
+            *before = before.with(share * shaft.begun(scene.place.altitude_m), &area);
+        }
+        mixture.map_or(base, |m| m.with(left.max(0.0), &base))
+    }
+
     fn shot<'a>(&self, frame: &Frame<'_>, height: u32, (scene, rays): (&Scene, &'a ViewRays)) -> Shot<'a> {
         let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
         Shot {
@@ -314,9 +327,7 @@ impl Rain {
         let mut block =
             RainUniform::new(context.seed(), &classes, &DropLight::of(scene).exposed(exposure), &shot, &air);
         let [share, shown] = self.shares.map(f64::from);
-        let fall = DVec3::Z * classes.flux[classes.flux.len() / 2].1;
-        let travel = (air.velocity_m_s - fall - shot.velocity_m_s).length() * shot.exposure_s;
-        let near = self.share_of_drops(travel);
+        let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
@@ -324,9 +335,7 @@ impl Rain {
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from, to| context.carried(from, to);
         let cones = self.has_cones(context).then(|| {
-            // They have the rain of the camera's place all round.
-            let here = context.with_areas(frame.camera.position, context.time_s(), scene.conditions).precipitation;
-            let all = ConeUniform::new(block.seed, &self.classes(device, scene, &here), &shot, &air, &carried);
+            let all = ConeUniform::new(block.seed, &self.falling_at(device, scene), &shot, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share)
         });
         let around = context.wind_grid().map(|g| {
@@ -349,7 +358,7 @@ impl Rain {
             stepped: stepped.as_ref(),
             around: told,
             maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
-            splash: &splashes.uniform((shot.position_m, height_m), air.time_s, share * f64::from(shown)),
+            splash: &splashes.uniform((shot.position_m, height_m), air.time_s, share * shown),
             splashes: if self.shells() > 0 { splashes.instances() } else { 0 },
             local: local.as_ref(),
             over,

@@ -22,7 +22,7 @@ pub const GRID: (u32, u32) = (64, 36);
 /// Frames from one gauge to the next.
 pub const EVERY: u32 = 8;
 
-/// Halves, two in each.
+/// Upper halves of numbers, two in each.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
@@ -145,7 +145,7 @@ impl Gauge {
         }
         self.samples.clear();
         if let Ok(bytes) = self.buffer.get_mapped_range(..) {
-            let half = |b: &[u8], i: usize| half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
+            let half = |b: &[u8], i: usize| half::bf16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
             self.samples.extend(bytes.chunks_exact(16).map(|b| {
                 let mut change = [0.0; PARTS];
                 (0..=GAUGED).for_each(|i| change[i] = half(b, i));

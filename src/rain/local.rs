@@ -87,6 +87,27 @@ impl Classes {
         envelope
     }
 
+    /// A part of them in number, each for itself.
+    pub(crate) fn part(&self, share: f64) -> Self {
+        let mut part = *self;
+        part.flux.iter_mut().for_each(|c| c.2 *= share);
+        part.extinction_per_m *= share;
+        part.per_shell = (f64::from(part.per_shell) * part.weight * share) as u32;
+        part.weight = 1.0;
+        part
+    }
+
+    /// These, and a part of others: in numbers, flux and extinction, the table of counts aside.
+    pub(crate) fn with(&self, share: f64, other: &Self) -> Self {
+        let (mut sum, other) = (*self, other.part(share));
+        for (to, from) in sum.flux.iter_mut().zip(other.flux) {
+            to.2 += from.2;
+        }
+        sum.extinction_per_m += other.extinction_per_m;
+        sum.per_shell += other.per_shell;
+        sum
+    }
+
     /// Drops of a class in a shell.
     pub(crate) fn count(&self, class: usize) -> f64 {
         let before = if class > 0 { self.table[class - 1][2] } else { 0.0 };

@@ -8,7 +8,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection, RainSurface},
     frame::{Shared, Stages},
     gpu::{Device, DeviceOptions},
-    rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea},
+    rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea, RainModel, RainSettings},
     scene::{Place, WorldFrame, WorldKind},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
 };
@@ -203,6 +203,9 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     assert!(outside == 0.0 && host.view.report().drops == 0, "{outside}");
     // On the border of a narrow rim it rains to the one side only.
     host.context.set_rain_areas(&[RainArea { rim_m: 1.0, ..area }]).unwrap();
+    // Cones have the rain of the camera's place all round, drops their own.
+    host.view.set_rain(RainSettings { model: RainModel::Drops, ..RainSettings::default() }).unwrap();
+    let inside = brightness(&mut host, eye(0.0), whole);
     let (left, right) =
         (brightness(&mut host, eye(1500.0), [0.0, 0.45]), brightness(&mut host, eye(1500.0), [0.55, 1.0]));
     assert!(left > 0.5 * inside && right < 1e-3 * inside, "{left} {right}, inside {inside}");

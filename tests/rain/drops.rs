@@ -89,7 +89,9 @@ fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
     let weather = rain(50.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
     let most = 60_000;
-    host.view.set_rain(RainSettings { most_drops: Some(most), ..RainSettings::default() }).unwrap();
+    host.view
+        .set_rain(RainSettings { model: RainModel::Drops, most_drops: Some(most), ..RainSettings::default() })
+        .unwrap();
     let want = depth_to(&classes(&weather, most), 400.0);
     let mut t = 10.0;
     for speed in [0.0, 25.0, 100.0, 300.0] {
@@ -146,7 +148,7 @@ fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
     let mut host = white((480, 270));
     let weather = rain(10.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
-    let few = RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(2000), ..Default::default() };
+    let few = RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(2000) };
     host.view.set_rain(few).unwrap();
     let classes = classes(&weather, 2000);
     for (t, eye) in [(3.0, DVec3::new(0.0, 0.0, 300.0)), (123_456.7, DVec3::new(1.3, 0.4, 301.0))] {

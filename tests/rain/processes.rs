@@ -48,14 +48,7 @@ fn tell(host: &mut Host) {
     host.context.set_weather(&rain(12.0, 13.0), 0.0, 0.0).unwrap();
     host.context.set_weather(&rain(20.0, 8.0), 10.0, 5.0).unwrap();
     host.context.set_weather(&shower(), 40.0, 30.0).unwrap();
-    host.view
-        .set_rain(RainSettings {
-            model: RainModel::Drops,
-            shutter_s: SHUTTER_S,
-            most_drops: Some(MOST),
-            ..RainSettings::default()
-        })
-        .unwrap();
+    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: SHUTTER_S, most_drops: Some(MOST) }).unwrap();
 }
 
 fn classes() -> Classes {
@@ -305,14 +298,7 @@ fn saved_file() -> PathBuf {
 fn dark() -> Host {
     let mut host = night(Host::new(SIZE));
     projectors()[0].of(&mut host);
-    host.view
-        .set_rain(RainSettings {
-            model: RainModel::Drops,
-            shutter_s: SHUTTER_S,
-            most_drops: Some(MOST),
-            ..RainSettings::default()
-        })
-        .unwrap();
+    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: SHUTTER_S, most_drops: Some(MOST) }).unwrap();
     host
 }
 

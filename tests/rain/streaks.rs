@@ -102,14 +102,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
     let mut t = 10.0;
     for (speed, shutter_s) in [(0.0, 0.02), (25.0, 0.008)] {
         host.velocity_m_s = DVec3::X * speed;
-        host.view
-            .set_rain(RainSettings {
-                model: RainModel::Drops,
-                shutter_s,
-                most_drops: Some(MOST),
-                ..RainSettings::default()
-            })
-            .unwrap();
+        host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s, most_drops: Some(MOST) }).unwrap();
         let mut ratios = vec![Vec::new(); CLASSES];
         for _ in 0..90 {
             t += 0.37;
