@@ -38,7 +38,7 @@ var<workgroup> sums: array<u32, SUMS>;
 // Where each block's drops begin in the list, by one workgroup.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
-    let all = SHELLS * shell_blocks();
+    let all = rain.shells * shell_blocks();
     let part = (all + SUMS - 1u) / SUMS;
     let first = min(thread * part, all);
     let end = min(first + part, all);

@@ -6,7 +6,7 @@
 fn make_streaks(@builtin(global_invocation_id) id: vec3u) {
     // The last block that begins here or before.
     var block = 0u;
-    var end = SHELLS * shell_blocks();
+    var end = rain.shells * shell_blocks();
     let last = end - 1u;
     if id.x >= min(blocks[last].before + seen_in(last), arrayLength(&streaks)) {
         return;

@@ -38,7 +38,8 @@ struct RainUniform {
     weight: f32,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    pad0: f32,
+    // Shells of drops that are drawn.
+    shells: u32,
     pad1: f32,
     // Of the camera, m/s.
     camera: vec3f,

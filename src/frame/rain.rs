@@ -329,6 +329,7 @@ impl Rain {
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
+        block.shells = if near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
@@ -354,18 +355,17 @@ impl Rain {
         let drawn = Drawn {
             rain: &block,
             cones: cones.as_ref(),
-            shells: if near > 0.0 { self.shells() as u32 } else { 0 },
             stepped: stepped.as_ref(),
             around: told,
             maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
             splash: &splashes.uniform((shot.position_m, height_m), air.time_s, share * shown),
-            splashes: if self.shells() > 0 { splashes.instances() } else { 0 },
+            splashes: if block.shells > 0 { splashes.instances() } else { 0 },
             local: local.as_ref(),
             over,
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        Ok(classes.per_shell * drawn.shells + stones.map_or(0, |s| s.drawn))
+        Ok(classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn))
     }
 }

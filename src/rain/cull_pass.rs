@@ -62,6 +62,7 @@ struct List {
 /// The drops of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Lattice<'a> {
+    pub shells: u32,
     pub per_shell: u32,
     /// Their states, if they are stepped: [`source_layout`].
     pub states: Option<&'a wgpu::BindGroup>,
@@ -183,7 +184,7 @@ impl CullPass {
         (around_layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
         lattice: Lattice<'_>,
     ) -> Result<()> {
-        self.make_room(&device.device, lattice.per_shell);
+        self.make_room(&device.device, lattice);
         let stepped = lattice.states.is_some();
         let make = key([stepped, lattice.areas, lattice.maps]);
         self.prepare(device, around_layout, lattice)?;
@@ -197,7 +198,7 @@ impl CullPass {
         pass.set_bind_group(2, around, &[]);
         pass.set_bind_group(3, lattice.states.unwrap_or(&self.unstepped), &[]);
         pass.set_pipeline(mark);
-        pass.dispatch_workgroups(lattice.per_shell.div_ceil(MARK_DROPS).max(1), SHELLS as u32, 1);
+        pass.dispatch_workgroups(lattice.per_shell.div_ceil(MARK_DROPS).max(1), lattice.shells, 1);
         pass.set_pipeline(order);
         pass.dispatch_workgroups(1, 1, 1);
         pass.set_pipeline(streaks);
@@ -232,9 +233,9 @@ impl CullPass {
         pass.draw_indirect(&self.found, 0);
     }
 
-    fn make_room(&mut self, device: &wgpu::Device, per_shell: u32) {
+    fn make_room(&mut self, device: &wgpu::Device, lattice: Lattice<'_>) {
         // Rain that grows makes lists anew now and then, not each frame.
-        let blocks = u64::from(per_shell.div_ceil(BLOCK_DROPS).next_power_of_two()) * SHELLS as u64;
+        let blocks = u64::from(lattice.per_shell.div_ceil(BLOCK_DROPS).next_power_of_two()) * u64::from(lattice.shells);
         if self.list.as_ref().is_some_and(|l| l.blocks.size() >= blocks * BLOCK_BYTES) {
             return;
         }

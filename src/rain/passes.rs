@@ -51,8 +51,6 @@ pub(crate) struct Drawn<'a> {
     pub rain: &'a RainUniform,
     /// Cones in place of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
-    /// Shells of drops that are drawn.
-    pub shells: u32,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
     /// What keeps rain off, and lamps.
@@ -195,7 +193,7 @@ impl RainLayer {
         }
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
-            if drawn.shells == 0 && drawn.splashes == 0 {
+            if drawn.rain.shells == 0 {
                 self.draw_into(encoder, over, |pass, layer| {
                     layer.cones.iter().for_each(|c| c.draw(pass, kind));
                     layer.draw_stones(pass, kind, drawn);
@@ -234,7 +232,7 @@ impl RainLayer {
                 }
                 (None, [Some(falling), Some(splashing)]) => {
                     pass.set_pipeline(falling);
-                    pass.draw(0..4, 0..drawn.rain.per_shell * drawn.shells);
+                    pass.draw(0..4, 0..drawn.rain.per_shell * drawn.rain.shells);
                     pass.set_pipeline(splashing);
                     pass.draw(0..4, 0..splashes);
                 }
@@ -262,7 +260,7 @@ impl RainLayer {
         let (areas, maps) = (drawn.local.is_some(), drawn.maps);
         cull.prepare_draw(device, frame[0], depth)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        let lattice = Lattice { per_shell: drawn.rain.per_shell, states, areas, maps };
+        let lattice = Lattice { shells: drawn.rain.shells, per_shell: drawn.rain.per_shell, states, areas, maps };
         cull.find(device, &mut pass, (frame[1], around), lattice)?;
         if let (Some((.., own)), 1..) = (&self.bound, splashes) {
             let kind = [depth.0, areas, maps];

@@ -33,7 +33,8 @@ pub(crate) struct RainUniform {
     pub extinction: f32,
     pub weight: f32,
     pub y_sign: f32,
-    pub pad: [f32; 2],
+    pub shells: u32,
+    pub pad: f32,
     pub camera: [f32; 3],
     pub pad2: f32,
     pub cell: [[u32; 4]; SHELLS],
@@ -126,7 +127,8 @@ impl RainUniform {
             extinction: air.extinction_per_m as f32,
             weight: classes.weight as f32,
             y_sign: shot.y_sign,
-            pad: [0.0; 2],
+            shells: SHELLS as u32,
+            pad: 0.0,
             camera: v(shot.velocity_m_s),
             pad2: 0.0,
             cell: std::array::from_fn(|s| {
@@ -168,7 +170,7 @@ mod tests {
             };
         }
         same!(depth, clip, wind, exposure, above, per_shell, below, seed, sun, pixel_angle, to_sun, extinction, weight);
-        same!(y_sign, camera, cell, shell, classes);
+        same!(y_sign, shells, camera, cell, shell, classes);
     }
 
     #[test]

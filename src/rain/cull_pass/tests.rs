@@ -70,7 +70,7 @@ impl Bench {
         self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         let layout = around::layout(&self.device.device);
-        let lattice = Lattice { per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
+        let lattice = Lattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.pass.find(&self.device, &mut pass, (&layout, self.around.bind_group()), lattice).unwrap();
         drop(pass);
