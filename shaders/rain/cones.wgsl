@@ -95,14 +95,14 @@ const PLACES: u32 = 3u;
 
 // Share of a band before what is at `range` along the ray `d` that the rain comes to.
 fn open_share(d: vec3f, band: vec4f, range: f32, velocity: vec3f) -> f32 {
-    let wanted = range > band.x && band.w > 0.0;
     let far = min(range, band.y);
-    var share = 0.0;
-    for (var i = 0u; i < PLACES; i++) {
+    var share = 1.0;
+    // A loop that is not begun costs a software driver nothing.
+    for (var i = select(PLACES, 0u, any_shelter()); i < PLACES; i++) {
         let p = d * mix(band.x, far, (f32(i) + 0.5) / f32(PLACES));
-        share += select(1.0, 0.0, sheltered(p, velocity, wanted));
+        share -= select(0.0, 1.0 / f32(PLACES), sheltered(p, velocity, true));
     }
-    return share / f32(PLACES);
+    return max(share, 0.0);
 }
 
 // All cones before what is at `range` along the ray `d`: premultiplied light, and what they hide.

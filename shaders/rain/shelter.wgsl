@@ -45,6 +45,14 @@ fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
     return far >= near;
 }
 
+// Whether there is anything near the camera that rain does not pass.
+fn any_shelter() -> bool {
+    if MAPS {
+        return shelters.near + occluders.count > 0u;
+    }
+    return shelters.near > 0u;
+}
+
 // Whether what came to `p`, near the camera, with `velocity` met anything. Not looked for where it is not `wanted`: by loops that
 // are not begun, which is what a software driver leaves out.
 fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
