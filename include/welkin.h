@@ -68,12 +68,10 @@
  *
  * Numbers, names and layouts here never change within a major version; new ones are added. For the effects that follow,
  * so that a host can plan for them:
- * host lamps and moving bodies are lists appended to wk_frame; terrain, with tiles that a digging host updates by
- * rectangle, holes and soil materials, is a new child of the context with its own functions; material ids, normals, base
- * colour and motion are images appended to the target structs; weather regions and bodies of water are new functions of
- * the context; allocator and file callbacks and the star sky's matrix come as extensions of wk_device_desc and
- * wk_context_desc through `next`; the stages PARTICLES and LENS are recorded today and draw when there is
- * something to draw.
+ * terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with
+ * its own functions; material ids, normals, base colour and motion are images appended to the target structs; bodies of water
+ * are new functions of the context; allocator and file callbacks and the star sky's matrix come as extensions of
+ * wk_device_desc and wk_context_desc through `next`; snow falls in the stage PARTICLES, as rain does.
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -3270,6 +3268,16 @@ typedef struct wk_report {
     double checked_error_bound;
     /** .. and the error that was found. */
     double checked_error;
+    /** Drops and stones round the camera, of which those in the picture were drawn. */
+    uint32_t drops;
+    /** 0. */
+    uint32_t reserved1;
+    /** Drops that each drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
+    double drop_weight;
+    /** Splashes of the smallest drops that a second and m^2 of level ground had no room for. */
+    double splashes_left_out_per_m2_s;
+    /** Likewise the smallest stones that did not hop. */
+    double stones_left_out_per_m2_s;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3290,7 +3298,12 @@ typedef struct wk_report {
     /* predicted_error */ 0.0, \
     /* predicted_error_bound */ 0.0, \
     /* checked_error_bound */ 0.0, \
-    /* checked_error */ 0.0 \
+    /* checked_error */ 0.0, \
+    /* drops */ 0, \
+    /* reserved1 */ 0, \
+    /* drop_weight */ 0.0, \
+    /* splashes_left_out_per_m2_s */ 0.0, \
+    /* stones_left_out_per_m2_s */ 0.0 \
 }
 
 /** What a frame spends time on. */
@@ -3757,9 +3770,9 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  * Rain
  *
- * Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, each in
- * a place that follows from seed and time alone, so that all channels of a simulator draw the same drops and any time can be
- * shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
+ * Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, near ones in
+ * a place each that follows from seed and time alone, farther ones as streaks on cones that do too, so that all channels of a
+ * simulator draw the same rain and any time can be shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
  * picture shows within ten metres.
  *
  * What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
@@ -3779,8 +3792,8 @@ typedef uint32_t wk_rain_model;
 /** No drops: all rain is extinction in the air. */
 #define WK_RAIN_MODEL_VEIL 1
 /**
- * Streaks on four nested cones about the camera: the cheapest that moves, at a cost that does not depend on the rate. No
- * splashes.
+ * Streaks on four nested cones about the camera, at a cost that depends on the picture's size and not on the rate: the cheapest
+ * that moves where there are no compute shaders (wk_caps.tier 0). No splashes.
  */
 #define WK_RAIN_MODEL_CONES 2
 /** Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain. */
@@ -4128,8 +4141,8 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * moving things, from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
  *
  * A map knows nothing of what its surfaces hide. Take it along wk_rainfall.fall_velocity_m_s: then nothing that matters is
- * hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) a second map
- * along the slowest drops, the same wind with a fall of 2 m/s, closes what is left. What it shows is exact to two texels.
+ * hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) further maps
+ * along slower drops, the same wind with falls of 3.4 and 2.1 m/s, close what is left. What it shows is exact to two texels.
  *
  * What a map shows is taken over during the call: what the host has submitted to the queue before counts as drawn (an OpenGL host has
  * issued it), and afterwards the image is the host's again.

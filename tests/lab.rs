@@ -396,13 +396,10 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
         assert_eq!(charted.len(), offered.len(), "{name}: {charted:?}");
         let points = chart::points(&table, "cost");
         if effect == Effect::Rain {
-            // Cones are cheaper and nearer to the truth as a texture, yet have neither splashes nor drops that stay
-            // themselves for a camera that moves: the default is the nearest that has.
+            // Drops alone are too few and too strong far off, by however many.
             let error = |name: &str| points.iter().find(|p| p.name == name).unwrap().error;
-            assert!(points.iter().any(|p| p.name == "cones" && p.front));
-            assert!(error("drops") < error("veil"));
-            assert!(["source-20k", "source-140k"].iter().all(|n| error("drops") < 0.5 * error(n)));
-            continue;
+            assert!(["cones", "drops-400k", "veil"].iter().all(|n| error("drops-and-cones") < 0.8 * error(n)));
+            assert!(["source-20k", "source-140k"].iter().all(|n| error("drops-100k") < 0.5 * error(n)));
         }
         assert!(
             points.iter().any(|p| p.default && p.front),

@@ -170,7 +170,7 @@ pub fn run() -> Fallible<()> {
     bench.set("heavy_rain", bench.frame_id as f64 + 1.0)?;
     let cones = bench.ratio([false, false, false, true, false])? - 1.0;
     let drops = bench.ratio([false, false, false, true, true])? - 1.0 - cones;
-    let each = drops * f64::from(SIZE.width * SIZE.height) / f64::from(bench.view.report().drops.max(1));
+    let each = drops * f64::from(SIZE.width * SIZE.height) / f64::from(bench.view.report().rain.drops.max(1));
     println!("  rain: {cones:.2}; drops {drops:.2}, {each:.2} pixels each");
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
     bench.view.set_budget(Budget { tolerance: Some(1e-6), ..Budget::default() })?;

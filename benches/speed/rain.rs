@@ -219,6 +219,7 @@ pub fn run() -> Fallible<()> {
     }
     for (first, name, second, other, drops) in [
         (RainModel::Cones, "cones", RainModel::Drops, "drops without a state", base),
+        (RainModel::Automatic, "near ones and cones", RainModel::Drops, "drops without a state", base),
         (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", base),
         (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", 4 * base),
     ] {
@@ -227,13 +228,20 @@ pub fn run() -> Fallible<()> {
     }
     // Far more small drops than nature has, so that all of them fall.
     bench.falls(PrecipitationKind::Drizzle, 500.0, bench.context.time_s() + 1.0)?;
+    let (depth, taken) = map(&bench, 512)?;
+    let hit = [OccluderMap { depth: &depth, taken }];
     for drops in [500_000, 1_000_000, 2_000_000, 4_000_000] {
         bench.drops(drops)?;
-        bench.frame()?;
-        let mut times = (0..3).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?;
-        let (ms, drawn) = (median(&mut times), f64::from(bench.view.report().drops));
-        println!("  {:.3} million drops: {ms:.1} ms, {:.1} ms a million", drawn / 1e6, ms / drawn * 1e6);
+        let (ms, with) =
+            bench.compare(4, |s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&hit)?))?;
+        let (drawn, more) = (f64::from(bench.view.report().rain.drops), 100.0 * (with / ms - 1.0));
+        println!(
+            "  {:.3} million drops: {ms:.1} ms, {:.1} ms a million; with a map {more:+.0} %",
+            drawn / 1e6,
+            ms / drawn * 1e6
+        );
     }
+    bench.context.set_occluder_maps(&[])?;
     bench.weather(100.0, bench.context.time_s() + 1.0)?;
     bench.drops(base)?;
     let boxes: Vec<Shelter> = (0..16)

@@ -211,13 +211,15 @@ fn fog_section(out: &mut String, t: &Table) {
     );
 }
 
-const RAIN_SAYS: &str = "\n`cones` are streaks on four nested cones, at a cost that no rate changes, without splashes; `drops-N` are at most N drops \
-    without a state, each where it is on every channel; `veil` has no drops. The truth is every drop before the camera up to \
-    14 m, one by one in f64; `truth-again` are all drops at other places: nothing can be nearer. No two ways put drops in \
+const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: each drop to 1.9 m, cones beyond. `cones` are streaks on four nested cones, at a \
+    cost that no rate changes, without splashes; `drops-N` are at most N drops without a state to 4 m, each where it is on every \
+    channel; `veil` has no drops. The truth is every drop before the camera up to \
+    14.8 m, one by one in f64; `truth-again` are all drops at other places: nothing can be nearer. No two ways put drops in \
     the same places, so blocks of 20 x 20 pixels are compared over six moments: their mean and their contrast from pixel to \
     pixel and from patch to patch of 4 x 4, the worst of the three over the mean and a hundredth of white. `source-N` are \
     drops that get fewer and larger with distance (replicated: six copies of each), after an older system, timed by as many \
-    quads. The default stays with drops, which splash and keep their place for a camera that moves.\n\n";
+    quads. Costs of drops are those of lists that compute shaders make; one by one, as without compute shaders, 100 000 cost \
+    84 and 400 000 177.\n\n";
 
 fn rain_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);

@@ -69,9 +69,7 @@
 //!
 //! Numbers, names and layouts here never change within a major version; new ones are added. For the effects that follow,
 //! so that a host can plan for them:
-//! host lamps and moving bodies are lists appended to wk_frame; terrain, with tiles that a digging host updates by
-//! rectangle, holes and soil materials, is a new child of the context with its own functions; material ids, normals, base
-//! colour and motion are images appended to the target structs; weather regions and bodies of water are new functions of
-//! the context; allocator and file callbacks and the star sky's matrix come as extensions of wk_device_desc and
-//! wk_context_desc through `next`; the stages PARTICLES and LENS are recorded today and draw when there is
-//! something to draw.
+//! terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with
+//! its own functions; material ids, normals, base colour and motion are images appended to the target structs; bodies of water
+//! are new functions of the context; allocator and file callbacks and the star sky's matrix come as extensions of
+//! wk_device_desc and wk_context_desc through `next`; snow falls in the stage PARTICLES, as rain does.

@@ -4,8 +4,8 @@
 //! moving things, from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
 //!
 //! A map knows nothing of what its surfaces hide. Take it along wk_rainfall.fall_velocity_m_s: then nothing that matters is
-//! hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) a second map
-//! along the slowest drops, the same wind with a fall of 2 m/s, closes what is left. What it shows is exact to two texels.
+//! hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) further maps
+//! along slower drops, the same wind with falls of 3.4 and 2.1 m/s, close what is left. What it shows is exact to two texels.
 //!
 //! What a map shows is taken over during the call: what the host has submitted to the queue before counts as drawn (an OpenGL host has
 //! issued it), and afterwards the image is the host's again.

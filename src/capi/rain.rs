@@ -1,8 +1,8 @@
 //! Rain
 //!
-//! Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, each in
-//! a place that follows from seed and time alone, so that all channels of a simulator draw the same drops and any time can be
-//! shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
+//! Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, near ones in
+//! a place each that follows from seed and time alone, farther ones as streaks on cones that do too, so that all channels of a
+//! simulator draw the same rain and any time can be shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
 //! picture shows within ten metres.
 //!
 //! What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
@@ -35,8 +35,8 @@ pub type wk_rain_model = u32;
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
-/// Streaks on four nested cones about the camera: the cheapest that moves, at a cost that does not depend on the rate. No
-/// splashes.
+/// Streaks on four nested cones about the camera, at a cost that depends on the picture's size and not on the rate: the cheapest
+/// that moves where there are no compute shaders (wk_caps.tier 0). No splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
 /// Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;

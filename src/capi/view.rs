@@ -135,6 +135,16 @@ pub struct wk_report {
     pub checked_error_bound: f64,
     /// .. and the error that was found.
     pub checked_error: f64,
+    /// Drops and stones round the camera, of which those in the picture were drawn.
+    pub drops: u32,
+    /// 0.
+    pub reserved1: u32,
+    /// Drops that each drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
+    pub drop_weight: f64,
+    /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
+    pub splashes_left_out_per_m2_s: f64,
+    /// Likewise the smallest stones that did not hop.
+    pub stones_left_out_per_m2_s: f64,
 }
 
 impl wk_report {
@@ -156,6 +166,11 @@ impl wk_report {
         predicted_error_bound: 0.0,
         checked_error_bound: 0.0,
         checked_error: 0.0,
+        drops: 0,
+        reserved1: 0,
+        drop_weight: 0.0,
+        splashes_left_out_per_m2_s: 0.0,
+        stones_left_out_per_m2_s: 0.0,
     };
 }
 
@@ -327,6 +342,10 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
             tables_rebuilt: report.tables_rebuilt,
             exposure: report.exposure,
             bytes: report.bytes,
+            drops: report.rain.drops,
+            drop_weight: report.rain.drop_weight,
+            splashes_left_out_per_m2_s: report.rain.splashes_left_out_per_m2_s,
+            stones_left_out_per_m2_s: report.rain.stones_left_out_per_m2_s,
             has: has.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
             ms: report.costs.map_or(0.0, |c| c.whole_ms),
             predicted_ms: expected.milliseconds.unwrap_or(0.0),

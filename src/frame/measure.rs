@@ -116,14 +116,27 @@ pub struct Report {
     pub exposure: f64,
     /// Bytes of GPU memory the view holds for itself.
     pub bytes: u64,
-    /// Drops of rain that were drawn.
-    pub drops: u32,
+    /// What of the rain round the camera was drawn.
+    pub rain: RainReport,
     /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// What the plan expects of the frame.
     pub prediction: Prediction,
     /// What the host said that the weather took in it, ms ([`View::report_time`](super::View::report_time)).
     pub reported_ms: Option<f64>,
+}
+
+/// What of what falls round the camera was drawn, and what there was no room for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RainReport {
+    /// Drops and stones round the camera, of which those in the picture were drawn.
+    pub drops: u32,
+    /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without any.
+    pub drop_weight: f64,
+    /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
+    pub splashes_left_out_per_m2_s: f64,
+    /// Likewise the smallest stones that did not hop.
+    pub stones_left_out_per_m2_s: f64,
 }
 
 fn ms_since(start: Instant) -> f64 {

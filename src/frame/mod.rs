@@ -19,7 +19,7 @@ mod uniform;
 mod view;
 
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
-pub use measure::{Costs, Effect, Report};
+pub use measure::{Costs, Effect, RainReport, Report};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    ColorSpace, Frame, FrameFlags, Shared,
+    ColorSpace, Frame, FrameFlags, RainReport, Shared,
     areas::{AreaPass, Columns},
     stones::Ice,
 };
@@ -304,16 +304,16 @@ impl Rain {
         Some(Streaks::new((&classes, wind), &shot, light, !context.lights().is_empty()))
     }
 
-    /// Draws the drops round the camera into the layer; answers how many.
+    /// Draws the drops round the camera into the layer; answers what of them.
     pub fn draw(
         &mut self,
         device: &Arc<Device>,
         (encoder, frame, color): To<'_, '_>,
         (context, scene, rays): (&Context, &Scene, &ViewRays),
         (exposure, over, told): (f64, bool, &Around),
-    ) -> Result<u32> {
+    ) -> Result<RainReport> {
         if !self.falls_here() {
-            return Ok(0);
+            return Ok(RainReport::default());
         }
         let (classes, local) = self.falling_here(device, scene);
         let shot = self.shot(frame, color.height(), (scene, rays));
@@ -366,6 +366,12 @@ impl Rain {
                 .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        Ok(classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn))
+        let wet = block.shells > 0;
+        Ok(RainReport {
+            drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),
+            drop_weight: if wet { classes.weight } else { 0.0 },
+            splashes_left_out_per_m2_s: if wet { splashes.left_out_per_m2_s } else { 0.0 },
+            stones_left_out_per_m2_s: stones.map_or(0.0, |s| s.left_out_per_m2_s),
+        })
     }
 }

@@ -401,7 +401,7 @@ impl View {
             let over = self.rain.draw_areas(shared, layer, (context, scene), (blocks, &self.sky), &constants)?;
             let at = (context, scene, rays);
             let with = (exposure, over, &self.around);
-            self.report.drops = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, with)?;
+            self.report.rain = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, with)?;
             self.report.passes += 1 + u32::from(over);
         }
         if variant.stages.has(Stages::SURFACE) {

@@ -12,9 +12,9 @@ pub enum RainMethod {
     Source(SourceLod),
 }
 
-/// Work of a drop: hash, place, light and projection of four corners, and its few pixels; such that 100 000 of them cost four
-/// times the layer of 640 x 360, as measured.
-const DROP: Units = Units { samples: 100.0, texels: 4.0, bytes: 64.0 };
+/// Work of a drop of the lattice: to ask whether the picture shows it, and the streaks of the few that it shows; as measured
+/// against cones over 640 x 360.
+const DROP: Units = Units { samples: 20.0, texels: 1.0, bytes: 13.0 };
 /// Work of stepping one: an exponential, a look at the wind, its state read and written.
 const STEP: Units = Units { samples: 2.0, texels: 1.0, bytes: 32.0 };
 /// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
@@ -35,10 +35,10 @@ impl RainMethod {
                 // As much as the fog does anyway, and no layer.
                 RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
                 RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
-                // Three cones, and as many drops as one shell of four has.
+                // The farther cones, and as many drops as one shell of four has.
                 RainModel::Automatic => Work {
                     view: Units::default().plus(DROP, 0.25 * f64::from(s.most_drops.unwrap_or(400_000))),
-                    pixel: LAYER.plus(CONES, 0.75),
+                    pixel: LAYER.plus(CONES, 0.9),
                     ..Work::default()
                 },
                 RainModel::Drops => drops(s.most_drops.unwrap_or(400_000)),

@@ -135,16 +135,16 @@ fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
     bench.view.set_rain(settings).unwrap();
     let (_, plan) = bench.planned(&shot, SETTLED);
     assert_eq!([RAIN, DROPS].map(|i| plan.parts[i].reason), [Reason::Absent; 2]);
-    assert!(bench.view.report().drops > 0);
+    assert!(bench.view.report().rain.drops > 0);
     bench.view.set_rain(RainSettings::default()).unwrap();
     let (_, plan) = bench.planned(&shot, 3 * SETTLED);
     assert_eq!([RAIN, DROPS].map(|i| plan.parts[i].reason), [Reason::WithinTolerance; 2], "{plan:?}");
-    assert!(bench.view.report().drops == 0 && plan.parts[RAIN].share == 0.0);
+    assert!(bench.view.report().rain.drops == 0 && plan.parts[RAIN].share == 0.0);
     // Nothing of it at all: the fog's share of it too.
     assert_eq!(plan.parts[Part::Fog as usize].reason, Reason::WithinTolerance);
     // A picture that depends on nothing before it has all.
     bench.draw(&shot, true, FrameFlags::NO_HISTORY);
-    assert!(bench.view.report().drops > 0);
+    assert!(bench.view.report().rain.drops > 0);
 }
 
 #[test]

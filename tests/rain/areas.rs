@@ -196,11 +196,11 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     let eye = |x: f64| DVec3::new(x, 0.0, 2.0);
     let whole = [0.0, 1.0];
     let inside = brightness(&mut host, eye(0.0), whole);
-    assert!(host.view.report().drops > 0);
+    assert!(host.view.report().rain.drops > 0);
     let half = brightness(&mut host, eye(800.0), whole) / inside;
     assert!((half - 0.5).abs() < 0.06, "{half} of the drops in the middle of the rim");
     let outside = brightness(&mut host, eye(1600.0), whole) / inside;
-    assert!(outside == 0.0 && host.view.report().drops == 0, "{outside}");
+    assert!(outside == 0.0 && host.view.report().rain.drops == 0, "{outside}");
     // On the border of a narrow rim it rains to the one side only.
     host.context.set_rain_areas(&[RainArea { rim_m: 1.0, ..area }]).unwrap();
     // Cones have the rain of the camera's place all round, drops their own.

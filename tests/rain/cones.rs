@@ -232,7 +232,7 @@ fn storms_far_places_and_fast_cameras_stay_finite_on_cones() {
         host.draw(|_, _| [10.0; 3]);
         host.record(Stages::ALL).unwrap();
         assert!(host.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{rate} {wind} {at}");
-        assert_eq!(host.view.report().drops, 0);
+        assert_eq!(host.view.report().rain.drops, 0);
     }
 }
 

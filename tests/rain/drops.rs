@@ -196,7 +196,7 @@ fn without_rain_nothing_is_drawn_and_nothing_changes() {
     let before = host.pixels();
     host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
     assert_eq!(before, host.pixels());
-    assert_eq!((host.view.report().passes, host.view.report().drops), (0, 0));
+    assert_eq!((host.view.report().passes, host.view.report().rain.drops), (0, 0));
 }
 
 #[test]
@@ -224,4 +224,25 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
         host.context.set_shelters(&[upright([0.0, 0.0, 3.0], [400.0, 400.0, 0.1])]).unwrap();
         assert!(through(&mut host).iter().all(|v| *v == 1.0), "wind {wind}");
     }
+}
+
+/// What there is no room for is said: of drops by the number that each stands for, of splashes by their rate.
+#[test]
+fn the_report_says_what_of_the_rain_there_was_no_room_for() {
+    let mut host = white((64, 36));
+    let report = |host: &mut Host, rate: f64, t: f64| {
+        host.context.set_weather(&rain(rate, 0.0), t, 0.0).unwrap();
+        host.context.update(t + 1.0).unwrap();
+        through(host);
+        host.view.report().rain
+    };
+    host.view.set_rain(RainSettings { most_drops: Some(8_000_000), ..RainSettings::default() }).unwrap();
+    let light = report(&mut host, 1.0, 10.0);
+    assert!(light.drops > 1000 && light.drop_weight == 1.0 && light.splashes_left_out_per_m2_s == 0.0, "{light:?}");
+    host.view.set_rain(RainSettings { most_drops: Some(5000), ..RainSettings::default() }).unwrap();
+    let heavy = report(&mut host, 300.0, 20.0);
+    assert!((4900..=5000).contains(&heavy.drops) && heavy.splashes_left_out_per_m2_s > 10.0, "{heavy:?}");
+    let all = classes(&rain(300.0, 0.0), u32::MAX);
+    assert!((heavy.drop_weight * f64::from(heavy.drops) / f64::from(all.per_shell) - 1.0).abs() < 0.01, "{heavy:?}");
+    assert_eq!(report(&mut host, 0.0, 30.0), Default::default());
 }

@@ -70,7 +70,7 @@ fn steady_rain_cloudburst_and_a_dry_place_under_a_bridge() {
         paint(&host);
         host.record(Stages::ALL).unwrap();
         save(&host, &format!("rain_{name}.png"));
-        println!("{name}: {} drops", host.view.report().drops);
+        println!("{name}: {} drops", host.view.report().rain.drops);
     }
 }
 

@@ -89,7 +89,7 @@ fn pictures_of_hail_and_pellets() {
         paint(&host);
         host.record(welkin::frame::Stages::ALL).unwrap();
         let pixels = save(&host, &format!("stones_{name}.png"));
-        println!("{name}: {} stones", host.view.report().drops);
+        println!("{name}: {} stones", host.view.report().rain.drops);
         assert!(pixels.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
     }
 }
