@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    ColorSpace, Frame, FrameFlags, RainReport, Shared,
+    ColorSpace, Frame, FrameFlags, RainReport, Shared, ToneCurve,
     areas::{AreaPass, Columns},
     stones::Ice,
 };
@@ -298,7 +298,11 @@ impl Rain {
         }
         let (classes, _) = self.falling_here(device, scene);
         let wind = context.carrying_wind(context.time_s()).ok()?;
-        let tone = (frame.color_space != ColorSpace::SceneLinear).then(|| context.tone_curve());
+        let tone: fn(f64) -> f64 = match (frame.color_space, context.tone_curve()) {
+            (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
+            (_, ToneCurve::Exponential) => |x| ToneCurve::Exponential.apply(x),
+            (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
+        };
         let light = (DropLight::of(scene).exposed(exposure), tone);
         let shot = self.shot(frame, height, (scene, rays));
         Some(Streaks::new((&classes, wind), &shot, light, !context.lights().is_empty()))

@@ -9,7 +9,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{DropLight, Shot, uniforms::Classes};
-use crate::{frame::ToneCurve, scene::ViewRays, sky::spectral::luminance};
+use crate::{scene::ViewRays, sky::spectral::luminance};
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;
@@ -39,6 +39,9 @@ const ANGLES: usize = 9;
 /// Between which drops are counted, m: where near ones have faded, and up to where they are drawn.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
 
+/// What has been made of exposed light in a picture.
+pub(crate) type Tone = fn(f64) -> f64;
+
 /// What the streaks of a picture change in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Streaks {
@@ -49,17 +52,17 @@ pub(crate) struct Streaks {
     /// Deviation of what they hide, by the sine of the angle from there.
     deviations: [f64; ANGLES],
     light: DropLight,
-    tone: Option<ToneCurve>,
+    tone: Tone,
     /// Lamps may make them as bright as they like.
     lamps: bool,
 }
 
 impl Streaks {
-    /// For a camera and what it is told; the light is exposed, and passed through a tone curve where the picture has been.
+    /// For a camera and what it is told; the light is exposed, and passed through what the picture has been.
     pub fn new(
         (classes, wind_m_s): (&Classes, DVec3),
         shot: &Shot<'_>,
-        (light, tone): (DropLight, Option<ToneCurve>),
+        (light, tone): (DropLight, Tone),
         lamps: bool,
     ) -> Self {
         let fall = DVec3::Z * classes.flux[classes.flux.len() / 2].1;
@@ -84,8 +87,7 @@ impl Streaks {
         let low = (at as usize).min(ANGLES - 2);
         let part = at - low as f64;
         let deviation = self.deviations[low] * (1.0 - part) + self.deviations[low + 1] * part;
-        let bright = luminance(&self.light.radiance(d).to_array());
-        let bright = self.tone.map_or(bright, |t| t.apply(bright));
+        let bright = (self.tone)(luminance(&self.light.radiance(d).to_array()));
         let contrast = if self.lamps { 1e3 } else { (bright - picture) / (picture + 0.01) };
         // Evenly spread in two dimensions (Roberts 2018), and normal (Box and Muller 1958).
         let spread = |step: f64| ((i as f64 + 0.5) * step).fract();

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
-    rain::{RainModel, RainSettings, cones::BANDS_M, lattice::HIDDEN_M},
+    rain::{RainModel, RainSettings, cones::BANDS_M, contrast, lattice::HIDDEN_M},
     scene::Camera,
 };
 
@@ -249,4 +249,35 @@ fn cones_leave_a_cab_dry_and_a_veil_draws_nothing() {
     draws(&mut host, RainModel::Veil);
     assert!(through(&mut host).iter().all(|v| *v == 1.0));
     assert_eq!(host.view.report().passes, 0);
+}
+
+/// The closed form by which the plan knows what streaks are worth, against pictures of them: the deviation from pixel to pixel
+/// of what they hide.
+#[test]
+fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
+    let mut host = amid_walls((320, 180));
+    draws(&mut host, RainModel::Automatic);
+    let pixel = 2.0 * (0.5f64 * 0.9).tan() / 180.0;
+    for (i, (rate, speed)) in [(2.0, 0.0), (20.0, 0.0), (20.0, 25.0), (100.0, 0.0)].into_iter().enumerate() {
+        let (t, weather) = (10.0 + 100.0 * i as f64, rain(rate, 0.0));
+        host.velocity_m_s = DVec3::X * speed;
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        let mut variance = 0.0;
+        for k in 0..12 {
+            host.context.update(t + 1.31 * f64::from(k)).unwrap();
+            let seen = cover(&mut host, DVec3::Y, DVec3::Z);
+            let m = mean(&seen);
+            variance += seen.iter().map(|c| (c - m).powi(2)).sum::<f64>() / (seen.len() as f64 * 12.0);
+        }
+        let classes = classes(&weather, u32::MAX);
+        let fall = classes.flux[16].1;
+        let along = DVec3::new(speed, 0.0, fall).length() / 60.0;
+        let want = contrast::cover_variance(&classes, pixel, along, (0.2, BANDS_M[4])).sqrt();
+        let ratio = variance.sqrt() / want;
+        println!(
+            "{rate} mm/h at {speed} m/s: deviation {:.5}, by the closed form {want:.5}, {ratio:.3}",
+            variance.sqrt()
+        );
+        assert!((0.8..1.25).contains(&ratio), "{rate} mm/h at {speed} m/s: {ratio}");
+    }
 }
