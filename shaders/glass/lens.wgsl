@@ -29,14 +29,15 @@ struct Lens {
     height: f32,
     // Inside of the pane: a u + b v + c >= 0.
     edges: array<vec4f, 4>,
-    // Where large beads run to, unit or 0; the first wiper's pivot, cells.
+    // Each wiper: pivot, inner and outer radius, cells; all 0 where there is none.
+    arms: array<vec4f, 2>,
+    // Where large beads run to, unit or 0.
     flow: vec2f,
-    pivot: vec2f,
     // Columns and rows; key of the seed.
     size: vec2i,
     key: u32,
-    // Bits: 1 water, 2 film in arcs about the pivot.
-    shows: u32,
+    // 1 where there is water.
+    wet: u32,
 }
 
 @group(0) @binding(0) var<uniform> lens: Lens;
@@ -249,11 +250,26 @@ fn water_over(c: vec2f, hits: f32) -> Water {
     return best;
 }
 
-// Streaks of a film: fine ridges along the blade's way, or along the flow.
-fn streaks(c: vec2f) -> f32 {
-    let arc = length(c - lens.pivot) * 2.7;
-    let across = dot(c, vec2f(lens.flow.y, -lens.flow.x)) * 2.7;
-    let at = select(across, arc, (lens.shows & 2u) != 0u);
+// From the pivot of the wiper that reaches a point, the nearer of two that do; 0 beyond their reach.
+fn from_pivot(c: vec2f) -> vec2f {
+    var best = vec2f(0.0);
+    var nearest = 1e9;
+    for (var i = 0; i < 2; i++) {
+        let arm = lens.arms[i];
+        let d = c - arm.xy;
+        let far = length(d);
+        if far >= arm.z && far <= arm.w && far < nearest {
+            best = d;
+            nearest = far;
+        }
+    }
+    return best;
+}
+
+// Streaks of a film: fine ridges along the blade's way, or along the flow. `arm` is the way from the wiper's pivot, or 0.
+fn streaks(c: vec2f, arm: vec2f) -> f32 {
+    let across = dot(c, vec2f(lens.flow.y, -lens.flow.x));
+    let at = 2.7 * select(across, length(arm), any(arm != vec2f(0.0)));
     let f = fract(at);
     let i = i32(floor(at));
     let a = f32(hash(vec2i(i, 11), lens.key) & 255u) / 127.5 - 1.0;
@@ -288,7 +304,7 @@ fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
     let c = p * lens.per_m;
     var film = 0.0;
     var water = Water(vec2f(0.0), 0.0, 0.0, 0.0);
-    if (lens.shows & 1u) != 0u {
+    if lens.wet != 0u {
         let state = blended(c);
         film = state.x * state.x;
         water = water_over(c, state.y);
@@ -301,8 +317,9 @@ fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
     var seen = select(host.rgb, srgb_decode(host.rgb), ENCODED);
     let d = normalize(ray);
     if film >= 1e-3 {
-        let ridge = streaks(c) * film;
-        let across = normalize(select(vec2f(lens.flow.y, -lens.flow.x), c - lens.pivot, (lens.shows & 2u) != 0u) + 1e-6);
+        let arm = from_pivot(c);
+        let ridge = streaks(c, arm) * film;
+        let across = normalize(select(vec2f(lens.flow.y, -lens.flow.x), arm, any(arm != vec2f(0.0))) + 1e-6);
         let bent = picture_at(normalize(d + vec3f(across * ridge * 0.03, 0.0)));
         seen = mix(seen, scene(bent, 2.0 * film * abs(ridge) + film), min(film * 1.5, 1.0));
     }

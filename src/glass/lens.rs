@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
+use super::{MAX_ARMS, Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
 use crate::{error::Result, scene::Camera};
 
 /// What the frame knows of its target.
@@ -38,11 +38,12 @@ pub(super) struct LensUniform {
     pub clip_z: [f32; 3],
     pub height: f32,
     pub edges: [[f32; 4]; 4],
+    pub arms: [[f32; 4]; MAX_ARMS],
     pub flow: [f32; 2],
-    pub pivot: [f32; 2],
     pub size: [i32; 2],
     pub key: u32,
-    pub shows: u32,
+    pub wet: u32,
+    pub pad: [u32; 2],
 }
 
 /// The lattice that the lens shows.
@@ -73,7 +74,10 @@ impl LensUniform {
             let inwards = (b - a).normalize().perp();
             [inwards.x as f32, inwards.y as f32, -inwards.dot(a) as f32, 0.0]
         });
-        let pivot = screen.arms.iter().flatten().next().map(|a| a.pivot_m);
+        let arms = screen.arms.map(|arm| {
+            let metres = arm.map_or([0.0; 4], |a| [a.pivot_m[0], a.pivot_m[1], a.inner_radius_m, a.length_m]);
+            metres.map(|m| (m / shown.cell_m) as f32)
+        });
         Ok(Self {
             ray: f3(to_glass * rays.direction),
             per_m: (1.0 / shown.cell_m) as f32,
@@ -90,11 +94,12 @@ impl LensUniform {
             clip_z: f3(clip.z_axis),
             height: plane.size_m.y as f32,
             edges,
+            arms,
             flow: shown.flow.normalize_or_zero().as_vec2().to_array(),
-            pivot: pivot.unwrap_or_default().map(|m| (m / shown.cell_m) as f32),
             size: shown.size.map(|n| n as i32),
             key: shown.key,
-            shows: u32::from(shown.wet) + 2 * u32::from(pivot.is_some()),
+            wet: u32::from(shown.wet),
+            pad: [0; 2],
         })
     }
 }
@@ -117,6 +122,6 @@ mod tests {
             };
         }
         same!(ray, per_m, ray_dx, y_sign, ray_dy, radius, eye, pixel, clip_x, fogging, clip_y, demist, clip_z, height);
-        same!(edges, flow, pivot, size, key, shows);
+        same!(edges, arms, flow, size, key, wet);
     }
 }

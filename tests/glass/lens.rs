@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 use welkin::{
     Status,
     frame::{Effect, Frame, FrameFlags, Stages},
-    glass::{Pane, Windscreen, laws::radius_m, step::VOLUME_UNIT_M3},
+    glass::{Pane, Windscreen, WiperArm, laws::radius_m, step::VOLUME_UNIT_M3},
     scene::{Camera, DepthKind, DepthMapping},
 };
 
@@ -77,6 +77,96 @@ fn a_drop_shows_the_scene_upside_down() {
     }
     let [upper, lower] = [upper, lower].map(|v| v / f64::from(count));
     assert!(count > 50 && lower > upper + 0.25, "{count} drops: {upper} above, {lower} below");
+}
+
+/// The blower clears the mist from the lower edge up, and all of it in the end.
+#[test]
+fn mist_is_cleared_from_below() {
+    let mut host = Host::new(PLAIN, SIZE, 0.0);
+    let (mut last, mut full) = (f64::INFINITY, Vec::new());
+    for demist in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
+        host.paint();
+        let painted = host.pixels();
+        let pane = Pane::WholeView(0.4);
+        host.view.set_windscreen(Some(&Windscreen { pane, fogging: 0.9, demist, ..upright() })).unwrap();
+        host.at(1.0, Stages::LENS, FrameFlags(0)).unwrap();
+        let drawn = host.pixels();
+        // How much the mist changes each row.
+        let change = |i: usize| f64::from((painted[i][0] - drawn[i][0]).abs());
+        let width = SIZE.0 as usize;
+        let changes: Vec<f64> = (0..SIZE.1 as usize).map(|y| (y * width..(y + 1) * width).map(change).sum()).collect();
+        if demist == 0.0 {
+            assert!(changes.iter().all(|c| *c > 0.1 * width as f64), "all of the glass is misted at first");
+            full.clone_from(&changes);
+        }
+        let misted: Vec<bool> = changes.iter().zip(&full).map(|(now, full)| *now > 0.5 * full).collect();
+        let share = misted.iter().filter(|m| **m).count() as f64 / misted.len() as f64;
+        assert!(share < last - 0.05, "{demist}: {share} after {last}");
+        last = share;
+        // Rows run from the top: misted ones above, clear ones below.
+        assert!(misted.is_sorted_by(|a, b| a >= b), "{demist}: cleared from the lower edge upwards");
+        assert!(demist < 1.0 || drawn == painted, "none in the end");
+    }
+    assert!(last == 0.0);
+}
+
+/// Ridges of the film lie in arcs about the pivot of the arm that wiped there, not about the other's.
+#[test]
+fn film_lies_in_arcs_about_each_pivot() {
+    let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, SIZE, 0.3);
+    let arm = |x: f64, position| WiperArm {
+        pivot_m: [x, 0.02],
+        length_m: 0.15,
+        inner_radius_m: 0.02,
+        parked_deg: 20.0,
+        far_deg: 160.0,
+        position,
+        ..WiperArm::default()
+    };
+    let pivots = [0.05, 0.35];
+    let screen = |position| Windscreen { arms: pivots.map(|x| Some(arm(x, position))), ..upright() };
+    for i in 0..=4 {
+        host.view.set_windscreen(Some(&screen(f64::from(i) / 4.0))).unwrap();
+        host.at(20.0 + f64::from(i) / 60.0, Stages::PREPARE, FrameFlags(0)).unwrap();
+    }
+    // Brighter to the right: what the film changes is how far it bends the view sideways.
+    let ramp = |i: u32| f64::from(i % SIZE.0) / f64::from(SIZE.0);
+    let texels = (0..SIZE.0 * SIZE.1).flat_map(|i| [half::f16::from_f64(ramp(i)); 4]);
+    let bytes: Vec<u8> = texels.flat_map(|v| v.to_bits().to_le_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * SIZE.0), rows_per_image: None };
+    host.device.queue.write_texture(host.color.as_image_copy(), &bytes, layout, host.color.size());
+    let at = 20.0 + 4.0 / 60.0;
+    host.at(at, Stages::LENS, FrameFlags(0)).unwrap();
+    let pixels = host.pixels();
+    // Mean square of the bend's means over arcs, of its whole: near 1 where the bend is the same along each arc.
+    let along_arcs = |centre: f64, own: f64| {
+        let mut bins = std::collections::BTreeMap::<i32, (f64, f64, f64)>::new();
+        for (a, r) in (0..90).flat_map(|a| (0..110).map(move |r| (a, r))) {
+            let (angle, r) = (f64::from(45 + a).to_radians(), 0.03 + 0.001 * f64::from(r));
+            let d = glam::DVec2::new(r * angle.cos(), r * angle.sin());
+            let [px, py] = pixel([own + d.x, 0.02 + d.y]);
+            if d.x.abs() < 0.3 * r || !(0.0..f64::from(SIZE.1)).contains(&py) || !(0.0..f64::from(SIZE.0)).contains(&px)
+            {
+                continue;
+            }
+            let i = py as u32 * SIZE.0 + px as u32;
+            let bend = (f64::from(pixels[i as usize][0]) - ramp(i)) / d.x * r;
+            // Beads bend it far more.
+            if bend.abs() > 0.05 {
+                continue;
+            }
+            let bin = bins.entry(((own + d.x - centre).hypot(d.y) / 5e-4) as i32).or_default();
+            *bin = (bin.0 + bend, bin.1 + bend * bend, bin.2 + 1.0);
+        }
+        let (between, whole) = bins.values().fold((0.0, 0.0), |s, b| (s.0 + b.0 * b.0 / b.2, s.1 + b.1));
+        assert!(whole > 1e-4, "no film: {whole}");
+        between / whole
+    };
+    for i in 0..2 {
+        let (own, other) = (along_arcs(pivots[i], pivots[i]), along_arcs(pivots[1 - i], pivots[i]));
+        println!("{i}: {own} about its own pivot, {other} about the other");
+        assert!(own > 2.0 * other && own > 0.4, "arm {i}: {own} about its own pivot, {other} about the other");
+    }
 }
 
 #[test]
