@@ -4397,7 +4397,11 @@ typedef struct wk_windscreen {
      * on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
      */
     double airflow_m_s;
-    /** Share of the weather's rain that reaches the glass: 0 in a tunnel. Range [0, 1], default 1. */
+    /**
+     * Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. The boxes of
+     * wk_context_set_shelters keep rain off by themselves, as wk_context_get_rain_on_at says for the pane's middle, but for the
+     * vehicle's own: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+     */
     double exposed;
     /** Mist on the inside. Range [0, 1], default 0. */
     double fogging;

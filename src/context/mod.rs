@@ -27,6 +27,7 @@ use glam::DVec3;
 pub use ground::{GroundAt, GroundModel};
 pub use lights::Light;
 pub use queries::{Between, LightAt};
+pub(crate) use rain::PaneAt;
 pub use rain::{RainAt, RainOn, RainSurface};
 pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;

@@ -8,7 +8,7 @@ use crate::{
     rain::{
         drops::factor_in,
         ice::StoneSizes,
-        shelter::sheltered,
+        shelter::{Shelter, sheltered},
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
 };
@@ -48,6 +48,9 @@ pub struct RainAt {
 /// How far before a surface a drop is asked for the box that kept it off, m.
 const BEFORE_M: f64 = 0.05;
 
+/// How far a vehicle reaches before its windscreen at most, m.
+const VEHICLE_M: f64 = 3.0;
+
 /// A surface that rain may land on, or a window that it may come through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSurface {
@@ -59,6 +62,25 @@ pub struct RainSurface {
     pub velocity_m_s: DVec3,
     /// Its size, m^2, \[0, 1e6\].
     pub area_m2: f64,
+}
+
+/// A pane of glass and the eye behind it, in the host's world.
+pub(crate) struct PaneAt {
+    pub eye: DVec3,
+    pub middle: DVec3,
+    /// Outwards, unit.
+    pub out: DVec3,
+    /// Of the air against the glass, m/s.
+    pub air_m_s: DVec3,
+}
+
+impl PaneAt {
+    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a tunnel goes on.
+    fn sits_in(&self, shelter: &Shelter) -> bool {
+        let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
+        // What both ways of a line from a point meet has the point in it: it is convex.
+        met(self.eye, self.out) && met(self.eye, -self.out) && !met(self.middle + self.out * VEHICLE_M, self.out)
+    }
 }
 
 /// What lands on a surface.
@@ -158,5 +180,21 @@ impl Context {
             ice_mm_h: ice.rate_mm_h,
             stones_per_s: ice.drops_per_m2_s * surface.area_m2,
         })
+    }
+
+    /// Share of the water of `sizes` that boxes let through to a pane now, as [`Context::rain_on`] asks for its middle. The
+    /// vehicle's own box is not asked.
+    pub(crate) fn share_on_pane(&self, sizes: &DropSizes, pane: &PaneAt) -> f64 {
+        let to_enu = self.desc.world.frame_at(pane.middle).world_to_enu;
+        let (normal, air) = (to_enu * pane.out, to_enu * pane.air_m_s);
+        let known_s = self.time_s.max(self.timeline.known_from_s());
+        let wind = self.wind.blowing(&self.timeline, self.drifted, known_s).velocity_m_s().extend(0.0);
+        let before = pane.middle + pane.out * BEFORE_M;
+        let comes = |falls_m_s: f64| {
+            let velocity = to_enu.transpose() * (wind - DVec3::Z * falls_m_s);
+            !self.shelters.iter().any(|b| sheltered(b, before, velocity) && !pane.sits_in(b))
+        };
+        let whole = sizes.on_surface_of(normal, air, |_| true).rate_mm_h;
+        if whole > 0.0 { sizes.on_surface_of(normal, air, comes).rate_mm_h / whole } else { 1.0 }
     }
 }

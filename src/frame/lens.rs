@@ -9,9 +9,10 @@ use super::{
     uniform::is_float,
 };
 use crate::{
-    context::{Context, Scene},
+    context::{Context, PaneAt, Scene},
     error::{Error, Result},
-    glass::{Glass, GlassReport, LensFrame, Moment, Windscreen, reference::Cells},
+    glass::{Glass, GlassReport, LensFrame, Moment, Plane, Windscreen, reference::Cells},
+    rain::{drops::factor_in, sizes::DropSizes},
 };
 
 impl View {
@@ -74,13 +75,30 @@ impl View {
         to: &mut Recording<'_>,
     ) -> Result<()> {
         let Some(glass) = &mut self.glass else { return Ok(()) };
+        let weather = |t: f64| context.with_areas(frame.camera.position, t, context.known_weather(t));
+        let (eye, to_world) = (frame.camera.position, frame.camera.rotation().transpose());
+        let share = |plane: &Plane, screen: &Windscreen| {
+            if context.shelters().is_empty() {
+                return 1.0;
+            }
+            let now = weather(context.time_s());
+            let sizes = DropSizes::new(&now.precipitation, factor_in(&now.air, scene.place.altitude_m));
+            let pane = PaneAt {
+                eye,
+                middle: eye + to_world * plane.middle(),
+                out: to_world * plane.out,
+                air_m_s: to_world * -screen.velocity_m_s,
+            };
+            context.share_on_pane(&sizes, &pane)
+        };
         let moment = Moment {
             time_s: context.time_s(),
             seed: context.seed(),
             camera: &frame.camera,
             up: scene.world_to_enu.transpose().z_axis,
             altitude_m: scene.place.altitude_m,
-            weather: &|t| context.with_areas(frame.camera.position, t, context.known_weather(t)),
+            weather: &weather,
+            share: &share,
             cut: frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0)),
         };
         let (device, encoder) = (&self.device, &mut *to.encoder);

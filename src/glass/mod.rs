@@ -99,7 +99,9 @@ pub struct Windscreen {
     pub velocity_m_s: DVec3,
     /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel.
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel that Welkin is not told of. What the context's
+    /// boxes keep off the pane's middle ([`crate::context::Context::set_shelters`]) is taken off besides; a box that holds the
+    /// camera and ends within 3 m before the glass is the vehicle's own and keeps nothing off.
     pub exposed: f64,
     /// Mist on the inside, [0, 1].
     pub fogging: f64,

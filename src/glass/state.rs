@@ -30,6 +30,8 @@ pub(crate) struct Moment<'a> {
     pub altitude_m: f64,
     /// The weather at a time.
     pub weather: &'a dyn Fn(f64) -> Conditions,
+    /// Share of the rain that what stands about lets through to the glass now.
+    pub share: &'a dyn Fn(&Plane, &Windscreen) -> f64,
     /// Nothing of earlier frames may show.
     pub cut: bool,
 }
@@ -72,14 +74,14 @@ fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
-fn acting(screen: &Windscreen, plane: &Plane, moment: &Moment<'_>, weather: &Conditions) -> Acting {
+fn acting(screen: &Windscreen, (plane, share): (&Plane, f64), moment: &Moment<'_>, weather: &Conditions) -> Acting {
     let up = moment.camera.rotation() * moment.up;
     // Steps of 50 m: a road's ups and downs must not cost new tables.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
     Acting {
         cell_m: plane.lattice().0,
         rain: DropSizes::new(&weather.precipitation, factor_in(&weather.air, level)),
-        exposed: screen.exposed,
+        exposed: screen.exposed * share,
         up: plane.out.dot(up),
         approach_m_s: plane.out.dot(screen.velocity_m_s),
         airflow_m_s: screen.airflow_m_s,
@@ -144,7 +146,8 @@ impl Glass {
         let now = step_at(moment.time_s);
         let before = self.last.filter(|_| !moment.cut);
         let from = self.step.filter(|s| !moment.cut && *s <= now && now - s <= MAX_STEPS);
-        let present = acting(&self.screen, &plane, moment, &(moment.weather)(moment.time_s));
+        let reached = (&plane, (moment.share)(&plane, &self.screen));
+        let present = acting(&self.screen, reached, moment, &(moment.weather)(moment.time_s));
         self.acting = Some(present);
         let Some(from) = from else {
             self.begin(device, kit, moment, &present, (now, size));
@@ -154,7 +157,7 @@ impl Glass {
         for step in from + 1..=now {
             let time_s = step as f64 / STEPS_PER_S;
             let screen = self.between(before, moment.time_s, time_s);
-            let mut acts = acting(&screen, &plane, moment, &(moment.weather)(time_s));
+            let mut acts = acting(&screen, reached, moment, &(moment.weather)(time_s));
             acts.cell_m = cell_m;
             self.one(device, kit, (&acts, &screen), moment.seed, (step, size), before, moment.time_s);
         }

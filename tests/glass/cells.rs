@@ -1,6 +1,6 @@
 //! The cells: the same bits as their twin, at any frame rate, on any view; arrivals as the flux has them.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use welkin::{
     context::RainSurface,
     frame::{FrameFlags, Stages},
@@ -10,7 +10,7 @@ use welkin::{
         step::{Acting, Tables, VOLUME_UNIT_M3},
     },
     gpu::{Device, DeviceOptions},
-    rain::{drops::factor_in, sizes::DropSizes},
+    rain::{Planes, Shelter, drops::factor_in, sizes::DropSizes},
 };
 
 use crate::host::{Host, upright};
@@ -49,6 +49,11 @@ fn wiper(position: f64) -> WiperArm {
     }
 }
 
+/// Another, to the left of it: their sectors overlap.
+fn other_wiper(position: f64) -> WiperArm {
+    WiperArm { pivot_m: [0.08, -0.04], length_m: 0.2, parked_deg: 150.0, far_deg: 15.0, ..wiper(position) }
+}
+
 #[test]
 fn the_gpu_has_the_bits_of_the_twin() {
     for backends in [DeviceOptions::default().backends, wgpu::Backends::GL] {
@@ -71,11 +76,11 @@ fn has_the_bits_of_the_twin(mut host: Host) {
     let (mut position, mut ran) = (0.0, false);
     for step in 3001..3120 {
         let next = if step < 3080 { 0.0 } else { f64::from(step - 3080) * 0.02 };
-        let arm = (step >= 3060).then(|| wiper(next));
-        host.view.set_windscreen(Some(&Windscreen { arms: [arm, None], ..screen })).unwrap();
+        let arms = [(step >= 3060).then(|| wiper(next)), (step >= 3070).then(|| other_wiper(next))];
+        host.view.set_windscreen(Some(&Windscreen { arms, ..screen })).unwrap();
         host.at(f64::from(step) / 60.0, Stages::PREPARE, FrameFlags(0)).unwrap();
-        let angle = |p: f64| (20.0 + 140.0 * p).to_radians();
-        let arms = [arm.map(|a| (a, [angle(position), angle(next)])), None];
+        let angle = |a: &WiperArm, p: f64| (a.parked_deg + (a.far_deg - a.parked_deg) * p).to_radians();
+        let arms = arms.map(|arm| arm.map(|a| (a, [angle(&a, position), angle(&a, next)])));
         twin = twin.stepped(&tables.at(&acts, 7, step.into(), [100, 60], &arms));
         position = next;
         ran = ran || twin.cells.iter().any(|c| c[2] & 0xffff > 0);
@@ -175,15 +180,18 @@ fn a_cut_and_no_history_show_the_declared_state() {
     assert!(glass(&host) == glass(&other));
 }
 
-/// Water inside the sector that the blade has passed, in the middle of its reach.
+/// Water inside the sector that a blade has passed, in the middle of its reach.
 fn in_sector(cells: &Cells, from_deg: f64, to_deg: f64) -> (u64, usize) {
-    let arm = wiper(0.0);
+    in_sector_of(&wiper(0.0), cells, from_deg, to_deg)
+}
+
+fn in_sector_of(arm: &WiperArm, cells: &Cells, from_deg: f64, to_deg: f64) -> (u64, usize) {
     let (mut water, mut count) = (0, 0);
     for (i, cell) in cells.cells.iter().enumerate() {
         let [x, y] = [i as u32 % cells.size[0], i as u32 / cells.size[0]].map(|n| (f64::from(n) + 0.5) * 0.004);
         let d = DVec2::new(x - arm.pivot_m[0], y - arm.pivot_m[1]);
         let angle = d.to_angle().to_degrees();
-        if (0.1..0.25).contains(&d.length()) && (from_deg..to_deg).contains(&angle) {
+        if (0.1..arm.length_m - 0.03).contains(&d.length()) && (from_deg..to_deg).contains(&angle) {
             water += u64::from(cell[0]);
             count += 1;
         }
@@ -216,6 +224,77 @@ fn a_blade_clears_what_it_passes_and_beads_come_back() {
     assert!(back > 4 * after, "{back} after {after}");
     let later = host.view.windscreen_report().unwrap().unwrap();
     assert!(later.covered > report.covered && later.drops_per_s > 100.0);
+}
+
+#[test]
+fn two_blades_clear_both_their_sectors() {
+    let mut host = Host::new(FORMAT, SMALL, 60.0);
+    let arm = |x, position| WiperArm { pivot_m: [x, -0.04], length_m: 0.2, ..wiper(position) };
+    let screen = |p| Windscreen { arms: [Some(arm(0.08, p)), Some(arm(0.32, p))], ..upright() };
+    host.view.set_windscreen(Some(&screen(0.0))).unwrap();
+    host.at(30.0, Stages::PREPARE, FrameFlags(0)).unwrap();
+    let sectors = |cells: &Cells| {
+        // What only one of them reaches, and the rest.
+        let own = [(0.08, 95.0, 155.0), (0.32, 25.0, 85.0)].map(|(x, a, b)| in_sector_of(&arm(x, 0.0), cells, a, b).0);
+        (own, cells.water() - own[0] - own[1])
+    };
+    let (before, rest_before) = sectors(&glass(&host));
+    for i in 1..=10 {
+        host.view.set_windscreen(Some(&screen(f64::from(i) / 10.0))).unwrap();
+        host.at(30.0 + f64::from(i) / 20.0, Stages::PREPARE, FrameFlags(0)).unwrap();
+    }
+    let (after, rest_after) = sectors(&glass(&host));
+    for (after, before) in after.iter().zip(&before) {
+        assert!(*before > 0 && (*after as f64) < 0.3 * *before as f64, "{after} of {before}");
+    }
+    assert!(rest_after > rest_before / 5, "and not what lies beyond: {rest_after} of {rest_before}");
+}
+
+/// A box over the host's camera, 3 m up, or round it.
+fn shelter(center_m: DVec3, half_size_m: DVec3) -> Shelter {
+    Shelter { center_m, axes: DMat3::IDENTITY, half_size_m, velocity_m_s: DVec3::ZERO, planes: Planes::NONE }
+}
+
+#[test]
+fn under_a_box_no_drops_land_and_the_own_cab_is_no_box() {
+    let run = |shelters: &[Shelter]| {
+        let mut host = Host::new(FORMAT, SMALL, 60.0);
+        host.context.set_shelters(shelters).unwrap();
+        host.view.set_windscreen(Some(&upright())).unwrap();
+        host.at(30.0, Stages::PREPARE, FrameFlags(0)).unwrap();
+        host.run(30.0, 31.0, 20.0);
+        let report = host.view.windscreen_report().unwrap().unwrap();
+        (report, host.view.windscreen_cells().unwrap())
+    };
+    let (open, wet) = run(&[]);
+    assert!(open.drops_per_s > 100.0 && wet.is_some());
+    // A roof, and a tunnel that is one box.
+    let deck = shelter(DVec3::new(0.0, 0.0, 8.0), DVec3::new(30.0, 30.0, 0.5));
+    let tunnel = shelter(DVec3::new(0.0, 0.0, 3.0), DVec3::new(5.0, 80.0, 3.0));
+    for shelters in [deck, tunnel] {
+        let (report, cells) = run(&[shelters]);
+        assert!(report.drops_per_s == 0.0 && report.water_m3 == 0.0 && cells.is_none(), "{report:?}");
+    }
+    // The glass lies on the box's face, or within it; a box behind keeps nothing off.
+    let face = shelter(DVec3::new(0.0, -0.7, 2.5), DVec3::new(1.0, 1.0, 1.5));
+    let car = shelter(DVec3::new(0.0, 0.0, 2.5), DVec3::new(1.0, 2.2, 1.5));
+    let behind = shelter(DVec3::new(0.0, -40.0, 8.0), DVec3::new(30.0, 30.0, 0.5));
+    for shelters in [face, car, behind] {
+        let (report, cells) = run(&[shelters]);
+        assert!(report == open && cells == wet, "{report:?}");
+    }
+    // Driven out from under a roof, the glass gets wet; back under it, no more drops land.
+    let mut host = Host::new(FORMAT, SMALL, 60.0);
+    host.view.set_windscreen(Some(&upright())).unwrap();
+    let mut hits = [0; 3];
+    for (i, roof) in [true, false, true].into_iter().enumerate() {
+        host.context.set_shelters(roof.then_some(&deck)).unwrap();
+        let from_s = 30.0 + i as f64;
+        host.at(from_s, Stages::PREPARE, FrameFlags(0)).unwrap();
+        host.run(from_s, from_s + 0.95, 20.0);
+        hits[i] = host.view.windscreen_cells().unwrap().map_or(0, |c| c.water());
+    }
+    assert!(hits[0] == 0 && hits[1] > 0 && hits[2] < hits[1] + hits[1] / 10, "{hits:?}");
 }
 
 #[test]
