@@ -218,8 +218,8 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
     let mut view = View::new(&context)?;
     if let Some(windscreen) = shot.windscreen {
-        // Rain has fallen on it for 20 s.
-        for i in 0..=400u32 {
+        // Rain has fallen on it for 50 s.
+        for i in 0..=1000u32 {
             let time_s = f64::from(i) / 20.0;
             view.set_windscreen(Some(&windscreen(time_s)))?;
             context.update(time_s)?;

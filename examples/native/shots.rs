@@ -34,22 +34,17 @@ pub struct Shot {
     pub windscreen: Option<fn(f64) -> Windscreen>,
 }
 
-/// A cab's upright window, 0.3 m away, met by rain at 8 m/s.
-fn cab(arm: Option<WiperArm>) -> Windscreen {
-    Windscreen {
-        pane: Pane::WholeView(0.3),
-        velocity_m_s: DVec3::new(0.0, 0.0, -8.0),
-        arms: [arm, None],
-        ..Windscreen::default()
-    }
+/// A cab's upright window, 0.25 m away, met by rain at 12 m/s.
+fn cab(arms: [Option<WiperArm>; 2]) -> Windscreen {
+    Windscreen { pane: Pane::WholeView(0.25), velocity_m_s: DVec3::new(0.0, 0.0, -12.0), arms, ..Windscreen::default() }
 }
 
-/// A wiper that goes to and fro in 1.5 s.
-fn wiper(time_s: f64) -> WiperArm {
+/// A wiper `along` the lower edge that goes to and fro in 1.5 s.
+fn wiper(along_m: f64, time_s: f64) -> WiperArm {
     WiperArm {
-        pivot_m: [0.25, -0.03],
-        length_m: 0.3,
-        inner_radius_m: 0.07,
+        pivot_m: [along_m, -0.02],
+        length_m: 0.2,
+        inner_radius_m: 0.05,
         parked_deg: 15.0,
         far_deg: 165.0,
         position: 0.5 - 0.5 * (time_s * std::f64::consts::TAU / 1.5).cos(),
@@ -58,13 +53,21 @@ fn wiper(time_s: f64) -> WiperArm {
 }
 
 fn steady_rain(context: &mut Context, ground: f64) -> welkin::Result<()> {
+    rain(context, ground, 6.0)
+}
+
+fn heavy_rain(context: &mut Context, ground: f64) -> welkin::Result<()> {
+    rain(context, ground, 25.0)
+}
+
+fn rain(context: &mut Context, ground: f64, rate_mm_h: f64) -> welkin::Result<()> {
     sun(context, 70.0, 35.0)?;
     let weather = Weather {
         visibility_m: 4000.0,
         relative_humidity: 0.95,
         station_altitude_m: ground,
         clouds: vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 400.0)],
-        precipitation: Precipitation::of(PrecipitationKind::Rain, 6.0),
+        precipitation: Precipitation::of(PrecipitationKind::Rain, rate_mm_h),
         ..Weather::default()
     };
     context.set_weather(&weather, 0.0, 0.0)
@@ -323,16 +326,16 @@ pub fn shots() -> Vec<Shot> {
         },
         Shot {
             name: "windscreen",
-            caption: "Through the windscreen, steady rain",
-            weather: steady_rain,
-            windscreen: Some(|_| cab(None)),
+            caption: "Through the windscreen, heavy rain",
+            weather: heavy_rain,
+            windscreen: Some(|_| cab([None; 2])),
             ..GROUND
         },
         Shot {
             name: "wiped",
-            caption: "The same with the wiper going",
-            weather: steady_rain,
-            windscreen: Some(|time_s| cab(Some(wiper(time_s)))),
+            caption: "The same with two wipers going",
+            weather: heavy_rain,
+            windscreen: Some(|time_s| cab([0.1, 0.32].map(|along_m| Some(wiper(along_m, time_s))))),
             ..GROUND
         },
         Shot {

@@ -82,7 +82,7 @@ fn run(cell: vec2i, here: vec4u, law: vec4i, flags: u32) -> vec4u {
     let random = cell_hash(cell, step.key.x);
     var left = 0u;
     if (to.x != 0 || to.y != 0) && (random & 15u) < 10u {
-        left = here.x >> (3u + ((random >> 4u) & 3u));
+        left = here.x >> (5u + ((random >> 4u) & 3u));
     }
     let speed = u32(max(1, (abs(held.x) + abs(held.y)) >> 1u));
     let where_to = u32((to.y + 1) * 3 + to.x + 1);

@@ -187,7 +187,7 @@ impl Cells {
         let to = reached.map(|v| v >> 16);
         let random = cell_hash(cell, step.key[0]);
         let leaves = to != [0, 0] && random & 15 < 10;
-        let left = if leaves { here[0] >> (3 + ((random >> 4) & 3)) } else { 0 };
+        let left = if leaves { here[0] >> (5 + ((random >> 4) & 3)) } else { 0 };
         let speed = ((held[0].abs() + held[1].abs()) >> 1).max(1) as u32;
         let where_to = ((to[1] + 1) * 3 + to[0] + 1) as u32;
         let there = (reached[0] & 0xffff) as u32 | (((reached[1] & 0xffff) as u32) << 16);
