@@ -6,6 +6,7 @@ use welkin::{
     frame::{FrameFlags, Stages},
     glass::{
         Pane, Windscreen, WiperArm,
+        laws::volume_factor,
         reference::Cells,
         step::{Acting, Tables, VOLUME_UNIT_M3},
     },
@@ -248,6 +249,35 @@ fn two_blades_clear_both_their_sectors() {
         assert!(*before > 0 && (*after as f64) < 0.3 * *before as f64, "{after} of {before}");
     }
     assert!(rest_after > rest_before / 5, "and not what lies beyond: {rest_after} of {rest_before}");
+}
+
+#[test]
+fn a_bead_beyond_the_critical_size_runs_and_leaves_a_lane_with_gaps() {
+    let acts = Acting { exposed: 0.0, relative_humidity: 1.0, ..acting(20.0) };
+    let (mut tables, size) = (Tables::default(), [40, 60]);
+    let volume = |r: f64| (volume_factor() * r.powi(3) / VOLUME_UNIT_M3) as u32;
+    let run = |r: f64, tables: &mut Tables| {
+        // Small beads that touch no other, one a cell, and one that is larger.
+        let mut cells = Cells::dry(size);
+        cells.cells.fill([volume(8e-4), 0x8000_8000, 0, 1]);
+        cells.cells[55 * 40 + 20][0] = volume(r);
+        for step in 0..120 {
+            cells = cells.stepped(&tables.at(&acts, 3, step, size, &[None; 2]));
+        }
+        cells
+    };
+    let resting = run(2e-3, &mut tables);
+    assert!(resting.cells[55 * 40 + 20][0] == volume(2e-3) && resting.cells.iter().all(|c| c[3] & 4095 == 1), "rests");
+    let cells = run(3.4e-3, &mut tables);
+    let lane: Vec<usize> = (0..cells.cells.len()).filter(|i| cells.cells[*i][3] & 4095 == 0).collect();
+    let lowest = lane.iter().map(|i| i / 40).min().unwrap();
+    assert!(lowest < 35, "it ran from row 55 to row {lowest}");
+    // Above where it is now.
+    let behind: Vec<u32> = lane.iter().filter(|i| *i / 40 > lowest + 2).map(|i| cells.cells[*i][0]).collect();
+    let mean = behind.iter().map(|v| f64::from(*v)).sum::<f64>() / behind.len() as f64;
+    assert!(behind.len() > 15 && mean < 2.0 * f64::from(volume(8e-4)), "{} cells, {mean} units", behind.len());
+    let clear = behind.iter().filter(|v| **v == 0).count();
+    assert!(clear > behind.len() / 5, "{clear} clear ones of {}", behind.len());
 }
 
 /// A box over the host's camera, 3 m up, or round it.
