@@ -14,8 +14,8 @@ use crate::{scene::ViewRays, sky::spectral::luminance};
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;
 /// What cones miss of the contrast of streaks: their error in the lab's chart over that of a veil without any
-/// (docs/lab/rain.csv, .51 % of 1.63 %).
-const CONES_MISS: f64 = 0.31;
+/// (docs/lab/rain.csv: .49 % of 1.73 %), rounded up.
+const CONES_MISS: f64 = 0.3;
 
 /// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span an angle
 /// (rad) and before which drops move `along_m` across the line of sight during the exposure.
