@@ -120,13 +120,32 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     return light / frame.exposure;
 }
 
-// Share of the rain's water that gets to a surface past what keeps it off; `boxes`: past boxes too.
-fn rained_on(at: vec3f, normal: vec3f, range: f32, boxes: bool) -> f32 {
-    // As far off the surface as depth may be wrong.
-    let p = at + normal * (0.02 + 0.002 * range);
+// Least side of the cells of the ground whose rain is tried by the same drops, m.
+const TRIED_CELL: f32 = 0.05;
+
+// A number of [0, 1) that belongs to a place of the world: evenly spread among neighbours by the generalised golden ratio (Roberts
+// 2018). `place`: along the pattern's axes; `side`: of what lies together.
+fn tried_at(place: vec3f, side: f32) -> f32 {
+    let camera = vec3f(vec2f(ground.cell) * RING_CELL + vec2f(ground.place_u, ground.place_v), ground.place_w);
+    let cell = vec3u(vec3i(floor((camera + place) / side)));
+    let turn = cell * vec3u(3518319155u, 2882110345u, 2360945575u);
+    return f32((turn.x + turn.y + turn.z) >> 8u) / 16777216.0;
+}
+
+// Where something stands off a surface, as far as depth may be wrong.
+fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
+    return at + normal * (0.02 + 0.002 * range);
+}
+
+// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. One drop of each third of the
+// water is asked for, another one in each cell: from few to all of them the ground gets wet smoothly.
+fn rained_on(p: vec3f, tried: f32, boxes: bool) -> f32 {
     var share = 0.0;
     for (var i = 0u; i < 3u; i++) {
-        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, ground.falls[i]), boxes));
+        let twelfth = clamp(4.0 * (f32(i) + tried) - 0.5, 0.0, 11.0);
+        let low = min(u32(twelfth), 10u);
+        let fall = mix(ground.falls[low / 4u][low % 4u], ground.falls[(low + 1u) / 4u][(low + 1u) % 4u], twelfth - f32(low));
+        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, fall), boxes, true));
     }
     return share;
 }
@@ -160,7 +179,10 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     var gets = 1.0;
     if SHELTER {
         // What falls past boxes the terrain's cells know.
-        gets = rained_on(at, facing.normal, range, here.share < 0.5 || ground.glaze > 0.0);
+        let cells = exp2(ceil(max(log2(side * inverseSqrt(cosine) / TRIED_CELL), 0.0)));
+        let axis_w = cross(ground.axis_u, ground.axis_v);
+        let tried = tried_at(vec3f(place, dot(axis_w, at)), TRIED_CELL * cells);
+        gets = rained_on(off_surface(at, facing.normal, range), tried, here.share < 0.5 || ground.glaze > 0.0);
     }
     let bare = facing.sure * (1.0 - plants(albedo));
     let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
@@ -197,7 +219,14 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let thin_share = thin.share * cover * (1.0 - pool);
     let deep_share = deep.share * pool;
     let both = max(thin_share + deep_share, 1e-6);
-    let sky = mirrored_light(normalize(thin.direction * (thin_share / both) + deep.direction * (deep_share / both)));
+    let mirrored = normalize(thin.direction * (thin_share / both) + deep.direction * (deep_share / both));
+    var sky = mirrored_light(mirrored);
+    if SHELTER {
+        // What keeps rain off hides the sky too: its underside is as bright as the ground that it sees.
+        let shines = thin_share + deep_share > 1e-3;
+        let hidden = sheltered_ground(off_surface(at, facing.normal, range), -mirrored, shines, shines);
+        sky = select(sky, min(sky, ground.ground_light), hidden);
+    }
     let lamps = (thin.lamp + mirrored_lamps(film, at, to_eye)) * (cover * (1.0 - pool))
         + (deep.lamp + mirrored_lamps(water, at, to_eye)) * pool;
     let through = mix(wet, below * ((1.0 - deep.share) / (1.0 - WATER_OUTSIDE)), pool);

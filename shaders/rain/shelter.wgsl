@@ -71,15 +71,16 @@ fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return false;
 }
 
-// Likewise for ground, which remembers: what only passes by does not keep it dry. `boxes`: whether these are asked at all.
-fn sheltered_ground(p: vec3f, velocity: vec3f, boxes: bool) -> bool {
+// Likewise for ground, which remembers: what only passes by does not keep it dry. `boxes`, `maps`: whether
+// these are asked at all.
+fn sheltered_ground(p: vec3f, velocity: vec3f, boxes: bool, maps: bool) -> bool {
     for (var i = select(MAX_SHELTERS, 0u, boxes); i < shelters.count; i++) {
         if shelters.boxes[i].velocity.w == 0.0 && meets(i, p, velocity) {
             return true;
         }
     }
     if MAPS {
-        for (var i = 0u; i < occluders.count; i++) {
+        for (var i = select(MAX_MAPS, 0u, maps); i < occluders.count; i++) {
             if occluders.maps[i].velocity.w == 0.0 && crosses(i, p, velocity) {
                 return true;
             }

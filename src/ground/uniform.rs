@@ -11,7 +11,10 @@ use super::{
 };
 use crate::{
     context::Scene,
-    rain::{drops::factor_in, sizes::DropSizes},
+    rain::{
+        drops::factor_in,
+        sizes::{DropSizes, SMALLEST_MM, Weight},
+    },
     weather::SurfaceCover,
 };
 
@@ -63,9 +66,8 @@ pub(crate) struct GroundUniform {
     pub disc2: f32,
     pub glaze: f32,
     pub wind: [f32; 3],
-    pub pad1: f32,
-    pub falls: [f32; 3],
-    pub pad2: f32,
+    pub place_w: f32,
+    pub falls: [[f32; 4]; 3],
     pub terrain_x: [f32; 4],
     pub terrain_y: [f32; 4],
     pub terrain_z: [f32; 4],
@@ -129,14 +131,17 @@ fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { 1e3 } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
-/// Speeds of the drops in the middle of each third of the water that falls; without rain, those of steady rain.
-fn falls_m_s(scene: &Scene) -> [f64; 3] {
+/// Speeds of the drops in the middle of each twelfth of the water that falls; without rain, those of steady rain.
+fn falls_m_s(scene: &Scene) -> [[f32; 4]; 3] {
     let c = &scene.conditions;
     let mut falling = c.precipitation;
     if falling.rain_mm_h + falling.drizzle_mm_h <= 0.0 {
         falling.rain_mm_h = 3.0;
     }
-    DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m)).thirds_m_s()
+    let sizes = DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m));
+    let middles = std::array::from_fn::<f64, 12, _>(|i| (i as f64 + 0.5) / 12.0);
+    let speeds = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| sizes.speed_m_s(d) as f32);
+    std::array::from_fn(|i| std::array::from_fn(|k| speeds[4 * i + k]))
 }
 
 impl Seen<'_> {
@@ -189,9 +194,8 @@ impl Seen<'_> {
             disc2: (lamp.angular_radius / 4.0).powi(2) as f32,
             glaze: self.glaze as f32,
             wind: self.wind_m_s.map_or([0.0; 3], |w| w.as_vec3().to_array()),
-            pad1: 0.0,
-            falls: self.wind_m_s.map_or([0.0; 3], |_| falls_m_s(scene).map(|v| v as f32)),
-            pad2: 0.0,
+            place_w: axes[0].cross(axes[1]).dot(self.position).rem_euclid(PERIOD_M) as f32,
+            falls: self.wind_m_s.map_or([[0.0; 4]; 3], |_| falls_m_s(scene)),
             terrain_x: rows[0],
             terrain_y: rows[1],
             terrain_z: rows[2],
@@ -254,7 +258,7 @@ mod tests {
             axis_u
         );
         same!(place_u, axis_v, place_v, cell, slot, slot_share, film_slope, water_slope, ring_chance, most, pixel);
-        same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, wind, falls, waves);
+        same!(depth_step, depth_ulp, curvature, ring_slope2, disc2, wind, place_w, falls, waves);
         same!(glaze, terrain_x, terrain_y, terrain_z, terrain_last, terrain_rim, terrain_near);
     }
 
