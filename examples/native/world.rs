@@ -92,8 +92,8 @@ fn cuboid(foot: Vec3, size: Vec3, albedo: Vec3, out: &mut Vec<Vertex>) {
 /// A bridge that goes along the road and over it: feet of its boxes over the ground at `eye`, and their sizes; the
 /// deck comes first.
 pub fn bridge() -> Vec<(Vec3, Vec3)> {
-    let mut boxes = vec![(Vec3::new(-5.0, 30.0, 5.4), Vec3::new(16.4, 130.0, 0.9))];
-    boxes.extend((0..6).map(|i| (Vec3::new(-5.5, 8.0 + 18.0 * i as f32, -1.0), Vec3::new(1.4, 1.6, 6.4))));
+    let mut boxes = vec![(Vec3::new(-2.0, 30.0, 5.4), Vec3::new(16.4, 130.0, 0.9))];
+    boxes.extend((0..6).map(|i| (Vec3::new(-5.0, 8.0 + 18.0 * i as f32, -1.0), Vec3::new(1.4, 1.6, 6.4))));
     boxes
 }
 

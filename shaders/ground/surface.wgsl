@@ -121,15 +121,14 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
 }
 
 // Least side of the cells of the ground whose rain is tried by the same drops, m.
-const TRIED_CELL: f32 = 0.05;
+const TRIED_CELL: f32 = 0.01;
 
-// A number of [0, 1) that belongs to a place of the world: evenly spread among neighbours by the generalised golden ratio (Roberts
-// 2018). `place`: along the pattern's axes; `side`: of what lies together.
+// A number by chance of [0, 1) that belongs to a place of the world. `place`: along the pattern's axes; `side`: of what lies
+// together.
 fn tried_at(place: vec3f, side: f32) -> f32 {
     let camera = vec3f(vec2f(ground.cell) * RING_CELL + vec2f(ground.place_u, ground.place_v), ground.place_w);
     let cell = vec3u(vec3i(floor((camera + place) / side)));
-    let turn = cell * vec3u(3518319155u, 2882110345u, 2360945575u);
-    return f32((turn.x + turn.y + turn.z) >> 8u) / 16777216.0;
+    return ring_chances(cell.xy, cell.z).x;
 }
 
 // Where something stands off a surface, as far as depth may be wrong.
@@ -137,15 +136,23 @@ fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
     return at + normal * (0.02 + 0.002 * range);
 }
 
-// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. One drop of each third of the
-// water is asked for, another one in each cell: from few to all of them the ground gets wet smoothly.
+// Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall speed goes
+// evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says which of all twelfths
+// of the water come by. A map says yes or no, for one drop of each third of the water, another one in each cell.
 fn rained_on(p: vec3f, tried: f32, boxes: bool) -> f32 {
+    let falls = ground.falls;
+    let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
+    var slow = asked.x * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, asked.x), boxes);
     var share = 0.0;
     for (var i = 0u; i < 3u; i++) {
-        let twelfth = clamp(4.0 * (f32(i) + tried) - 0.5, 0.0, 11.0);
-        let low = min(u32(twelfth), 10u);
-        let fall = mix(ground.falls[low / 4u][low % 4u], ground.falls[(low + 1u) / 4u][(low + 1u) % 4u], twelfth - f32(low));
-        share += select(0.33333333, 0.0, sheltered_ground(p, ground.wind - vec3f(0.0, 0.0, fall), boxes, true));
+        let fall = asked[i + 1u];
+        let fast = fall * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, fall), boxes);
+        let within = mix(vec4f(slow), vec4f(fast), (falls[i] - asked[i]) / (fall - asked[i]));
+        let free = clamp(0.5 - within / max(0.25 * abs(fast - slow), 1e-6), vec4f(0.0), vec4f(1.0));
+        let drop = falls[i][min(u32(4.0 * tried), 3u)];
+        let mapped = mapped_ground(p, ground.wind - vec3f(0.0, 0.0, drop), true);
+        share += select(dot(free, vec4f(0.25)) / 3.0, 0.0, mapped);
+        slow = fast;
     }
     return share;
 }
@@ -224,7 +231,8 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     if SHELTER {
         // What keeps rain off hides the sky too: its underside is as bright as the ground that it sees.
         let shines = thin_share + deep_share > 1e-3;
-        let hidden = sheltered_ground(off_surface(at, facing.normal, range), -mirrored, shines, shines);
+        let p = off_surface(at, facing.normal, range);
+        let hidden = time_in_standing(p, -mirrored, shines) >= 0.0 || mapped_ground(p, -mirrored, shines);
         sky = select(sky, min(sky, ground.ground_light), hidden);
     }
     let lamps = (thin.lamp + mirrored_lamps(film, at, to_eye)) * (cover * (1.0 - pool))

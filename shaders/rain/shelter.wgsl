@@ -24,8 +24,9 @@ struct Shelters {
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// Whether what came to `p` with `velocity` met box `i`, or what planes leave of it.
-fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
+// For how long what came to `p` with `velocity` was in box `i`, or in what planes leave of it, s; below 0: it has not been, and how
+// far it was from it.
+fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     let back = shelters.boxes[i].velocity.xyz - velocity;
     let rows = shelters.boxes[i].rows;
     let o = vec3f(dot(rows[0].xyz, p), dot(rows[1].xyz, p), dot(rows[2].xyz, p)) + vec3f(rows[0].w, rows[1].w, rows[2].w);
@@ -42,7 +43,11 @@ fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
         near = select(near, max(near, at), rate <= -1e-9);
         far = select(min(far, at), far, rate <= -1e-9);
     }
-    return far >= near;
+    return far - near;
+}
+
+fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
+    return time_within(i, p, velocity) >= 0.0;
 }
 
 // Whether there is anything near the camera that rain does not pass.
@@ -71,20 +76,25 @@ fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return false;
 }
 
-// Likewise for ground, which remembers: what only passes by does not keep it dry. `boxes`, `maps`: whether
-// these are asked at all.
-fn sheltered_ground(p: vec3f, velocity: vec3f, boxes: bool, maps: bool) -> bool {
-    for (var i = select(MAX_SHELTERS, 0u, boxes); i < shelters.count; i++) {
-        if shelters.boxes[i].velocity.w == 0.0 && meets(i, p, velocity) {
-            return true;
-        }
-    }
+// Likewise for ground, which remembers: what only passes by does not keep it dry.
+fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     if MAPS {
-        for (var i = select(MAX_MAPS, 0u, maps); i < occluders.count; i++) {
+        for (var i = select(MAX_MAPS, 0u, wanted); i < occluders.count; i++) {
             if occluders.maps[i].velocity.w == 0.0 && crosses(i, p, velocity) {
                 return true;
             }
         }
     }
     return false;
+}
+
+// Longest time that what came to `p` was in a box that stands, as `time_within` has it.
+fn time_in_standing(p: vec3f, velocity: vec3f, wanted: bool) -> f32 {
+    var time = -1e9;
+    for (var i = select(MAX_SHELTERS, 0u, wanted); i < shelters.count; i++) {
+        if shelters.boxes[i].velocity.w == 0.0 {
+            time = max(time, time_within(i, p, velocity));
+        }
+    }
+    return time;
 }
