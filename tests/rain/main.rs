@@ -4,6 +4,7 @@ mod areas;
 mod cones;
 mod culled;
 mod drops;
+mod dry_places;
 mod integrated;
 mod pictures;
 mod processes;

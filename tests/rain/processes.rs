@@ -278,6 +278,51 @@ fn neighbouring_channels_of_two_processes_show_the_same_drops() {
     assert!(worst(&shared) <= 0.5 && worst(&off) <= 0.5);
 }
 
+/// A channel's pictures of the default model, from one eye, a line a row.
+fn default_channel(name: &str) -> String {
+    let backends = if name == "left" { wgpu::Backends::VULKAN } else { wgpu::Backends::GL };
+    let device = Device::headless(&DeviceOptions { backends, ..Default::default() }).unwrap();
+    let mut host = night(Host::on(device, SIZE));
+    tell(&mut host);
+    host.view
+        .set_rain(RainSettings { model: RainModel::Automatic, shutter_s: SHUTTER_S, most_drops: Some(MOST) })
+        .unwrap();
+    let across = if name == "left" { [-0.15, 0.03] } else { [-0.03, 0.15] };
+    Projector { projection: off_axis(across, [-0.06, 0.06]), ..projectors()[0] }.of(&mut host);
+    let mut text = String::new();
+    for t in &MOMENTS[..2] {
+        host.context.update(*t).unwrap();
+        for row in picture(&mut host).chunks(SIZE.0 as usize) {
+            // What both see: the right third of the left picture, the left third of the right one.
+            let third = SIZE.0 as usize / 3;
+            let shared = if name == "left" { &row[2 * third..] } else { &row[..third] };
+            let numbers: Vec<String> = shared.iter().map(|v| format!("{v}")).collect();
+            text += &format!("row {}\n", numbers.join(" "));
+        }
+    }
+    text
+}
+
+#[test]
+fn neighbouring_channels_of_two_processes_show_the_same_streaks_by_default() {
+    if is_channel(default_channel) {
+        return;
+    }
+    let test = "processes::neighbouring_channels_of_two_processes_show_the_same_streaks_by_default";
+    let cover = |name: &str| -> Vec<f64> {
+        let text = run(test, name);
+        let numbers = lines(&text, "row ").join(" ");
+        numbers.split_whitespace().map(|v| 1.0 - v.parse::<f64>().unwrap()).collect()
+    };
+    let [a, b] = ["left", "right"].map(cover);
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let spread = mean(&a.iter().map(|v| (v - mean(&a)).abs()).collect::<Vec<_>>());
+    let apart = mean(&a.iter().zip(&b).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>());
+    println!("{} pixels hide {:.4}, {spread:.5} from each other; {apart:.6} between the channels", a.len(), mean(&a));
+    assert!(a.len() == b.len() && a.len() == 2 * 160 * 320 && spread > 1e-3, "{} {spread}", a.len());
+    assert!(apart < 0.03 * spread, "{apart} between the channels, {spread} from pixel to pixel");
+}
+
 /// A picture's bits, its drops and its state in one number each.
 fn summary(host: &mut Host) -> String {
     let eye = projectors()[0].eye;
