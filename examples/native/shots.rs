@@ -260,9 +260,8 @@ pub fn shots() -> Vec<Shot> {
                 (weather.wind.speed_m_s, weather.wind.from_deg) = (9.0, 280.0);
                 c.set_weather(&weather, 0.0, 0.0)
             },
-            elevation_deg: -6.0,
-            height_m: 1.8,
-            ..GROUND
+            elevation_deg: -12.0,
+            ..FLOOR
         },
         Shot {
             name: "rain_shaft",
