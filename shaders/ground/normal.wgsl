@@ -1,50 +1,8 @@
-// Which way a surface faces, from the depth of a pixel and its four neighbours.
-//!include "common/depth.wgsl"
+// Which way the ground that a pixel shows faces.
+//!include "common/facing.wgsl"
 //!include "ground/uniform.wgsl"
-
-struct Facing {
-    // Towards the camera's side.
-    normal: vec3f,
-    // 0 where depth is too coarse to tell, 1 where the normal can be trusted.
-    sure: f32,
-}
-
-struct DepthPoint {
-    at: vec3f,
-    depth: f32,
-}
-
-fn depth_point(u: DepthUniform, depth: f32, ndc: vec2f) -> DepthPoint {
-    let ray = view_ray(u, ndc);
-    // Nothing is known beyond the picture's edge.
-    let w = select(view_depth(u, depth, ndc), RANGE_SKY, any(abs(ndc) > vec2f(1.0)));
-    return DepthPoint(ray.origin + ray.direction * (w * ray.slant), w);
-}
-
-// The edge from the pixel to whichever neighbour on this axis lies nearer in depth: over a silhouette none is taken.
-fn surface_edge(here: DepthPoint, before: DepthPoint, after: DepthPoint) -> vec3f {
-    let first = abs(before.depth - here.depth) < abs(after.depth - here.depth);
-    return select(after.at - here.at, here.at - before.at, first);
-}
 
 // `around`: depths to the left, right, above and below.
 fn surface_facing(g: GroundUniform, u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f) -> Facing {
-    let here = depth_point(u, depth, ndc);
-    let x = vec2f(g.pixel.x, 0.0);
-    let y = vec2f(0.0, g.pixel.y);
-    let edge_x = surface_edge(here, depth_point(u, around.x, ndc - x), depth_point(u, around.y, ndc + x));
-    let edge_y = surface_edge(here, depth_point(u, around.z, ndc - y), depth_point(u, around.w, ndc + y));
-    let ray = view_ray(u, ndc);
-    let across = cross(edge_x, edge_y);
-    let area = length(across);
-    if !(area > 0.0) || max(length(edge_x), length(edge_y)) > 1e9 {
-        return Facing(-ray.direction, 0.0);
-    }
-    let n = across / area;
-    let away = dot(n, ray.direction);
-    // How far the host's depth may be off, over the distance to the neighbours: the angle by which the normal is.
-    let grain = g.depth_step + g.depth_ulp * abs(depth);
-    let off = abs(view_depth(u, depth + grain, ndc) - here.depth) * ray.slant;
-    let tilt = off * abs(away) / min(length(edge_x), length(edge_y));
-    return Facing(select(n, -n, away > 0.0), 1.0 - smoothstep(0.1, 0.4, tilt));
+    return facing_of(u, depth, around, ndc, g.pixel, vec2f(g.depth_step, g.depth_ulp));
 }

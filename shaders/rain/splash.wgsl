@@ -1,7 +1,11 @@
 // Splashes on what the host's picture shows: slots of a world-fixed grid in which drops land one after the other, as many
 // as the flux brings. Which slot splashes when follows from (seed, cell, slot, time).
 // The entry points read the depth: drops_single.wgsl and drops_multi.wgsl.
+//!include "common/facing.wgsl"
 //!include "rain/drops.wgsl"
+
+// Sizes of drops that splash, of which as many of each.
+const SIZES: u32 = 8u;
 
 struct SplashUniform {
     // Cell of the grid under the camera, and the camera's place in it, m.
@@ -18,19 +22,22 @@ struct SplashUniform {
     part: f32,
     // Chance that a slot is taken.
     share: f32,
-    // Diameter of the drops that splash, m, and their fall speed, m/s.
-    diameter: f32,
-    speed: f32,
     // Ground to start the search at, camera-relative, m.
     ground: f32,
     // Distance at which splashes have faded, m.
     reach: f32,
+    // By how much the host's depth may be off: a step, and a part of it.
+    depth_grain: vec2f,
+    // Diameter, m, and fall speed, m/s.
+    sizes: array<vec4f, SIZES>,
 }
 
 @group(0) @binding(3) var<uniform> splash: SplashUniform;
 
-// Steps by which the place on the visible surface below a point is sought.
-const SEARCH: u32 = 6u;
+// Most looks at the depth by which the place on the visible surface below a point is sought.
+const LOOKS: u32 = 8u;
+// The steepest surface that a splash is drawn on: the upward part of its normal.
+const STEEPEST: f32 = 0.3;
 
 struct Landing {
     // Camera-relative east and north.
@@ -41,8 +48,17 @@ struct Landing {
     fade: f32,
 }
 
+// A drop that lands.
+struct Arrival {
+    landing: Landing,
+    // The share of what level ground gets from which on it lands.
+    chance: f32,
+    diameter: f32,
+    speed: f32,
+}
+
 // What lands in a slot at this moment, before it is known where its ground is.
-fn landing_of(instance: u32) -> Landing {
+fn arrival_of(instance: u32) -> Arrival {
     let slot = instance % splash.slots;
     let index = instance / splash.slots;
     let cell = splash.cell + vec2i(i32(index % splash.cells), i32(index / splash.cells)) - i32(splash.cells / 2u);
@@ -54,12 +70,16 @@ fn landing_of(instance: u32) -> Landing {
     let chance = random3(vec3u(key.x ^ (turn * 0x9e3779b9u), key.y, rain.seed + 77u * slot));
     let value = vec3f(chance >> vec3u(8u)) / 16777216.0;
     let xy = (vec2f(cell - splash.cell) + value.xy) * splash.side - splash.place;
+    let size = splash.sizes[chance.x % SIZES];
     let fade = 1.0 - smoothstep(0.6 * splash.reach, splash.reach, length(xy));
     var share = splash.share;
     if AREAS {
         share *= local_splashes(vec3f(xy, splash.ground));
     }
-    return Landing(xy, fract(time), select(0.0, fade, value.z < share));
+    // Slopes to windward get more than level ground does: those of 45 degrees the most that is drawn.
+    let most = 1.0 + length(rain.wind.xy) / size.y;
+    let landing = Landing(xy, fract(time), select(0.0, fade, value.z < share * most));
+    return Arrival(landing, value.z / max(share, 1e-9), size.x, size.y);
 }
 
 // Where in the picture a camera-relative point is: ndc, and 1 if it is in it.
@@ -79,9 +99,65 @@ fn surface_of(ndc: vec2f, depth: f32) -> vec3f {
     return ray.origin + ray.direction * min(view_range(rain.depth, depth, ndc), 1e5);
 }
 
-// Whether the search ended above the landing's own place: it does where the picture shows the ground there.
+// Whether a surface is at the landing's own place: the search ends there where the picture shows the ground there.
 fn is_found(landing: Landing, surface: vec3f) -> bool {
     return length(surface.xy - landing.xy) < 0.03 + 0.01 * length(surface);
+}
+
+// A search for the height at which the vertical through a landing meets what the picture shows.
+struct Search {
+    z: f32,
+    // Between which it is.
+    low: f32,
+    high: f32,
+    // Height, and gap there, of the look before.
+    before: vec2f,
+    // Gaps at `low` and `high`; 0: nobody has looked there.
+    ends: vec2f,
+}
+
+// From a height on; only what is in the picture is searched. There is nothing to search if `low` is above `high`.
+fn search_from(landing: Landing, z: f32) -> Search {
+    let foot = rain.clip * vec4f(landing.xy, 0.0, 1.0);
+    let up = rain.clip * vec4f(0.0, 0.0, 1.0, 0.0);
+    // Where those are above 0, a place is between the picture's edges.
+    let at = vec4f(foot.w - foot.x, foot.w + foot.x, foot.w - foot.y, foot.w + foot.y);
+    let rise = vec4f(up.w - up.x, up.w + up.x, up.w - up.y, up.w + up.y);
+    let some = select(rise, vec4f(1e-7), abs(rise) < vec4f(1e-7));
+    let edge = -at / some;
+    let lows = select(vec4f(-1e4), edge, some > vec4f(0.0));
+    let highs = select(vec4f(1e4), edge, some < vec4f(0.0));
+    let low = max(max(lows.x, lows.y), max(lows.z, lows.w)) + 1e-3;
+    let high = min(min(highs.x, highs.y), min(highs.z, highs.w)) - 1e-3;
+    let begin = clamp(z, low, max(low, high));
+    // A level plane that far below the eye would have its gap -1 at the eye's height.
+    let eye = clamp(-splash.ground, 0.5, 10.0);
+    return Search(begin, low, select(-1e9, high, landing.fade > 0.0), vec2f(begin + eye, 1e9), vec2f(0.0));
+}
+
+// How far a point lies beyond what the picture shows on its ray, in parts of the latter's range. On a vertical before a plane
+// that is linear in the point's height, whatever the slope.
+fn gap_of(p: vec3f, ndc: vec2f, surface: vec3f) -> f32 {
+    let ray = view_ray(rain.depth, ndc);
+    return dot(p - ray.origin, ray.direction) / max(dot(surface - ray.origin, ray.direction), 1e-3) - 1.0;
+}
+
+// After a look: by secants as long as the surface lies to one side of all looks, and by halves where they lead out of the
+// picture; then between the two that enclose it, by false position as Dowell and Jarratt 1971 (Illinois), who halve the gap of an
+// end that stays. Before a wall, whose gap is the same wherever one looks, by halves.
+fn closer(search: Search, gap: f32) -> Search {
+    let under = gap > 0.0;
+    let low = select(search.low, search.z, under);
+    let high = select(search.z, search.high, under);
+    let stays = select(1.0, 0.5, under == (search.before.y > 0.0));
+    let ends = select(vec2f(search.ends.x * stays, gap), vec2f(gap, search.ends.y * stays), under);
+    let first = search.before.y > 1e8;
+    let fall = select(search.before.y, gap - 1.0, first) - gap;
+    let beyond = search.z - gap * (search.before.x - search.z) / select(fall, -1e-9, abs(fall) < 1e-9);
+    let between = (low * ends.y - high * ends.x) / min(ends.y - ends.x, -1e-9);
+    let z = select(beyond, between, ends.x * ends.y < 0.0);
+    let flat = under && abs(gap - search.ends.x) < 0.1 * gap;
+    return Search(select(0.5 * (low + high), z, z > low && z < high && !flat), low, high, vec2f(search.z, gap), ends);
 }
 
 // As far above a surface as its depth may be wrong.
@@ -97,46 +173,110 @@ struct Crown {
     width: f32,
     // Premultiplied.
     light: vec4f,
-    // m.
+    // East and north of the normal that it stands along.
+    lean: vec2f,
+    // Of what is drawn, m.
     height: f32,
+    // 0 to 1.
+    age: f32,
 }
 
-// The crown that stands at a landing, at height `z`: it rises, opens and falls (sizes in drop diameters after Yarin 2006, Drop
-// Impact Dynamics).
-fn crown_of(landing: Landing, z: f32) -> Crown {
+// How many drops land on a surface of a `normal` for each that lands on level ground of the same extent seen from above.
+fn landing_share(normal: vec3f, velocity: vec3f) -> f32 {
+    return max(-dot(velocity, normal), 0.0) / max(-velocity.z * normal.z, 1e-6);
+}
+
+// The crown that stands on a surface of a `normal` at a height: it rises, opens and falls (sizes in drop diameters after Yarin
+// 2006, Drop Impact Dynamics).
+fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
+    let landing = arrival.landing;
     let at = vec3f(landing.xy, z);
-    if sheltered(above_ground(at), rain.wind - vec3f(0.0, 0.0, splash.speed), true) {
+    let velocity = rain.wind - vec3f(0.0, 0.0, arrival.speed);
+    let lands = normal.z > STEEPEST && arrival.chance < landing_share(normal, velocity);
+    if !lands || sheltered(above_ground(at), velocity, lands) {
         return Crown();
     }
     let age = landing.age;
-    let d = length(at);
-    let full = vec2f(2.0 + 5.0 * age, 20.0 * age * (1.0 - age) + 0.5) * splash.diameter;
-    let size = max(full, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
+    let d = max(length(at), 1e-3);
+    let along = abs(dot(at, normal)) / d;
+    let full = vec2f(2.0 + 5.0 * age, 20.0 * age * (1.0 - age) + 0.5) * arrival.diameter;
+    // From its side one sees a wall, from above a ring.
+    let shown = vec2f(full.x, full.y * sqrt(max(1.0 - along * along, 0.0)) + full.x * along);
+    let size = max(shown, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
     // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
-    let cover = 0.35 * landing.fade * (1.0 - age * age) * (full.x * full.y) / (size.x * size.y) * exp(-rain.extinction * d);
-    return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), size.y);
+    let thin = (shown.x * shown.y) / (size.x * size.y) * exp(-rain.extinction * d);
+    let cover = 0.35 * landing.fade * (1.0 - age * age) * thin;
+    return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age);
 }
 
-fn crown_corner(crown: Crown, corner: u32) -> RainVarying {
+struct CrownVarying {
+    @builtin(position) position: vec4f,
+    // Premultiplied.
+    @location(0) light: vec4f,
+    // m, and age.
+    @location(1) range_age: vec2f,
+    // Across, -1 to 1, and from the foot to the top, 0 to 1.
+    @location(2) at: vec2f,
+    // Of its own, 0 to 1.
+    @location(3) @interpolate(flat) chance: vec2f,
+}
+
+fn crown_corner(crown: Crown, corner: u32, slot: u32) -> CrownVarying {
     let d = max(length(crown.at), 1e-3);
+    let toward = crown.at / d;
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
     let top = select(0.0, 1.0, (corner & 2u) != 0u);
-    let across = normalize(cross(crown.at / d, vec3f(0.0, 0.0, 1.0)) + vec3f(1e-6, 0.0, 0.0));
-    let place = crown.at + across * (side * crown.width) + vec3f(0.0, 0.0, top * crown.height);
+    let normal = vec3f(crown.lean, sqrt(max(1.0 - dot(crown.lean, crown.lean), 0.0)));
+    let along = dot(normal, toward);
+    let across = normalize(cross(toward, normal) + vec3f(1e-6, 0.0, 0.0));
+    // Upwards in the picture, from the rim's near side on.
+    let tall = cross(across, toward);
+    let place = crown.at + across * (side * crown.width) + tall * (top * crown.height - 0.5 * abs(along) * crown.width);
     var clip = rain.clip * vec4f(place, 1.0);
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
-    return RainVarying(position, crown.light, d - 0.2, side);
+    let chance = vec2f(random3(vec3u(slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
+    return CrownVarying(position, crown.light, vec2f(d - 0.2, crown.age), vec2f(side, top), chance);
+}
+
+// Droplets of a crown.
+const DROPLETS: u32 = 3u;
+
+// The crown's sheet, which opens upwards and is seen thicker at its sides, and droplets off its rim on parabolas, over the mean
+// of the quad.
+fn crown_profile(at: vec2f, age: f32, chance: vec2f) -> f32 {
+    let y = at.y / 0.6;
+    let x = at.x / (0.5 + 0.4 * min(y, 1.0));
+    let sheet = (0.7 + 0.9 * x * x) * (1.0 - smoothstep(0.7, 1.0, abs(x))) * (1.0 - smoothstep(0.75, 1.0, y));
+    var drops = 0.0;
+    for (var i = 0u; i < DROPLETS; i++) {
+        // They leave the rim one after the other, to all sides.
+        let turn = 6.2831853 * (chance.x + f32(i) * 0.381966);
+        let t = max(age - 0.1 - 0.15 * fract(chance.y + f32(i) * 0.618034), 0.0);
+        let foot = vec2f(cos(turn) * (0.6 + 0.35 * t), 0.55 + 1.5 * t - 2.4 * t * t);
+        let off = (at - foot) / vec2f(0.16, 0.12);
+        drops += max(1.0 - dot(off, off), 0.0) * select(0.0, 1.0, t > 0.0);
+    }
+    return 1.85 * (sheet + 2.0 * drops);
+}
+
+// `pixel`: how much of the quad's height a pixel is. What is no larger than some pixels has no shape, only its mean.
+fn crown_color(in: CrownVarying, range: f32, pixel: f32) -> vec4f {
+    let soft = clamp((range - in.range_age.x) * 4.0 + 0.5, 0.0, 1.0);
+    let shape = min(crown_profile(in.at, in.range_age.y, in.chance), 3.0);
+    let profile = mix(shape, 1.0 - in.at.x * in.at.x, smoothstep(0.15, 0.4, pixel));
+    return in.light * (profile * soft);
 }
 
 struct ListedCrown {
     @location(0) at_width: vec4f,
     @location(1) light: vec4f,
-    @location(2) height: f32,
+    @location(2) lean_height_age: vec4f,
 }
 
 // Crowns that were made before (rain/crowns_single.wgsl and crowns_multi.wgsl).
 @vertex
-fn crown_vertex(@builtin(vertex_index) corner: u32, listed: ListedCrown) -> RainVarying {
-    return crown_corner(Crown(listed.at_width.xyz, listed.at_width.w, listed.light, listed.height), corner);
+fn crown_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32, listed: ListedCrown) -> CrownVarying {
+    let more = listed.lean_height_age;
+    return crown_corner(Crown(listed.at_width.xyz, listed.at_width.w, listed.light, more.xy, more.z, more.w), corner, slot);
 }

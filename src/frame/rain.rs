@@ -8,6 +8,7 @@ use super::{
     ColorSpace, Frame, FrameFlags, RainReport, Shared, ToneCurve,
     areas::{AreaPass, Columns},
     stones::Ice,
+    surface::rounding,
 };
 use crate::{
     context::{Context, Scene},
@@ -362,7 +363,12 @@ impl Rain {
             stepped: stepped.as_ref(),
             around: told,
             maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
-            splash: &splashes.uniform((shot.position_m, height_m), air.time_s, share * shown),
+            splash: &splashes.uniform(
+                (shot.position_m, height_m),
+                air.time_s,
+                share * shown,
+                frame.depth.map_or([0.0; 2], rounding),
+            ),
             splashes: if block.shells > 0 { splashes.instances() } else { 0 },
             local: local.as_ref(),
             over,

@@ -80,7 +80,7 @@ impl TerrainCells {
 }
 
 /// Rounding of a depth format: absolute, and over the value. The rasteriser's own counts as two steps of a float.
-fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
+pub(super) fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
     use wgpu::TextureFormat as F;
     let float = 2f64.powi(-22);
     match depth.format() {

@@ -79,8 +79,13 @@ impl CrownPass {
         }
         let draw = &mut self.draws[usize::from(multi)];
         if draw.is_none() {
-            let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32];
-            *draw = Some(listed_pipeline(device, frame, ("crown_vertex", &attributes, CROWN_BYTES), (multi, true))?);
+            let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+            *draw = Some(listed_pipeline(
+                device,
+                frame,
+                (["crown_vertex", "crown_fragment"], &attributes, CROWN_BYTES),
+                (multi, true),
+            )?);
         }
         Ok(())
     }

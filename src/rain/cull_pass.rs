@@ -220,7 +220,12 @@ impl CullPass {
                 attribute(1, 16, wgpu::VertexFormat::Float32x3),
                 attribute(2, 32, wgpu::VertexFormat::Float32x4),
             ];
-            *slot = Some(listed_pipeline(device, frame, ("listed_vertex", &attributes, STREAK_BYTES), depth)?);
+            *slot = Some(listed_pipeline(
+                device,
+                frame,
+                (["listed_vertex", "rain_fragment"], &attributes, STREAK_BYTES),
+                depth,
+            )?);
         }
         Ok(())
     }
@@ -312,11 +317,11 @@ pub(super) fn compute_pipeline(
     }))
 }
 
-/// A draw of what compute shaders have made: what each instance brings to which entry point, in how many bytes.
+/// A draw of what compute shaders have made: what each instance brings to which entry points, in how many bytes.
 pub(super) fn listed_pipeline(
     device: &Device,
     frame: &wgpu::BindGroupLayout,
-    (vertex, attributes, bytes): (&str, &[wgpu::VertexAttribute], u64),
+    ([vertex, fragment], attributes, bytes): ([&str; 2], &[wgpu::VertexAttribute], u64),
     (multi, has_depth): (bool, bool),
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
@@ -326,7 +331,7 @@ pub(super) fn listed_pipeline(
         &QuadsDesc {
             label: "listed",
             vertex: (&module, vertex, &[]),
-            fragment: (&module, "rain_fragment", &constants),
+            fragment: (&module, fragment, &constants),
             layouts: &[Some(frame)],
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: bytes,

@@ -209,9 +209,12 @@ impl RainLayer {
         if CullPass::serves(device) {
             self.list(device, encoder, drawn, (multi, depth.is_some()), splashes)?;
         } else {
-            for (slot, vertex) in self.pipelines[key].iter_mut().zip(["rain_vertex", "splash_vertex"]) {
+            for (slot, entries) in self.pipelines[key]
+                .iter_mut()
+                .zip([["rain_vertex", "rain_fragment"], ["splash_vertex", "crown_fragment"]])
+            {
                 if slot.is_none() {
-                    *slot = Some(pipeline(device, frame, vertex, kind, areas)?);
+                    *slot = Some(pipeline(device, frame, entries, kind, areas)?);
                 }
             }
         }
@@ -372,7 +375,7 @@ fn nothing(device: &wgpu::Device) -> wgpu::TextureView {
 fn pipeline(
     device: &Device,
     [frame, around]: [&wgpu::BindGroupLayout; 2],
-    vertex: &str,
+    [vertex, fragment]: [&str; 2],
     (multi, has_depth, maps): (bool, bool, bool),
     areas: bool,
 ) -> Result<wgpu::RenderPipeline> {
@@ -385,7 +388,7 @@ fn pipeline(
         &QuadsDesc {
             label: "drops",
             vertex: (&module, vertex, &near),
-            fragment: (&module, "rain_fragment", &constants),
+            fragment: (&module, fragment, &constants),
             layouts: &[Some(frame), None, Some(around)],
             buffers: &[],
             format: FORMAT,

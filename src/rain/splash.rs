@@ -22,6 +22,11 @@ pub(super) const MOST: u32 = MOST_SLOTS * CELLS * CELLS;
 /// Drops below this diameter make no crown that could be seen, mm.
 pub const LEAST_MM: f64 = 1.2;
 
+/// Parts, equal in number, that drops have the mean size of.
+const SIZES: usize = 8;
+/// More slots than level ground fills: slopes to windward get more.
+const MARGIN: f64 = 1.25;
+
 /// `SplashUniform` of `shaders/rain/splash.wgsl`, which explains the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -35,11 +40,11 @@ pub(crate) struct SplashUniform {
     pub tick: u32,
     pub part: f32,
     pub share: f32,
-    pub diameter: f32,
-    pub speed: f32,
     pub ground: f32,
     pub reach: f32,
     pub pad: f32,
+    pub depth_grain: [f32; 2],
+    pub sizes: [[f32; 4]; SIZES],
 }
 
 /// A splash that stands.
@@ -49,6 +54,12 @@ pub struct Landing {
     pub xy_m: DVec2,
     /// 0 when it has landed, 1 when it is gone.
     pub age: f64,
+    /// Of its drop, mm.
+    pub diameter_mm: f64,
+    /// Of its drop, m/s.
+    pub speed_m_s: f64,
+    /// The share of what level ground gets from which on it lands: below 1 on level ground.
+    pub chance: f64,
 }
 
 /// How many splash, and of what size.
@@ -58,27 +69,30 @@ pub struct Splashes {
     pub drawn_per_m2_s: f64,
     /// And those that the slots have no room for: the smallest.
     pub left_out_per_m2_s: f64,
-    /// Mean diameter, mm, and fall speed of those that are drawn.
-    pub diameter_mm: f64,
-    /// See `diameter_mm`.
-    pub speed_m_s: f64,
+    /// Mean diameter, mm, and fall speed, m/s, of equal parts in number of those that are drawn, the largest first.
+    pub sizes: [(f64, f64); SIZES],
 }
 
 impl Splashes {
     /// From the drops of each class: diameter (mm), fall speed (m/s), flux (1/(m^2 s)); the largest first to be drawn.
     pub fn new(classes: &Classes) -> Self {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE_M * SIDE_M);
-        let mut s = Self { drawn_per_m2_s: 0.0, left_out_per_m2_s: 0.0, diameter_mm: 0.0, speed_m_s: 0.0 };
-        for &(d, v, flux) in classes.flux.iter().rev().filter(|c| c.0 >= LEAST_MM) {
+        let mut s = Self { drawn_per_m2_s: 0.0, left_out_per_m2_s: 0.0, sizes: [(0.0, 0.0); SIZES] };
+        let largest_first = || classes.flux.iter().rev().filter(|c| c.0 >= LEAST_MM);
+        for &(_, _, flux) in largest_first() {
             let drawn = flux.min(room - s.drawn_per_m2_s);
             s.drawn_per_m2_s += drawn;
             s.left_out_per_m2_s += flux - drawn;
-            s.diameter_mm += d * drawn;
-            s.speed_m_s += v * drawn;
         }
-        if s.drawn_per_m2_s > 0.0 {
-            s.diameter_mm /= s.drawn_per_m2_s;
-            s.speed_m_s /= s.drawn_per_m2_s;
+        let part = s.drawn_per_m2_s / SIZES as f64;
+        for (i, size) in s.sizes.iter_mut().enumerate().filter(|_| part > 0.0) {
+            let (first, mut before) = (part * i as f64, 0.0);
+            for &(d, v, flux) in largest_first() {
+                // What this class has in this part.
+                let inside = ((before + flux).min(first + part) - f64::max(before, first)).max(0.0) / part;
+                *size = (size.0 + d * inside, size.1 + v * inside);
+                before += flux;
+            }
         }
         s
     }
@@ -93,12 +107,13 @@ impl Splashes {
         CELLS * CELLS * self.slots()
     }
 
-    /// What has landed and stands at `time_s` round a camera at `position_m` (east, north, up of a point fixed to the world),
-    /// ten metres to either side: the twin of `landing_of` in `shaders/rain/splash.wgsl`, whatever lies below.
+    /// What may have landed and stand at `time_s`, on slopes that get more than level ground too, round a camera at `position_m` (east, north, up of a point fixed to the world),
+    /// ten metres to either side: the twin of `arrival_of` in `shaders/rain/splash.wgsl`, whatever lies below.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
-        let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0), short_seed(seed));
+        let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
+        let sizes = self.sizes;
         let unit = |v: u32| f64::from(v >> 8) / 16_777_216.0;
-        (0..self.instances()).filter_map(move |instance| {
+        (0..self.instances()).map(move |instance| {
             let (slot, index) = (instance % u.slots, instance / u.slots);
             let half = (u.cells / 2) as i32;
             let step = [(index % u.cells) as i32 - half, (index / u.cells) as i32 - half];
@@ -109,18 +124,26 @@ impl Splashes {
                 random3([key[0] ^ turn.wrapping_mul(0x9e37_79b9), key[1], seed.wrapping_add(77u32.wrapping_mul(slot))]);
             let side = f64::from(u.side);
             let at = |i: usize| (f64::from(step[i]) + unit(chance[i])) * side - f64::from(u.place[i]);
-            let landing = Landing { xy_m: DVec2::new(at(0), at(1)), age: time.fract() };
-            (unit(chance[2]) < f64::from(u.share)).then_some(landing)
+            let (diameter_mm, speed_m_s) = sizes[chance[0] as usize % SIZES];
+            let chance = unit(chance[2]) / f64::from(u.share);
+            Landing { xy_m: DVec2::new(at(0), at(1)), age: time.fract(), diameter_mm, speed_m_s, chance }
         })
     }
 
     fn slots(&self) -> u32 {
-        self.standing().ceil() as u32
+        ((MARGIN * self.standing()).ceil() as u32).min(MOST_SLOTS)
     }
 
     /// For a camera at a place (east, north, up of a point fixed to the world, m) so high above the ground, m; so large a
     /// share of them is shown.
-    pub(crate) fn uniform(&self, (position_m, height_m): (DVec3, f64), time_s: f64, shown: f64) -> SplashUniform {
+    /// The host's depth may be off by `depth_grain`, a step and a part of it.
+    pub(crate) fn uniform(
+        &self,
+        (position_m, height_m): (DVec3, f64),
+        time_s: f64,
+        shown: f64,
+        depth_grain: [f64; 2],
+    ) -> SplashUniform {
         let cell = |x: f64| (x / SIDE_M).floor();
         let turns = time_s / LIFE_S;
         let part = turns - turns.floor();
@@ -135,11 +158,55 @@ impl Splashes {
             tick: (turns.floor() as i64) as u32,
             part: part as f32,
             share: (shown * self.standing() / f64::from(self.slots().max(1))) as f32,
-            diameter: (self.diameter_mm * 1e-3) as f32,
-            speed: self.speed_m_s as f32,
             ground: -height_m as f32,
             reach: REACH_M as f32,
             pad: 0.0,
+            depth_grain: depth_grain.map(|v| v as f32),
+            sizes: self.sizes.map(|(d, v)| [(d * 1e-3) as f32, v as f32, 0.0, 0.0]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::{
+        gpu::shader,
+        weather::{Precipitation, PrecipitationKind, Weather, derive},
+    };
+
+    #[test]
+    fn offsets_are_those_of_the_shader() {
+        let text = shader::assemble("rain/drops_single.wgsl").unwrap();
+        let (size, members) = shader::struct_layout(&text, "SplashUniform").unwrap();
+        assert_eq!(size as usize, size_of::<SplashUniform>());
+        macro_rules! same {
+            ($($field:ident),*) => {
+                $(assert!(
+                    members.contains(&(stringify!($field).into(), offset_of!(SplashUniform, $field) as u32)),
+                    "{}: {members:?}", stringify!($field)
+                );)*
+            };
+        }
+        same!(cell, place, side, life, slots, cells, tick, part, share, ground, reach, depth_grain, sizes);
+    }
+
+    #[test]
+    fn sizes_are_parts_of_the_drops_that_splash() {
+        for rate in [1.0, 20.0, 150.0] {
+            let weather =
+                Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, rate), ..Weather::default() };
+            let classes = Classes::new(&derive(&weather).unwrap().precipitation, 1.0, u32::MAX);
+            let s = Splashes::new(&classes);
+            assert!(s.sizes.windows(2).all(|w| w[0].0 >= w[1].0 && w[0].1 >= w[1].1), "{:?}", s.sizes);
+            assert!(s.sizes[0].0 > 1.4 * s.sizes[7].0 && s.sizes[7].0 >= LEAST_MM, "{rate}: {:?}", s.sizes);
+            if s.left_out_per_m2_s == 0.0 {
+                let all = classes.flux.iter().filter(|c| c.0 >= LEAST_MM).map(|c| c.0 * c.2).sum::<f64>();
+                let mean = s.sizes.iter().map(|c| c.0).sum::<f64>() / SIZES as f64;
+                assert!((mean * s.drawn_per_m2_s / all - 1.0).abs() < 1e-9, "{rate}: {mean}");
+            }
         }
     }
 }

@@ -12,6 +12,7 @@ mod sand;
 mod scene;
 mod shapes;
 mod shelter;
+mod slopes;
 mod stability;
 mod stones;
 mod streaks;

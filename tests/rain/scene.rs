@@ -25,6 +25,8 @@ pub struct Host {
     pub color: wgpu::Texture,
     depth: wgpu::Texture,
     pub boxes: Vec<Shelter>,
+    /// Of the ground, through the origin.
+    pub normal: DVec3,
     /// Of the camera.
     pub velocity_m_s: DVec3,
     frames: u64,
@@ -104,6 +106,7 @@ impl Host {
             color,
             depth,
             boxes: Vec::new(),
+            normal: DVec3::Z,
             velocity_m_s: DVec3::ZERO,
             frames: 0,
         }
@@ -126,7 +129,8 @@ impl Host {
     pub fn cast(&self, ndc: DVec2) -> Option<(DVec3, DVec3)> {
         let ray = self.rays().view_ray(ndc);
         let (eye, d) = (self.camera.position + ray.origin, ray.direction);
-        let mut best: Option<(f64, DVec3)> = (d.z < -1e-9).then(|| (-eye.z / d.z, DVec3::Z));
+        let (n, toward) = (self.normal, d.dot(self.normal));
+        let mut best: Option<(f64, DVec3)> = (toward < -1e-9).then(|| (-eye.dot(n) / toward, n));
         for b in &self.boxes {
             let own = |v: DVec3| b.axes.transpose() * v / b.half_size_m;
             let (o, e) = (own(eye - b.center_m), own(d));

@@ -152,8 +152,9 @@ pub fn check(
     };
     let (mut dry, mut drawn, mut suspects) = (0, 0, Vec::new());
     let splashes = Splashes::new(classes);
-    let splash_velocity = wind - DVec3::Z * splashes.speed_m_s;
-    for at in splashes.landings(11, eye, t).map(|l| l.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0)) {
+    for landing in splashes.landings(11, eye, t) {
+        let at = landing.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0);
+        let splash_velocity = wind - DVec3::Z * landing.speed_m_s;
         let near = visible.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
         // On tops, and where a side is all that the picture shows.
         let heights = near.flat_map(|b| (0..=20).map(|i| b.center_m.z + b.half_size_m.z * (0.1 * f64::from(i) - 1.0)));
@@ -383,7 +384,7 @@ fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
         let t = 20.0 + 0.31 * f64::from(k);
         host.context.update(t).unwrap();
         let pixels = through(&mut host, &[]);
-        for l in splashes.landings(11, eye, t).filter(|l| l.xy_m.abs().max_element() < 4.0) {
+        for l in splashes.landings(11, eye, t).filter(|l| l.chance < 1.0 && l.xy_m.abs().max_element() < 4.0) {
             standing += 1.0;
             let p = clip * l.xy_m.extend(-eye.z).extend(1.0);
             let at = DVec2::new((p.x / p.w * 0.5 + 0.5) * 480.0, (0.5 - p.y / p.w * 0.5) * 270.0);
