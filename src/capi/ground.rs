@@ -2,7 +2,7 @@
 //!
 //! The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky, level
 //! ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
-//! colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, no objects.
+//! colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, and of objects only that what keeps rain off is dark.
 //!
 //! How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
 //! in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
