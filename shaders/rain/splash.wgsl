@@ -227,11 +227,10 @@ fn crown_corner(crown: Crown, corner: u32, slot: u32) -> CrownVarying {
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
     let top = select(0.0, 1.0, (corner & 2u) != 0u);
     let normal = vec3f(crown.lean, sqrt(max(1.0 - dot(crown.lean, crown.lean), 0.0)));
-    let along = dot(normal, toward);
     let across = normalize(cross(toward, normal) + vec3f(1e-6, 0.0, 0.0));
-    // Upwards in the picture, from the rim's near side on.
+    // Upwards in the picture, from the foot on: what is below it may be dry.
     let tall = cross(across, toward);
-    let place = crown.at + across * (side * crown.width) + tall * (top * crown.height - 0.5 * abs(along) * crown.width);
+    let place = crown.at + across * (side * crown.width) + tall * (top * crown.height);
     var clip = rain.clip * vec4f(place, 1.0);
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
-    rain::{OccluderMap, RainModel, RainSettings, Shelter, Taken, cones::BANDS_M, shelter::sheltered},
+    rain::{OccluderMap, RainModel, RainSettings, Shelter, Taken, cones::BANDS_M, shelter::sheltered, splash},
     scene::Camera,
 };
 
@@ -147,7 +147,10 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
                 let free =
                     |p: DVec3| falls.iter().filter(|f| !sheltered(&deck, p, f.1)).map(|f| f.0).sum::<f64>() / discs;
                 let share = places.map(|s| free(eye + d * s)).sum::<f64>() / 48.0;
-                (all, got, truth) = (all + open, got + seen, truth + open * share);
+                // Splashes know whether their own place is dry, not how much of the way to it.
+                if (p.z + eye.z).abs() > 0.01 || p.truncate().length() > splash::REACH_M {
+                    (all, got, truth) = (all + open, got + seen, truth + open * share);
+                }
                 if share == 0.0 {
                     (inside, kept) = (inside + seen, kept + open);
                 }
