@@ -76,7 +76,7 @@ impl Bench {
     }
 
     fn drops(&mut self, most_drops: u32) -> Fallible<()> {
-        Ok(self.view.set_rain(RainSettings { most_drops: Some(most_drops), ..RainSettings::default() })?)
+        self.model(RainModel::Drops, most_drops)
     }
 
     fn model(&mut self, model: RainModel, most_drops: u32) -> Fallible<()> {
@@ -256,6 +256,11 @@ pub fn run() -> Fallible<()> {
     let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
     println!("  16 boxes that keep rain off, 3 of them near, add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_shelters(&[])?;
+    bench.model(RainModel::Automatic, base)?;
+    let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
+    println!("  near drops and cones: the same boxes add {:.0} %", 100.0 * (b / a - 1.0));
+    bench.context.set_shelters(&[])?;
+    bench.drops(base)?;
     maps(&mut bench)?;
     let lamp = HostLight {
         position_m: DVec3::new(0.0, 0.0, 3.0),

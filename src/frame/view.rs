@@ -358,7 +358,7 @@ impl View {
                     variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
                     variant.stages.has(Stages::BACKGROUND),
                     rain,
-                    rain,
+                    rain && self.rain.has_near_drops(),
                 ],
                 pixels: u64::from(color.width()) * u64::from(color.height()),
                 lamps: 1 + u32::from(scene.moon.matters),
