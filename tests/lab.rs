@@ -111,7 +111,7 @@ fn what_is_unknown_is_said_and_nothing_is_written() {
         (&["compare", "directional", "exact"], "same effect"),
         (&["compare", "directional"], "two candidates"),
         (&["compare", "directional", "isotropic", "--scene", "moon"], "--scene"),
-        (&["compare", "drops", "cones", "--scene", "moon"], "one of light, steady"),
+        (&["compare", "drops-100k", "cones", "--scene", "moon"], "one of light, steady"),
         (&["stability", "everything"], "quadrature"),
         (&["draw"], "unknown command"),
         (&["chart", "sky", "--fast"], "--fast"),
