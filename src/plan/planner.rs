@@ -162,8 +162,8 @@ const SKY: (f64, f64) = (0.07, 0.05);
 const FOG: f64 = 0.26;
 const AIR_BEFORE_FOG: f64 = 0.3;
 /// The layer of rain, its cones and splashes, a pixel; and a drop of the lattice that is drawn one by one.
-const RAIN: f64 = 0.52;
-const DROP: f64 = 0.5;
+const RAIN: f64 = 0.4;
+const DROP: f64 = 0.4;
 /// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
 const AIR_UNDRAWN: f64 = 0.6;
 
