@@ -50,6 +50,16 @@ const COUNTED: usize = 32;
 /// What is drawn into: the frame's work, the frame, and its colour.
 pub(super) type To<'a, 'b> = (&'a mut wgpu::CommandEncoder, &'a Frame<'b>, &'a wgpu::Texture);
 
+/// Whether any map of the host's shows anything.
+pub(super) fn has_maps(context: &Context) -> bool {
+    context.occluder_maps().is_some_and(|m| m.ranges().is_some())
+}
+
+/// From camera-relative east-north-up to clip space.
+fn clip(frame: &Frame<'_>, scene: &Scene) -> DMat4 {
+    frame.camera.projection * DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose())
+}
+
 impl Rain {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self {
@@ -68,9 +78,8 @@ impl Rain {
     /// Looks what there is for a camera in a scene: what falls round it, and columns further off.
     pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) -> Result<()> {
         // To ask maps once a pixel and band of cones costs more than all drops, which ask each for itself.
-        let has_maps = context.occluder_maps().is_some_and(|m| m.ranges().is_some());
         self.model = match self.settings.model {
-            RainModel::Automatic if has_maps => RainModel::Drops,
+            RainModel::Automatic if has_maps(context) => RainModel::Drops,
             model => model,
         };
         let falling = &scene.conditions.precipitation;
@@ -90,9 +99,14 @@ impl Rain {
         self.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
     }
 
+    /// Whether drops or cones are drawn.
+    fn draws_rain(&self) -> bool {
+        self.rains() && self.shares[0] > 0.0
+    }
+
     /// Whether drops, cones or stones are drawn.
     fn falls_here(&self) -> bool {
-        (self.rains() && self.shares[0] > 0.0) || self.ice.falls(&self.settings)
+        self.draws_rain() || self.ice.falls(&self.settings)
     }
 
     /// How many drops are drawn round the camera.
@@ -237,8 +251,7 @@ impl Rain {
             self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
         }
         self.field.waves = pattern(context.seed() as u32);
-        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
-        let columns = Columns { field: &self.field, scene, clip: frame.camera.projection * view, constants };
+        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), constants };
         let target = self.layer.view(device, color.size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
         pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth), target)?;
@@ -289,9 +302,8 @@ impl Rain {
     }
 
     fn shot<'a>(&self, frame: &Frame<'_>, height: u32, (scene, rays): (&Scene, &'a ViewRays)) -> Shot<'a> {
-        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
         Shot {
-            clip: frame.camera.projection * view,
+            clip: clip(frame, scene),
             rays,
             height,
             y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
@@ -348,13 +360,15 @@ impl Rain {
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
-        block.shells = if near > 0.0 { self.shells() as u32 } else { 0 };
+        // Hail may fall alone.
+        let wet = self.draws_rain();
+        block.shells = if wet && near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from, to| context.carried(from, to);
-        let cones = self.has_cones(context).then(|| {
+        let cones = (wet && self.has_cones(context)).then(|| {
             let all = ConeUniform::new(block.seed, &self.falling_at(device, scene), &shot, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share)
         });
@@ -376,7 +390,7 @@ impl Rain {
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
             around: told,
-            maps: context.occluder_maps().is_some_and(|m| m.ranges().is_some()),
+            maps: has_maps(context),
             splash: &splashes.uniform(
                 (shot.position_m, height_m),
                 air.time_s,
@@ -390,11 +404,11 @@ impl Rain {
                 .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
         self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
-        let wet = block.shells > 0;
+        let drops = block.shells > 0;
         Ok(RainReport {
             drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),
-            drop_weight: if wet { classes.weight } else { 0.0 },
-            splashes_left_out_per_m2_s: if wet { splashes.left_out_per_m2_s } else { 0.0 },
+            drop_weight: if drops { classes.weight } else { 0.0 },
+            splashes_left_out_per_m2_s: if drops { splashes.left_out_per_m2_s } else { 0.0 },
             stones_left_out_per_m2_s: stones.map_or(0.0, |s| s.left_out_per_m2_s),
         })
     }

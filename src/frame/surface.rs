@@ -1,6 +1,6 @@
 //! What a frame draws of weather on surfaces: nothing while it is dry.
 
-use super::Frame;
+use super::{Frame, rain::has_maps};
 use crate::{
     context::{Context, Scene},
     error::Result,
@@ -98,7 +98,7 @@ pub(super) fn uniform(
     scene: &Scene,
     fog: &FogModel,
 ) -> Result<GroundUniform> {
-    let sheltered = !context.shelters().is_empty() || context.occluder_maps().is_some_and(|m| m.ranges().is_some());
+    let sheltered = !context.shelters().is_empty() || has_maps(context);
     let (width, height) = (f64::from(color.width()), f64::from(color.height()));
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
     let seen = Seen {

@@ -193,13 +193,15 @@ impl RainLayer {
         }
         if let Some(block) = drawn.cones {
             self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
-            if drawn.rain.shells == 0 {
-                self.draw_into(encoder, over, |pass, layer| {
+        }
+        if drawn.rain.shells == 0 {
+            self.draw_into(encoder, over, |pass, layer| {
+                if drawn.cones.is_some() {
                     layer.cones.iter().for_each(|c| c.draw(pass, kind));
-                    layer.draw_stones(pass, kind, drawn);
-                });
-                return Ok(());
-            }
+                }
+                layer.draw_stones(pass, kind, drawn);
+            });
+            return Ok(());
         }
         if let Some(stepped) = drawn.stepped {
             let pass = self.stepped.get_or_insert_with(|| Box::new(StepPass::new(device)));
