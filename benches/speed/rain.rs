@@ -11,6 +11,7 @@ use welkin::{
     rain::{AreaMotion, AreaShape, OccluderMap, Planes, RainArea, RainModel, RainSettings, Shelter, Taken},
     scene::{Camera, HostLight},
     weather::{Precipitation, PrecipitationKind, Weather},
+    wind::{WindGrid, WindGridKind},
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
@@ -24,6 +25,8 @@ struct Bench {
     color: wgpu::Texture,
     depth: wgpu::Texture,
     frame_id: u64,
+    /// Of the picture, rad.
+    fov: f64,
 }
 
 impl Bench {
@@ -47,7 +50,7 @@ impl Bench {
             })
         };
         let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
-        Ok(Self { device, context, view, color, depth, frame_id: 0 })
+        Ok(Self { device, context, view, color, depth, frame_id: 0, fov: 0.9 })
     }
 
     fn weather(&mut self, rate_mm_h: f64, time_s: f64) -> Fallible<()> {
@@ -65,7 +68,7 @@ impl Bench {
     fn frame(&mut self) -> Fallible<f64> {
         self.frame_id += 1;
         self.context.update(self.context.time_s() + 1.0 / 60.0)?;
-        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
+        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, self.fov, 16.0 / 9.0, 0.1);
         let frame = Frame::new(self.frame_id, camera, &self.color, Some(&self.depth));
         self.view.record(&self.context, &frame, Stages::PREPARE)?;
         self.device.wait()?;
@@ -203,6 +206,43 @@ fn one_by_one(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
     Ok(())
 }
 
+/// What a state costs, in the wind round a building: in a picture, and in one so narrow that hardly a drop is drawn.
+fn integrated(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
+    let around = |x: f64, y: f64| {
+        let (r2, a2) = ((x * x + y * y).max(1.0), 1.0);
+        [6.0 * (1.0 - a2 * (x * x - y * y) / (r2 * r2)), -12.0 * a2 * x * y / (r2 * r2), 0.0]
+    };
+    let nodes = [32, 32, 16];
+    let place = |i: u32| (f64::from(i % 32) * 0.5 - 8.0, f64::from(i / 32 % 32) * 0.5 - 8.0);
+    let velocity = |i: u32| around(place(i).0, place(i).1).map(|v| v as f32);
+    let grid = WindGrid {
+        kind: WindGridKind::Whole,
+        origin: DVec3::new(-8.0, -8.0, -2.0),
+        cell_m: DVec3::splat(0.5),
+        nodes,
+        velocities_m_s: (0..nodes.iter().product()).map(velocity).collect(),
+    };
+    bench.context.set_wind_grid(Some(grid))?;
+    for fov in [0.9, 1e-3] {
+        bench.fov = fov;
+        for &n in each {
+            // Some frames of either in turn: the first of integrated drops starts them.
+            let (mut none, mut state) = (Vec::new(), Vec::new());
+            for _ in 0..4 {
+                for (model, times) in [(RainModel::Drops, &mut none), (RainModel::Integrated, &mut state)] {
+                    bench.model(model, n)?;
+                    bench.frame()?;
+                    times.extend((0..3).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);
+                }
+            }
+            let (a, b) = (median(&mut none), median(&mut state));
+            println!("  {n} drops, {fov} rad: without a state {a:.2} ms, integrated {b:.2} ms, {:.2} times", b / a);
+        }
+    }
+    bench.fov = 0.9;
+    Ok(bench.context.set_wind_grid(None)?)
+}
+
 pub fn run() -> Fallible<()> {
     let mut bench = Bench::new(&DeviceOptions::default())?;
     println!("rain: {} at {} x {}", bench.device.caps().adapter_name, SIZE.width, SIZE.height);
@@ -220,12 +260,11 @@ pub fn run() -> Fallible<()> {
     for (first, name, second, other, drops) in [
         (RainModel::Cones, "cones", RainModel::Drops, "drops without a state", base),
         (RainModel::Automatic, "near ones and cones", RainModel::Drops, "drops without a state", base),
-        (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", base),
-        (RainModel::Drops, "drops without a state", RainModel::Integrated, "integrated", 4 * base),
     ] {
         let (a, b) = bench.compare(6, |s| s.model(first, drops), |s| s.model(second, drops))?;
         println!("  {drops} drops: {name} {a:.2} ms, {other} {b:.2} ms, {:.2} times", b / a);
     }
+    integrated(&mut bench, &[base, 4 * base])?;
     // Far more small drops than nature has, so that all of them fall.
     bench.falls(PrecipitationKind::Drizzle, 500.0, bench.context.time_s() + 1.0)?;
     let (depth, taken) = map(&bench, 512)?;
