@@ -69,7 +69,7 @@ pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
 
 /// How it falls.
 pub type wk_precipitation_flags = u32;
-/// From convective cloud (SH): onset and end are sharp.
+/// From convective cloud (SH): fewer and larger drops, onset and end are sharp.
 pub const WK_PRECIPITATION_SHOWERS: wk_precipitation_flags = 1;
 /// With thunder (TS).
 pub const WK_PRECIPITATION_THUNDERSTORM: wk_precipitation_flags = 2;

@@ -69,13 +69,15 @@ pub const WK_CLOUD_CIRROSTRATUS: wk_cloud_kind = 10;
 /// High ripples of ice.
 pub const WK_CLOUD_CIRROCUMULUS: wk_cloud_kind = 11;
 
-/// What falls.
+/// What falls. The types of rain: frontal (stratiform) is RAIN, usually 1 to 10 mm/h; convective is RAIN with
+/// WK_PRECIPITATION_SHOWERS, 10 to 100; relief (orographic) rain, many small drops, is DRIZZLE of 0.5 to 3; drizzle itself 0.1 to
+/// 1. docs/rain.md has the drop sizes of each.
 pub type wk_precipitation_kind = u32;
 /// Nothing falls; the rate must be 0.
 pub const WK_PRECIPITATION_NONE: wk_precipitation_kind = 0;
-/// Drizzle (DZ): drops below 0.5 mm.
+/// Drizzle (DZ), and relief rain: small drops.
 pub const WK_PRECIPITATION_DRIZZLE: wk_precipitation_kind = 1;
-/// Rain (RA).
+/// Rain (RA): frontal, or convective with WK_PRECIPITATION_SHOWERS.
 pub const WK_PRECIPITATION_RAIN: wk_precipitation_kind = 2;
 /// Snow (SN).
 pub const WK_PRECIPITATION_SNOW: wk_precipitation_kind = 3;

@@ -399,6 +399,27 @@ mod tests {
         }
     }
 
+    /// The types of rain by kind and flag, with the diameters (mm) that an older system's types have.
+    #[test]
+    fn types_of_rain_have_the_drops_of_their_kind() {
+        use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
+        let median = |kind, showers, rate| {
+            let precipitation = Precipitation { showers, ..Precipitation::of(kind, rate) };
+            let falling = derive(&Weather { precipitation, visibility_m: 500.0, ..Weather::default() }).unwrap();
+            DropSizes::new(&falling.precipitation, 1.0).median_volume_diameter_mm()
+        };
+        let (drizzle, rain) = (PrecipitationKind::Drizzle, PrecipitationKind::Rain);
+        for (name, kind, showers, rates, diameters) in [
+            ("drizzle", drizzle, false, [0.1, 1.0], 0.39..0.66),
+            ("relief", drizzle, false, [0.5, 3.0], 0.55..0.82),
+            ("frontal", rain, false, [1.0, 10.0], 0.8..2.5),
+            ("convective", rain, true, [30.0, 100.0], 2.4..7.5),
+        ] {
+            let got = rates.map(|r| median(kind, showers, r));
+            assert!(got.iter().all(|d| diameters.contains(d)) && got[0] < got[1], "{name}: {got:?}");
+        }
+    }
+
     #[test]
     fn nothing_falls_from_nothing_and_a_trace_is_finite() {
         let dry = DropSizes::of_rain(0.0, 1.0);

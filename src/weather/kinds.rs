@@ -114,13 +114,15 @@ kinds! {
 }
 
 kinds! {
-    /// What falls.
+    /// What falls. Frontal (stratiform) rain is [`PrecipitationKind::Rain`], convective rain the same with
+    /// [`super::Precipitation::showers`], relief (orographic) rain, many small drops, [`PrecipitationKind::Drizzle`] of 0.5 to
+    /// 3 mm/h.
     PrecipitationKind, "precipitation.kind" {
         /// Nothing falls; the rate must be 0.
         None = 0, "none";
-        /// Drizzle (DZ): drops below 0.5 mm.
+        /// Drizzle (DZ), and relief rain: small drops.
         Drizzle = 1, "drizzle";
-        /// Rain (RA).
+        /// Rain (RA): frontal, or convective with `showers`.
         Rain = 2, "rain";
         /// Snow (SN).
         Snow = 3, "snow";

@@ -105,7 +105,7 @@ pub struct Precipitation {
     pub rate_mm_h: f64,
     /// Part of it that is liquid, fraction. Range [0, 1]; default by kind.
     pub liquid_fraction: Option<f64>,
-    /// It falls from convective cloud (SH): onset and end are sharp.
+    /// It falls from convective cloud (SH): fewer and larger drops, onset and end are sharp.
     pub showers: bool,
     /// There is thunder (TS).
     pub thunderstorm: bool,
