@@ -76,7 +76,7 @@ pub struct wk_ground_cell {
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment.
+    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
     pub ice: f32,
 }
 

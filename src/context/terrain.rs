@@ -31,7 +31,7 @@ pub struct GroundCell {
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment.
+    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
     pub ice: f32,
 }
 
@@ -49,6 +49,7 @@ pub(super) struct HostGround {
     pub begun: bool,
     shown: Option<Shown>,
     shadow: Shadow,
+    glaze: Glaze,
     /// Room for the rates of the cells.
     rates: Vec<f64>,
 }
@@ -78,6 +79,13 @@ impl Shadow {
     }
 }
 
+/// Share of open ground under ice, and what the boxes keep off of freezing rain: by the weather of the moment.
+#[derive(Default)]
+struct Glaze {
+    ice: f64,
+    shadow: Shadow,
+}
+
 /// The rain of an area over a grid.
 #[derive(Clone, Copy)]
 struct Over {
@@ -99,6 +107,11 @@ impl Overs {
     }
 }
 
+/// Rain and drizzle, mm/h.
+fn liquid(f: &Falling) -> f64 {
+    f.rain_mm_h + f.drizzle_mm_h
+}
+
 impl HostGround {
     pub fn new(grid: GroundGrid, world: &WorldFrame) -> Self {
         let frame = world.frame_at(grid.origin);
@@ -114,34 +127,60 @@ impl HostGround {
             begun: false,
             shown: None,
             shadow: Shadow::default(),
+            glaze: Glaze::default(),
             rates: Vec::new(),
         }
     }
 
-    /// Finds what the standing boxes keep off. `falls_m_s`: of the drops in the middle of each third of the water; `wind` of the
-    /// air, east and north.
-    fn shade(&mut self, falls_m_s: [f64; 3], wind: DVec2, shelters: &[Shelter]) {
+    /// Finds what the standing boxes keep off, and says whether that may be something else than before. `falls_m_s`: of the drops
+    /// in the middle of each third of the water; `wind` of the air, east and north.
+    fn shade(&self, shadow: &mut Shadow, falls_m_s: [f64; 3], wind: DVec2, shelters: &[Shelter]) -> bool {
         let standing = || shelters.iter().filter(|s| s.stands());
-        if let Some((falls, blown, list)) = &self.shadow.made_for
+        if let Some((falls, blown, list)) = &shadow.made_for
             && (*falls, *blown) == (falls_m_s, wind)
             && list.iter().eq(standing())
         {
-            return;
+            return false;
         }
-        self.shadow.thirds.clear();
+        shadow.thirds.clear();
         if standing().next().is_some() {
-            self.shadow.thirds.resize(self.terrain.grid.len(), 0);
+            shadow.thirds.resize(self.terrain.grid.len(), 0);
             for fall in falls_m_s {
-                self.shade_third(wind.extend(-fall), standing());
+                self.shade_third(&mut shadow.thirds, wind.extend(-fall), standing());
             }
         }
-        let mut list = self.shadow.made_for.take().map_or(Vec::new(), |made| made.2);
+        let mut list = shadow.made_for.take().map_or(Vec::new(), |made| made.2);
         list.clear();
         list.extend(standing());
-        self.shadow.made_for = Some((falls_m_s, wind, list));
+        shadow.made_for = Some((falls_m_s, wind, list));
+        true
     }
 
-    fn shade_third<'a>(&mut self, velocity: DVec3, shelters: impl Iterator<Item = &'a Shelter> + Clone) {
+    /// Finds what the standing boxes keep off of the rain that falls under the weather `c`.
+    fn shade_rain(&mut self, c: &Conditions, overs: &Overs, shelters: &[Shelter]) {
+        let mut shadow = std::mem::take(&mut self.shadow);
+        let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+        self.shade(&mut shadow, self.falls_m_s(c, overs), wind, shelters);
+        self.shadow = shadow;
+    }
+
+    /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have changed.
+    fn ice_over(&mut self, c: &Conditions, overs: &Overs, shelters: &[Shelter]) -> bool {
+        let mut glaze = std::mem::take(&mut self.glaze);
+        let mut changed = glaze.ice != c.surface.ice;
+        glaze.ice = c.surface.ice;
+        if glaze.ice > 0.0 && c.precipitation.freezing * liquid(&c.precipitation) > 0.0 {
+            let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+            changed |= self.shade(&mut glaze.shadow, self.falls_m_s(c, overs), wind, shelters);
+        } else {
+            changed |= glaze.shadow.made_for.is_some() && glaze.ice > 0.0;
+            glaze.shadow = Shadow::default();
+        }
+        self.glaze = glaze;
+        changed
+    }
+
+    fn shade_third<'a>(&self, thirds: &mut [u8], velocity: DVec3, shelters: impl Iterator<Item = &'a Shelter> + Clone) {
         let grid = &self.terrain.grid;
         let in_world = self.to_enu.transpose() * velocity;
         let columns = grid.nodes[0] as usize;
@@ -152,7 +191,7 @@ impl HostGround {
                 let cell = row * columns + column;
                 let p = grid.node(cell, &self.to_enu) + self.to_enu.transpose() * (DVec3::Z * SURFACE_M);
                 if sheltered(shelter, p, in_world) && !shelters.clone().take(i).any(|s| sheltered(s, p, in_world)) {
-                    self.shadow.thirds[cell] += 1;
+                    thirds[cell] += 1;
                 }
             }
         }
@@ -196,7 +235,6 @@ impl HostGround {
 
     /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
     fn falls_m_s(&self, c: &Conditions, overs: &Overs) -> [f64; 3] {
-        let liquid = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h;
         let mut heaviest = c.precipitation;
         for over in overs.all().filter(|o| o.even.is_none_or(|(share, _)| share > 0.0)) {
             if liquid(&over.shaft.falling) > liquid(&heaviest) {
@@ -220,9 +258,8 @@ impl HostGround {
             self.water.step(&self.terrain, &step, |_| 0.0);
             return true;
         }
-        let falls_m_s = self.falls_m_s(c, overs);
-        self.shade(falls_m_s, DVec2::new(c.wind.east_m_s, c.wind.north_m_s), shelters);
-        let own = c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h;
+        self.shade_rain(c, overs, shelters);
+        let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
         // What melts falls everywhere alike.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
@@ -246,9 +283,8 @@ impl HostGround {
 
     /// Takes the water from what the weather says of all the ground, where it gets to.
     fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &Overs, shelters: &[Shelter]) {
-        let falls_m_s = self.falls_m_s(c, overs);
-        self.shade(falls_m_s, DVec2::new(c.wind.east_m_s, c.wind.north_m_s), shelters);
-        let own = c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h;
+        self.shade_rain(c, overs, shelters);
+        let own = liquid(&c.precipitation);
         let kept = |liquid: f64| {
             let falling = Falling { rain_mm_h: liquid, drizzle_mm_h: 0.0, ..c.precipitation };
             let (wetness, puddles) = cover_under_rain(&falling, c.air.relative_humidity);
@@ -304,14 +340,13 @@ impl Context {
     /// Water of each cell of the host's terrain now, in the order of its heights; `None` without one.
     pub fn ground_cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         let held = self.host_ground.as_ref()?;
-        let ice = self.timeline.at(self.time_s).surface.ice as f32;
         Some((0..held.terrain.grid.len()).map(move |cell| {
             let c = held.water.cell(cell);
             GroundCell {
                 film_mm: c.film_mm as f32,
                 soaked: c.soaked as f32,
                 standing_mm: c.standing_mm.max(0.0) as f32,
-                ice,
+                ice: (held.glaze.ice * held.glaze.shadow.share(cell)) as f32,
             }
         }))
     }
@@ -346,7 +381,7 @@ impl Context {
             let begun = [held.range_m.0, held.range_m.1].map(|m| shaft.begun(altitude(m)));
             let even = least == most && (most == 0.0 || begun[0] == begun[1]);
             overs.even &= even;
-            let liquid_mm_h = if most > 0.0 { shaft.falling.rain_mm_h + shaft.falling.drizzle_mm_h } else { 0.0 };
+            let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
             *place = Some(Over { shaft, even: even.then_some((most, begun[0])), liquid_mm_h });
         }
         Ok(overs)
@@ -386,12 +421,29 @@ impl Context {
         Ok(())
     }
 
-    /// Where the terrain's water is no state of its own, brings it up to date with weather, areas and shelter.
+    /// Brings up to date with weather, areas and shelter what is no state of its own: the terrain's ice, and its water where it
+    /// has no state.
     pub(super) fn show_terrain(&mut self) -> Result<()> {
-        let Some(mut held) = self.host_ground.take_if(|held| !held.begun) else { return Ok(()) };
+        let Some(mut held) = self.host_ground.take() else { return Ok(()) };
+        let shown = self.show_on(&mut held);
+        self.host_ground = Some(held);
+        self.ground_revision += u64::from(shown?);
+        Ok(())
+    }
+
+    /// Says whether anything may have changed.
+    fn show_on(&self, held: &mut HostGround) -> Result<bool> {
         // Looked at as often as a state is stepped: weather and areas may change all the time.
         let slot_s = ((self.time_s / STEP_S).floor() * STEP_S).max(self.timeline.known_from_s());
         let c = self.timeline.at(slot_s);
+        if held.begun && c.surface.ice == 0.0 && held.glaze.ice == 0.0 {
+            return Ok(false);
+        }
+        let overs = self.overs(held, slot_s, &c)?;
+        let iced = held.ice_over(&c, &overs, &self.shelters);
+        if held.begun {
+            return Ok(iced);
+        }
         let water = match (self.desc.ground, self.ground) {
             (GroundModel::Simulated, Some(state)) => state.water(),
             _ => GroundWater::of_cover(&c.surface),
@@ -404,17 +456,12 @@ impl Context {
             slot: if self.areas.is_empty() { 0.0 } else { slot_s },
             told: self.told,
         };
-        if held.shown != Some(shown) {
-            let overs = self.overs(&held, slot_s, &c);
-            if let Ok(overs) = &overs {
-                held.show(&c, &water, overs, &self.shelters);
-                (held.shown, self.ground_revision) = (Some(shown), self.ground_revision + 1);
-            }
-            self.host_ground = Some(held);
-            return overs.map(|_| ());
+        if held.shown == Some(shown) {
+            return Ok(iced);
         }
-        self.host_ground = Some(held);
-        Ok(())
+        held.show(&c, &water, &overs, &self.shelters);
+        held.shown = Some(shown);
+        Ok(true)
     }
 
     /// Takes up what a saved state had of the terrain; where it had none, the terrain that is set begins anew.

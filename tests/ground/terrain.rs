@@ -171,6 +171,56 @@ fn it_is_dry_under_a_roof_but_for_the_wet_wedge_on_the_windward_side() {
 }
 
 #[test]
+fn freezing_rain_leaves_no_ice_under_a_roof_whether_simulated_or_loaded() {
+    let host = Host::new();
+    for model in [GroundModel::Simulated, GroundModel::Reported] {
+        let fresh = || {
+            let desc = ContextDesc { ground: model, seed: 7, ..ContextDesc::default() };
+            let mut context = Context::new(host.device.clone(), host.context.shared().clone(), desc).unwrap();
+            context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
+            context.set_shelters(&[roof([0.0, 15.0, 6.0], [6.0, 6.0, 0.1])]).unwrap();
+            context
+        };
+        let mut context = fresh();
+        context.set_ground_grid(Some(GroundGrid { heights_m: vec![0.0; 1200], ..grid() })).unwrap();
+        let freezing = Precipitation::of(PrecipitationKind::FreezingRain, 3.0);
+        let weather = Weather { precipitation: freezing, temperature_c: -2.0, ..rain(3.0, 5.0) };
+        context.set_weather(&weather, 600.0, 0.0).unwrap();
+        context.update(500.0).unwrap();
+        assert!(cells(&context).iter().all(|c| c.ice == 0.0));
+        let before = context.ground_revision();
+        context.update(1200.0).unwrap();
+        assert!(context.ground_revision() > before, "{model:?}: who uploads cells is told of the ice");
+        let water = cells(&context);
+        let ice = |x: f64| water[15 * NODES[0] as usize + (x + 20.0) as usize].ice;
+        let open = ice(-15.0);
+        assert!(open > 0.8 && [-7.0, -5.0, -3.0, 17.0].iter().all(|x| ice(*x) == open), "{model:?}: {open}");
+        assert!([5.0, 6.0, 7.0].iter().all(|x| ice(*x) == 0.0), "{model:?}: {} {}", ice(5.0), ice(7.0));
+        let edge = [0.0, 1.0, 2.0, 3.0, 11.0, 12.0].map(ice);
+        assert!(edge.iter().any(|i| *i > 0.0 && *i < open), "{model:?}: by thirds of the rain: {edge:?}");
+        let mut second = fresh();
+        second.load(&context.save().unwrap()).unwrap();
+        if model == GroundModel::Reported {
+            second.set_ground_grid(Some(context.ground_grid().unwrap().clone())).unwrap();
+        }
+        for t in [1200.0, 1234.5, 4000.0] {
+            context.update(t).unwrap();
+            second.update(t).unwrap();
+            assert!(cells(&context) == cells(&second), "{model:?} at {t}");
+            assert_eq!(context.state_hash().unwrap(), second.state_hash().unwrap(), "{model:?} at {t}");
+        }
+        // Without the roof it is icy there too; ice that a report names lies everywhere.
+        context.set_shelters(&[]).unwrap();
+        assert!(cells(&context).iter().all(|c| c.ice == open));
+        context.set_shelters(second.shelters()).unwrap();
+        let surface = Surface { state: Some(SurfaceState::Ice), ..Surface::default() };
+        context.set_weather(&Weather { surface, temperature_c: -2.0, ..Weather::default() }, 4000.0, 0.0).unwrap();
+        context.update(4020.0).unwrap();
+        assert!(cells(&context).iter().all(|c| c.ice == 1.0), "{model:?}");
+    }
+}
+
+#[test]
 fn areas_wet_their_part_and_hollows_fill_and_dry() {
     let host = Host::new();
     let mut context = simulated(&host);
