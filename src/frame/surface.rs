@@ -104,10 +104,7 @@ pub(super) fn uniform(
     let seen = Seen {
         scene,
         cover: &context.ground_cover_at(frame.camera.position, scene.conditions.surface),
-        rain_mm_h: context
-            .with_areas(frame.camera.position, context.time_s(), scene.conditions)
-            .precipitation
-            .rain_mm_h,
+        falling: context.with_areas(frame.camera.position, context.time_s(), scene.conditions).precipitation,
         glaze: glaze(context, frame, scene),
         hollows: context.hollows(),
         position: frame.camera.position,

@@ -2,6 +2,10 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
+
+use crate::rain::sizes::DropSizes;
+
 /// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
 pub const WATER_INDEX: f64 = 1.333;
 /// Share of diffuse light that a level surface of water sends back up, from above: Fresnel's law integrated over the half
@@ -46,22 +50,10 @@ pub fn seen_area(slope: f64, cosine: f64) -> f64 {
     (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()
 }
 
-/// Drops larger than [`RING_DIAMETER_MM`] that fall on a square metre in a second.
-///
-/// Marshall & Palmer's (1948) sizes, exp(-4.1 R^-0.21 D) per mm, with Atlas, Srivastava & Sekhon's (1973) speeds, 9.65 - 10.3
-/// exp(-0.6 D) m/s, their number such that they make the rate.
-pub fn ring_drops_per_m2_s(rain_mm_h: f64) -> f64 {
-    if rain_mm_h <= 0.0 {
-        return 0.0;
-    }
-    let slope = 4.1 * libm::pow(rain_mm_h, -0.21);
-    // Integral of exp(-slope D) v(D) over D > d, and of its product with D^3 over all D.
-    let beyond = |s: f64, d: f64| libm::exp(-s * d) / s;
-    let flux = 9.65 * beyond(slope, RING_DIAMETER_MM) - 10.3 * beyond(slope + 0.6, RING_DIAMETER_MM);
-    let cubes = 9.65 * 6.0 / libm::pow(slope, 4.0) - 10.3 * 6.0 / libm::pow(slope + 0.6, 4.0);
-    // A drop has pi/6 D^3; 1 mm/h is 1e6 mm^3 in 3600 s on a square metre.
-    let number = rain_mm_h / 3.6e-3 / (PI / 6.0 * cubes);
-    number * flux
+/// Drops larger than [`RING_DIAMETER_MM`] that land on a square metre of level ground in a second.
+pub fn ring_drops_per_m2_s(sizes: &DropSizes) -> f64 {
+    let slowest = sizes.speed_m_s(RING_DIAMETER_MM);
+    sizes.on_surface_of(DVec3::Z, DVec3::ZERO, |falls_m_s| falls_m_s > slowest).drops_per_m2_s
 }
 
 /// Drops above this diameter make a ring that is drawn, mm.
@@ -187,20 +179,18 @@ mod tests {
     }
 
     #[test]
-    fn more_rain_makes_more_rings() {
-        let rates = [0.1, 0.5, 1.0, 5.0, 10.0, 50.0, 100.0].map(ring_drops_per_m2_s);
+    fn more_rain_and_larger_drops_make_more_rings() {
+        let of = |rate| ring_drops_per_m2_s(&DropSizes::of_rain(rate, 1.0));
+        let rates = [0.1, 0.5, 1.0, 5.0, 10.0, 50.0, 100.0].map(of);
         assert!(rates.windows(2).all(|r| r[1] > 1.5 * r[0]), "{rates:?}");
-        // Numerically, with the drops of 0.1 to 12 mm.
-        let (mut number, mut water) = (0.0, 0.0);
-        for i in 10..1200 {
-            let d = f64::from(i) * 0.01;
-            let flux = (-4.1 * 5f64.powf(-0.21) * d).exp() * (9.65 - 10.3 * (-0.6 * d).exp()) * 0.01;
-            number += if d > RING_DIAMETER_MM { flux } else { 0.0 };
-            water += flux * PI / 6.0 * d.powi(3);
+        let sizes = DropSizes::of_rain(5.0, 1.0);
+        let (step, mut number) = (1e-3, 0.0);
+        for i in 1800..6000 {
+            let d = (f64::from(i) + 0.5) * step;
+            number += sizes.number_between(d - 0.5 * step, d + 0.5 * step) * sizes.speed_m_s(d);
         }
-        let want = 5.0 / 3.6e-3 * number / water;
-        assert!((rates[3] / want - 1.0).abs() < 0.02, "{} {want}", rates[3]);
-        assert_eq!(ring_drops_per_m2_s(0.0), 0.0);
+        assert!((rates[3] / number - 1.0).abs() < 1e-3, "{} {number}", rates[3]);
+        assert_eq!(of(0.0), 0.0);
     }
 
     #[test]

@@ -3,5 +3,6 @@
 mod drawn;
 mod host;
 mod mirrors;
+mod rings;
 mod state;
 mod terrain;
