@@ -160,6 +160,48 @@ fn closer(search: Search, gap: f32) -> Search {
     return Search(select(0.5 * (low + high), z, z > low && z < high && !flat), low, high, vec2f(search.z, gap), ends);
 }
 
+// A search, and the visible surface where it has looked last: 1 if it is the landing's own.
+struct Look {
+    search: Search,
+    surface: vec4f,
+}
+
+fn is_wanted(look: Look) -> bool {
+    return look.surface.w == 0.0 && look.search.low < look.search.high;
+}
+
+// Where in the picture it looks next (ndc).
+fn next_look(look: Look, landing: Landing) -> vec2f {
+    return seen_at(vec3f(landing.xy, look.search.z)).xy;
+}
+
+// After the depth there is known.
+fn looked(look: Look, landing: Landing, ndc: vec2f, depth: f32) -> Look {
+    let seen = surface_of(ndc, depth);
+    let gap = gap_of(vec3f(landing.xy, look.search.z), ndc, seen);
+    return Look(closer(look.search, gap), vec4f(seen, select(0.0, 1.0, is_found(landing, seen))));
+}
+
+// The middle of the picture's pixel that shows a point.
+fn pixel_of(p: vec3f, size: vec2f) -> vec2f {
+    return (floor(uv_of(seen_at(p).xy) * size) + 0.5) / size;
+}
+
+fn ndc_of(uv: vec2f) -> vec2f {
+    return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * rain.y_sign);
+}
+
+// The normal of the surface that a pixel shows, and the height of its plane above the place of a landing. `around`: depths to
+// the left, right, above and below.
+fn plane_of(landing: Landing, uv: vec2f, size: vec2f, depth: f32, around: vec4f) -> vec4f {
+    let ndc = ndc_of(uv);
+    let facing = facing_of(rain.depth, depth, around, ndc, vec2f(2.0, -2.0 * rain.y_sign) / size, splash.depth_grain);
+    let normal = normalize(mix(vec3f(0.0, 0.0, 1.0), facing.normal, facing.sure) + vec3f(0.0, 0.0, 1e-6));
+    let middle = surface_of(ndc, depth);
+    let rise = dot(normal.xy, middle.xy - landing.xy) / max(normal.z, STEEPEST);
+    return vec4f(normal, middle.z + rise);
+}
+
 // As far above a surface as its depth may be wrong.
 fn above_ground(at: vec3f) -> vec3f {
     return at + vec3f(0.0, 0.0, 0.02 + 0.004 * length(at));

@@ -203,6 +203,24 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     return out;
 }
 
+@vertex
+fn falling_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> StoneVarying {
+    let stone = falling_stone(instance);
+    if sheltered(stone.position, stone.velocity, true) {
+        return no_stone();
+    }
+    return stone_corner(stone, corner);
+}
+
+// The same of a stone that hops on a surface; 1 in its last if that was found.
+fn hopping_corner(touch: Touch, surface: vec4f, corner: u32) -> StoneVarying {
+    let fall = rain.wind - vec3f(0.0, 0.0, touch.kind.y * SPEED_UNIT);
+    if surface.w == 0.0 || sheltered(above_ground(vec3f(touch.landing.xy, surface.z)), fall, true) {
+        return no_stone();
+    }
+    return stone_corner(hopping_stone(touch, surface.z), corner);
+}
+
 // Premultiplied.
 fn stone_color(in: StoneVarying, range: f32) -> vec4f {
     let beyond = max(abs(in.at.y) - in.reach, 0.0);
