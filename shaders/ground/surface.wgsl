@@ -123,12 +123,14 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
 // Least side of the cells of the ground whose rain is tried by the same drops, m.
 const TRIED_CELL: f32 = 0.01;
 
-// A number by chance of [0, 1) that belongs to a place of the world. `place`: along the pattern's axes; `side`: of what lies
-// together.
-fn tried_at(place: vec3f, side: f32) -> f32 {
+// Which of four drops is tried at a place of the world: each once in two by two neighbours along any two axes, in an order that is
+// another from there to the next, so that no pattern shows. `place`: along the pattern's axes; `side`: of what lies together.
+fn tried_at(place: vec3f, side: f32) -> u32 {
     let camera = vec3f(vec2f(ground.cell) * RING_CELL + vec2f(ground.place_u, ground.place_v), ground.place_w);
     let cell = vec3u(vec3i(floor((camera + place) / side)));
-    return ring_chances(cell.xy, cell.z).x;
+    let odd = cell & vec3u(1u);
+    let four = cell >> vec3u(1u);
+    return (odd.x + 2u * odd.y) ^ (3u * odd.z) ^ u32(4.0 * ring_chances(four.xy, four.z).x);
 }
 
 // Where something stands off a surface, as far as depth may be wrong.
@@ -138,8 +140,8 @@ fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
 
 // Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall speed goes
 // evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says which of all twelfths
-// of the water come by. A map says yes or no, for one drop of each third of the water, another one in each cell.
-fn rained_on(p: vec3f, tried: f32, boxes: bool) -> f32 {
+// of the water come by. A map says yes or no, for one drop of each third of the water, all of them in two by two cells.
+fn rained_on(p: vec3f, tried: u32, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
     var slow = asked.x * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, asked.x), boxes);
@@ -149,7 +151,7 @@ fn rained_on(p: vec3f, tried: f32, boxes: bool) -> f32 {
         let fast = fall * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, fall), boxes);
         let within = mix(vec4f(slow), vec4f(fast), (falls[i] - asked[i]) / (fall - asked[i]));
         let free = clamp(0.5 - within / max(0.25 * abs(fast - slow), 1e-6), vec4f(0.0), vec4f(1.0));
-        let drop = falls[i][min(u32(4.0 * tried), 3u)];
+        let drop = falls[i][tried];
         let mapped = mapped_ground(p, ground.wind - vec3f(0.0, 0.0, drop), true);
         share += select(dot(free, vec4f(0.25)) / 3.0, 0.0, mapped);
         slow = fast;

@@ -447,6 +447,8 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
             // Of each row of the picture, which lies across the wind: pixels below the deck, and the water that they get, seen
             // and true.
             let mut rows = vec![[0.0; 3]; 360];
+            // The same of blocks of four by four pixels.
+            let mut blocks = vec![[0.0; 3]; 32 * 90];
             for (i, (seen, open)) in seen.iter().zip(&open).enumerate() {
                 let (x, y) = (i % 128, i / 128);
                 let ndc = DVec2::new((x as f64 + 0.5) / 64.0 - 1.0, 1.0 - (y as f64 + 0.5) / 180.0);
@@ -455,14 +457,19 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
                     let free = falls.iter().filter(|v| !sheltered(&deck[0], at, **v)).count();
                     let row = [1.0, seen / open, free as f64 / RAYS as f64];
                     (0..3).for_each(|k| rows[y][k] += row[k]);
+                    (0..3).for_each(|k| blocks[y / 4 * 32 + x / 4][k] += row[k]);
                 }
             }
             let sum = |k: usize| rows.iter().map(|r| r[k]).sum::<f64>();
             let (all, wedge, truth) = (sum(0), sum(1), sum(2));
             let off = |r: &[f64; 3]| (r[1] - r[2]) / r[0];
             let worst = rows.iter().filter(|r| r[0] > 0.0).map(|r| off(r).abs()).fold(0.0, f64::max);
+            let edge: Vec<f64> =
+                blocks.iter().filter(|b| b[0] == 16.0 && (0.8..15.2).contains(&b[2])).map(|b| off(b).powi(2)).collect();
+            let grain = (edge.iter().fold(0.0, |sum, v| sum + v) / edge.len().max(1) as f64).sqrt();
             println!(
-                "wind {wind}, by {by}: of {all} pixels {wedge:.1} are wet, {truth:.1} by rays; a row is {worst:.3} off at most"
+                "wind {wind}, by {by}: of {all} pixels {wedge:.1} are wet, {truth:.1} by rays; a row is {worst:.3} off at most, \
+                 blocks of 16 pixels {grain:.3} RMS"
             );
             assert!(all > 30_000.0 && (wind == 0.0) == (truth == 0.0), "wind {wind}: {truth} of {all}");
             assert!((wedge - truth).abs() <= 0.05 * truth, "wind {wind}, by {by}: {wedge} against {truth}");
