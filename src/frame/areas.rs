@@ -312,8 +312,6 @@ impl AreaPass {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::gpu::shader;
 
@@ -322,16 +320,11 @@ mod tests {
         let text = shader::assemble("rain/shaft.wgsl").unwrap();
         let (size, _) = shader::struct_layout(&text, "Columns").unwrap();
         assert_eq!(size as usize, size_of::<ColumnsUniform>());
-        let (size, members) = shader::struct_layout(&text, "ShaftUniform").unwrap();
-        assert_eq!(size as usize, size_of::<ShaftUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(ShaftUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(above, own, below, own_top, sun, own_soft, to_sun, own_near, order, rects, waves);
+        shader::assert_layout!(
+            "rain/shaft.wgsl",
+            "ShaftUniform",
+            ShaftUniform,
+            [above, own, below, own_top, sun, own_soft, to_sun, own_near, order, rects, waves]
+        );
     }
 }

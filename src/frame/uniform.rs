@@ -86,38 +86,36 @@ pub(super) fn uniform(
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::gpu::shader;
 
     #[test]
     fn offsets_agree_with_the_shader() {
-        let text = shader::assemble("frame/uniform.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "FrameUniform").unwrap();
-        assert_eq!(size as usize, size_of::<FrameUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(FrameUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(
-            depth,
-            color,
-            night_floor,
-            exposure,
-            deck,
-            deck_cover,
-            cd_m2_per_unit,
-            color_space,
-            tone,
-            seed,
-            y_sign,
-            dither_step
+        shader::assert_layout!(
+            "frame/uniform.wgsl",
+            "FrameUniform",
+            FrameUniform,
+            [
+                depth,
+                color,
+                night_floor,
+                exposure,
+                deck,
+                deck_cover,
+                cd_m2_per_unit,
+                color_space,
+                tone,
+                seed,
+                y_sign,
+                dither_step,
+                pixel_angle,
+                encode,
+                medium_share,
+                direct_share,
+                drops,
+                drawn,
+                compositions
+            ]
         );
-        same!(pixel_angle, encode, medium_share, direct_share, drops, drawn, compositions);
     }
 }

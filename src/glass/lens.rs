@@ -106,22 +106,19 @@ impl LensUniform {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::gpu::shader;
 
     #[test]
     fn offsets_agree_with_the_shader() {
-        let text = shader::assemble("glass/lens.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "Lens").unwrap();
-        assert_eq!(size as usize, size_of::<LensUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(members.contains(&(stringify!($field).into(), offset_of!(LensUniform, $field) as u32)));)*
-            };
-        }
-        same!(ray, per_m, ray_dx, y_sign, ray_dy, radius, eye, pixel, clip_x, fogging, clip_y, demist, clip_z, height);
-        same!(edges, arms, flow, size, key, wet);
+        shader::assert_layout!(
+            "glass/lens.wgsl",
+            "Lens",
+            LensUniform,
+            [
+                ray, per_m, ray_dx, y_sign, ray_dy, radius, eye, pixel, clip_x, fogging, clip_y, demist, clip_z,
+                height, edges, arms, flow, size, key, wet
+            ]
+        );
     }
 }

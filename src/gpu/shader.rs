@@ -102,6 +102,22 @@ pub fn validate(wgsl: &str) -> Result<()> {
         .map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))
 }
 
+/// Holds a Rust struct's size and fields against a WGSL struct of shader `$shader`, whose members have the same names.
+#[cfg(test)]
+macro_rules! assert_layout {
+    ($shader:expr, $name:expr, $type:ident, [$($field:ident),* $(,)?]) => {
+        let text = $crate::gpu::shader::assemble($shader).unwrap();
+        let (size, members) = $crate::gpu::shader::struct_layout(&text, $name).unwrap();
+        assert_eq!(size as usize, size_of::<$type>());
+        for (field, at) in [$((stringify!($field), std::mem::offset_of!($type, $field))),*] {
+            assert!(members.contains(&(field.into(), at as u32)), "{field} at {at}: {members:?}");
+        }
+    };
+}
+
+#[cfg(test)]
+pub(crate) use assert_layout;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -174,20 +174,15 @@ mod tests {
         ] {
             assert!(members.contains(&(name.into(), at as u32 - columns)), "{name}: {members:?}");
         }
-        let (size, members) = shader::struct_layout(&text, "Column").unwrap();
-        assert_eq!(size as usize, size_of::<ColumnUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(ColumnUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(
-            center, lean, right, semi, rim, ground, top, extinction, fallen, turn, fine, near, corners, later, radius
+        shader::assert_layout!(
+            "rain/local.wgsl",
+            "Column",
+            ColumnUniform,
+            [
+                center, lean, right, semi, rim, ground, top, extinction, fallen, turn, fine, near, corners, later,
+                radius, soft, edges
+            ]
         );
-        same!(soft, edges);
     }
 
     #[test]

@@ -163,8 +163,6 @@ impl Occluder {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::gpu::shader;
 
@@ -174,15 +172,7 @@ mod tests {
 
     #[test]
     fn offsets_are_those_of_the_shader() {
-        let text = shader::assemble("rain/occluders.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "Occluder").unwrap();
-        assert_eq!(size as usize, size_of::<OccluderUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(members.contains(&(stringify!($field).into(), offset_of!(OccluderUniform, $field) as u32)));)*
-            };
-        }
-        same!(x, y, w, distance, velocity, part);
+        shader::assert_layout!("rain/occluders.wgsl", "Occluder", OccluderUniform, [x, y, w, distance, velocity, part]);
     }
 
     #[test]

@@ -169,8 +169,6 @@ impl Splashes {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::{
         gpu::shader,
@@ -179,18 +177,12 @@ mod tests {
 
     #[test]
     fn offsets_are_those_of_the_shader() {
-        let text = shader::assemble("rain/drops_single.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "SplashUniform").unwrap();
-        assert_eq!(size as usize, size_of::<SplashUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(SplashUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(cell, place, side, life, slots, cells, tick, part, share, ground, reach, depth_grain, sizes);
+        shader::assert_layout!(
+            "rain/drops_single.wgsl",
+            "SplashUniform",
+            SplashUniform,
+            [cell, place, side, life, slots, cells, tick, part, share, ground, reach, depth_grain, sizes]
+        );
     }
 
     #[test]

@@ -222,8 +222,6 @@ impl Stones {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::{
         gpu::shader,
@@ -237,20 +235,14 @@ mod tests {
 
     #[test]
     fn offsets_are_those_of_the_shader() {
-        let text = shader::assemble("rain/stones_single.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "StoneUniform").unwrap();
-        assert_eq!(size as usize, size_of::<StoneUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(StoneUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(
-            first, upto, classes, weight, cell, place, side, life, slots, cells, tick, part, share, ground, reach,
-            gravity
+        shader::assert_layout!(
+            "rain/stones_single.wgsl",
+            "StoneUniform",
+            StoneUniform,
+            [
+                first, upto, classes, weight, cell, place, side, life, slots, cells, tick, part, share, ground, reach,
+                gravity
+            ]
         );
     }
 

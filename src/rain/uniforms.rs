@@ -148,8 +148,6 @@ impl RainUniform {
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::{
         gpu::shader,
@@ -158,19 +156,32 @@ mod tests {
 
     #[test]
     fn offsets_are_those_of_the_shader() {
-        let text = shader::assemble("rain/drops_single.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "RainUniform").unwrap();
-        assert_eq!(size as usize, size_of::<RainUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(
-                    members.contains(&(stringify!($field).into(), offset_of!(RainUniform, $field) as u32)),
-                    "{}: {members:?}", stringify!($field)
-                );)*
-            };
-        }
-        same!(depth, clip, wind, exposure, above, per_shell, below, seed, sun, pixel_angle, to_sun, extinction, weight);
-        same!(y_sign, shells, camera, cell, shell, classes);
+        shader::assert_layout!(
+            "rain/drops_single.wgsl",
+            "RainUniform",
+            RainUniform,
+            [
+                depth,
+                clip,
+                wind,
+                exposure,
+                above,
+                per_shell,
+                below,
+                seed,
+                sun,
+                pixel_angle,
+                to_sun,
+                extinction,
+                weight,
+                y_sign,
+                shells,
+                camera,
+                cell,
+                shell,
+                classes
+            ]
+        );
     }
 
     #[test]
