@@ -1281,14 +1281,18 @@ typedef uint32_t wk_cloud_kind;
 /** High ripples of ice. */
 #define WK_CLOUD_CIRROCUMULUS 11
 
-/** What falls. */
+/**
+ * What falls. The types of rain: frontal (stratiform) is RAIN, usually 1 to 10 mm/h; convective is RAIN with
+ * WK_PRECIPITATION_SHOWERS, 10 to 100; relief (orographic) rain, many small drops, is DRIZZLE of 0.5 to 3; drizzle itself 0.1 to
+ * 1. docs/rain.md has the drop sizes of each.
+ */
 typedef uint32_t wk_precipitation_kind;
 
 /** Nothing falls; the rate must be 0. */
 #define WK_PRECIPITATION_NONE 0
-/** Drizzle (DZ): drops below 0.5 mm. */
+/** Drizzle (DZ), and relief rain: small drops. */
 #define WK_PRECIPITATION_DRIZZLE 1
-/** Rain (RA). */
+/** Rain (RA): frontal, or convective with WK_PRECIPITATION_SHOWERS. */
 #define WK_PRECIPITATION_RAIN 2
 /** Snow (SN). */
 #define WK_PRECIPITATION_SNOW 3
@@ -1451,7 +1455,7 @@ typedef uint64_t wk_weather_has_flags;
 /** How it falls. */
 typedef uint32_t wk_precipitation_flags;
 
-/** From convective cloud (SH): onset and end are sharp. */
+/** From convective cloud (SH): fewer and larger drops, onset and end are sharp. */
 #define WK_PRECIPITATION_SHOWERS 1
 /** With thunder (TS). */
 #define WK_PRECIPITATION_THUNDERSTORM 2
@@ -4399,9 +4403,9 @@ typedef struct wk_windscreen {
      */
     double airflow_m_s;
     /**
-     * Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. The boxes of
-     * wk_context_set_shelters keep rain off by themselves, as wk_context_get_rain_on_at says for the pane's middle, but for the
-     * vehicle's own: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+     * Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. What wk_context_set_shelters
+     * and wk_context_set_occluder_maps tell of keeps rain off each part of the pane by itself, but for the vehicle's own box: one
+     * that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
      */
     double exposed;
     /** Mist on the inside. Range [0, 1], default 0. */
@@ -4684,7 +4688,9 @@ typedef struct wk_ground_cell {
     float soaked;
     /** Standing water, mm. */
     float standing_mm;
-    /** Share under ice, by the weather of the moment. */
+    /**
+     * Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
+     */
     float ice;
 } wk_ground_cell;
 

@@ -17,13 +17,20 @@ struct Step {
     drops: array<vec4u, 64>,
     // Beads by volume: (radius + 1024 x loss to the air, motion x, y, 256 x drive over retention).
     beads: array<vec4i, 96>,
+    // Shares of the rain that get to the nodes of a net over the pane, in 1/128, four a word, rows from the lower edge up.
+    reach: array<vec4u, 8>,
 }
+
+// Whether maps of the host's keep rain off the pane.
+override MAPPED: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
 // (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
 @group(0) @binding(1) var cells: texture_2d<u32>;
 // (volume that moves, its new place, speed + 65536 shape, 256 x volume left + 32 ran + 16 wiped + where to).
 @group(0) @binding(2) var moves: texture_2d<u32>;
+// Of each node the share that maps let through, as `reach`.
+@group(0) @binding(3) var mapped: texture_2d<u32>;
 
 const MOST_HITS: u32 = 4095u;
 const FULL_FILM: u32 = 65535u;
@@ -106,4 +113,31 @@ fn swept(at: vec2i) -> bool {
         }
     }
     return false;
+}
+
+// Nodes of the net along the pane's lower edge, and up the glass.
+const NODES: vec2u = vec2u(16u, 8u);
+
+fn node(at: vec2u) -> u32 {
+    let i = at.y * NODES.x + at.x;
+    let share = (step.reach[i / 16u][(i / 4u) % 4u] >> (8u * (i % 4u))) & 255u;
+    if MAPPED {
+        return (share * textureLoad(mapped, vec2i(at), 0).x) >> 7u;
+    }
+    return share;
+}
+
+// Share of the rain that gets to a cell, in 1/65536: between its nodes.
+fn reached(cell: vec2i) -> u32 {
+    let at = ((vec2u(cell) * 2u + 1u) * (NODES - 1u) * 128u) / step.key.zw;
+    let low = at >> vec2u(8u);
+    let part = at & vec2u(255u);
+    let below = node(low) * (256u - part.x) + node(low + vec2u(1u, 0u)) * part.x;
+    let above = node(low + vec2u(0u, 1u)) * (256u - part.x) + node(low + vec2u(1u, 1u)) * part.x;
+    return (below * (256u - part.y) + above * part.y) >> 7u;
+}
+
+// A share of a number, of 65536.
+fn part_of(number: u32, share: u32) -> u32 {
+    return select((number >> 16u) * share + (((number & 0xffffu) * share) >> 16u), number, share > 65535u);
 }

@@ -12,9 +12,10 @@ fn declare(in: FullscreenVarying) -> @location(0) vec4u {
     // Few cells get much, many little, as few drops are large.
     let chance = life & 255u;
     let share = (chance * chance) >> 6u;
-    let water = min((step.declared.x * age) >> 8u, 1048576u);
+    let gets = reached(cell);
+    let water = min((part_of(step.declared.x, gets) * age) >> 8u, 1048576u);
     let rests = (step.declared.w * (64u + ((life >> 8u) & 127u))) >> 8u;
     let volume = min((water * share) >> 8u, rests);
-    let hits = min((step.declared.y * age) >> 16u, MOST_HITS);
+    let hits = min((part_of(step.declared.y, gets) * age) >> 16u, MOST_HITS);
     return vec4u(volume, pcg(life + 1u), (life << 16u), hits | (((now / LIFE_STEPS) & 15u) << 12u));
 }

@@ -79,8 +79,12 @@ fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
 fn landed(cell: vec2i, bead_there: Cell, state: u32) -> vec4u {
     var c = bead_there;
     var random = cell_hash(cell, step.key.x + 3u);
-    let count = select(0u, 1u, random < step.arrive.x) + select(0u, 1u, random < step.arrive.y)
-        + select(0u, 1u, random < step.arrive.z);
+    // Two at once are as much rarer as one is, squared.
+    let share = reached(cell);
+    let one = part_of(step.arrive.x, share);
+    let two = part_of(part_of(step.arrive.y, share), share);
+    let three = part_of(part_of(part_of(step.arrive.z, share), share), share);
+    let count = select(0u, 1u, random < one) + select(0u, 1u, random < two) + select(0u, 1u, random < three);
     for (var i = 0u; i < count; i++) {
         random = pcg(random + 1u);
         let at = pcg(random + 2u);

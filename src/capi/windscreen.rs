@@ -106,9 +106,9 @@ pub struct wk_windscreen {
     /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
     /// on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. The boxes of
-    /// wk_context_set_shelters keep rain off by themselves, as wk_context_get_rain_on_at says for the pane's middle, but for the
-    /// vehicle's own: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+    /// Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. What wk_context_set_shelters
+    /// and wk_context_set_occluder_maps tell of keeps rain off each part of the pane by itself, but for the vehicle's own box: one
+    /// that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
     pub exposed: f64,
     /// Mist on the inside. Range [0, 1], default 0.
     pub fogging: f64,

@@ -5,7 +5,9 @@ use glam::DVec3;
 use super::{Context, fog::falling_top_m};
 use crate::{
     error::{Error, Result, check_range},
+    glass::{Reach, SIZES},
     rain::{
+        MAX_SHELTERS,
         drops::factor_in,
         ice::StoneSizes,
         shelter::{Shelter, sheltered},
@@ -67,7 +69,10 @@ pub struct RainSurface {
 /// A pane of glass and the eye behind it, in the host's world.
 pub(crate) struct PaneAt {
     pub eye: DVec3,
-    pub middle: DVec3,
+    /// Lower left of its bounds, and from there to the lower right and the upper left.
+    pub origin: DVec3,
+    pub along: DVec3,
+    pub up: DVec3,
     /// Outwards, unit.
     pub out: DVec3,
     /// Of the air against the glass, m/s.
@@ -79,7 +84,18 @@ impl PaneAt {
     fn sits_in(&self, shelter: &Shelter) -> bool {
         let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
         // What both ways of a line from a point meet has the point in it: it is convex.
-        met(self.eye, self.out) && met(self.eye, -self.out) && !met(self.middle + self.out * VEHICLE_M, self.out)
+        let before = self.at([0.5; 2]) + self.out * VEHICLE_M;
+        met(self.eye, self.out) && met(self.eye, -self.out) && !met(before, self.out)
+    }
+
+    /// The place so far, 0 to 1, to the right and up.
+    pub fn at(&self, [x, y]: [f64; 2]) -> DVec3 {
+        self.origin + self.along * x + self.up * y
+    }
+
+    /// Where drops are asked for what kept them off: at the lower left.
+    pub fn before(&self) -> DVec3 {
+        self.origin + self.out * BEFORE_M
     }
 }
 
@@ -182,19 +198,35 @@ impl Context {
         })
     }
 
-    /// Share of the water of `sizes` that boxes let through to a pane now, as [`Context::rain_on`] asks for its middle. The
-    /// vehicle's own box is not asked.
-    pub(crate) fn share_on_pane(&self, sizes: &DropSizes, pane: &PaneAt) -> f64 {
-        let to_enu = self.desc.world.frame_at(pane.middle).world_to_enu;
+    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and the share
+    /// of the water on a pane that they bring.
+    pub(crate) fn drops_on_pane(&self, sizes: &DropSizes, pane: &PaneAt) -> [(DVec3, f64); SIZES] {
+        let to_enu = self.desc.world.frame_at(pane.origin).world_to_enu;
         let (normal, air) = (to_enu * pane.out, to_enu * pane.air_m_s);
         let known_s = self.time_s.max(self.timeline.known_from_s());
         let wind = self.wind.blowing(&self.timeline, self.drifted, known_s).velocity_m_s().extend(0.0);
-        let before = pane.middle + pane.out * BEFORE_M;
-        let comes = |falls_m_s: f64| {
-            let velocity = to_enu.transpose() * (wind - DVec3::Z * falls_m_s);
-            !self.shelters.iter().any(|b| sheltered(b, before, velocity) && !pane.sits_in(b))
-        };
-        let whole = sizes.on_surface_of(normal, air, |_| true).rate_mm_h;
-        if whole > 0.0 { sizes.on_surface_of(normal, air, comes).rate_mm_h / whole } else { 1.0 }
+        let middles = std::array::from_fn(|i| (i as f64 + 0.5) / SIZES as f64);
+        let mut drops = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| {
+            let falls = sizes.speed_m_s(d);
+            (to_enu.transpose() * (wind - DVec3::Z * falls), (falls * normal.z - air.dot(normal)).max(0.0) / falls)
+        });
+        let whole: f64 = drops.iter().map(|d| d.1).sum();
+        drops.iter_mut().for_each(|d| d.1 = if whole > 0.0 { d.1 / whole } else { 1.0 / SIZES as f64 });
+        drops
+    }
+
+    /// What boxes let through of such drops to each part of a pane now. The vehicle's own box is not asked.
+    pub(crate) fn reach_of_pane(&self, drops: &[(DVec3, f64); SIZES], pane: &PaneAt) -> Reach {
+        if self.shelters.is_empty() {
+            return Reach::ALL;
+        }
+        let mut own = [false; MAX_SHELTERS];
+        self.shelters.iter().zip(&mut own).for_each(|(b, own)| *own = pane.sits_in(b));
+        let others = || self.shelters.iter().zip(&own).filter(|(_, own)| !**own).map(|(b, _)| b);
+        Reach::of(|place| {
+            let before = pane.at(place) + pane.out * BEFORE_M;
+            let kept = drops.iter().filter(|(velocity, _)| others().any(|b| sheltered(b, before, *velocity)));
+            (1.0 - kept.map(|d| d.1).sum::<f64>()).max(0.0)
+        })
     }
 }

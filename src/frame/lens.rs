@@ -2,18 +2,49 @@
 
 use std::sync::Arc;
 
+use glam::{DMat3, DVec3};
+
 use super::{
     Frame, FrameFlags, View,
     measure::{Effect, Recording},
+    rain::has_maps,
+    surface::around,
     target::{ColorSpace, Stages},
     uniform::is_float,
 };
 use crate::{
     context::{Context, PaneAt, Scene},
     error::{Error, Result},
-    glass::{Glass, GlassReport, LensFrame, Moment, Plane, Windscreen, reference::Cells},
-    rain::{drops::factor_in, sizes::DropSizes},
+    glass::{
+        Glass, GlassReport, LensFrame, Mapped, Moment, PaneUniform, Plane, Reach, SIZES, Windscreen, reference::Cells,
+    },
+    rain::{Told, drops::factor_in, sizes::DropSizes},
+    scene::Camera,
 };
+
+/// Where a pane of the camera's is in the host's world.
+fn pane_at(camera: &Camera, plane: &Plane, screen: &Windscreen) -> PaneAt {
+    let to_world = camera.rotation().transpose();
+    PaneAt {
+        eye: camera.position,
+        origin: camera.position + to_world * plane.origin,
+        along: to_world * (plane.u * plane.size_m.x),
+        up: to_world * (plane.v * plane.size_m.y),
+        out: to_world * plane.out,
+        air_m_s: to_world * -screen.velocity_m_s,
+    }
+}
+
+/// The same for the maps' pass, from a camera at `eye` whose axes `to_enu` turns.
+fn pane_uniform(pane: &PaneAt, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
+    let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
+    PaneUniform {
+        origin: row(pane.before() - eye, 0.0),
+        along: row(pane.along, 0.0),
+        up: row(pane.up, 0.0),
+        drops: drops.map(|(velocity, share)| row(velocity, share)),
+    }
+}
 
 impl View {
     /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes sets it
@@ -76,20 +107,21 @@ impl View {
     ) -> Result<()> {
         let Some(glass) = &mut self.glass else { return Ok(()) };
         let weather = |t: f64| context.with_areas(frame.camera.position, t, context.known_weather(t));
-        let (eye, to_world) = (frame.camera.position, frame.camera.rotation().transpose());
-        let share = |plane: &Plane, screen: &Windscreen| {
-            if context.shelters().is_empty() {
-                return 1.0;
+        let eye = frame.camera.position;
+        let reach = |plane: &Plane, screen: &Windscreen| {
+            if context.shelters().is_empty() && !has_maps(context) {
+                return Ok((Reach::ALL, None));
             }
             let now = weather(context.time_s());
             let sizes = DropSizes::new(&now.precipitation, factor_in(&now.air, scene.place.altitude_m));
-            let pane = PaneAt {
-                eye,
-                middle: eye + to_world * plane.middle(),
-                out: to_world * plane.out,
-                air_m_s: to_world * -screen.velocity_m_s,
-            };
-            context.share_on_pane(&sizes, &pane)
+            let pane = pane_at(&frame.camera, plane, screen);
+            let drops = context.drops_on_pane(&sizes, &pane);
+            let mapped = has_maps(context).then(|| {
+                let told = around(context, scene, frame, (1.0, 0.0), 1.0)?;
+                let uniform = pane_uniform(&pane, &drops, (eye, scene.world_to_enu));
+                Ok(Mapped { told: Told { shelters: &[], lights: &[], ..told }, pane: uniform })
+            });
+            Ok((context.reach_of_pane(&drops, &pane), mapped.transpose()?))
         };
         let moment = Moment {
             time_s: context.time_s(),
@@ -98,7 +130,7 @@ impl View {
             up: scene.world_to_enu.transpose().z_axis,
             altitude_m: scene.place.altitude_m,
             weather: &weather,
-            share: &share,
+            reach: &reach,
             cut: frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0)),
         };
         let (device, encoder) = (&self.device, &mut *to.encoder);

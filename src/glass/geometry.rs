@@ -94,12 +94,6 @@ impl Plane {
         (cell, self.size_m.to_array().map(|m| ((m / cell).round() as u32).clamp(4, MAX_CELLS)))
     }
 
-    /// The pane's middle, m in the camera's axes.
-    pub fn middle(&self) -> DVec3 {
-        let flat = self.corners.iter().sum::<DVec2>() / 4.0;
-        self.origin + self.u * flat.x + self.v * flat.y
-    }
-
     /// Area of the pane, m^2.
     pub fn area_m2(&self) -> f64 {
         let c = &self.corners;

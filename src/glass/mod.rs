@@ -20,18 +20,23 @@ mod geometry;
 pub mod laws;
 mod lens;
 mod passes;
+pub mod reach;
+mod reach_pass;
 pub mod reference;
 mod state;
 pub mod step;
 
 pub(crate) use lens::LensFrame;
 pub(crate) use passes::GlassKit;
+pub(crate) use reach::SIZES;
+pub(crate) use reach_pass::{Mapped, PaneUniform};
 pub use state::GlassReport;
 pub(crate) use state::{Glass, Moment};
 
 use glam::DVec3;
 
 pub use geometry::Plane;
+pub use reach::Reach;
 
 use crate::error::{Error, Result, check_range};
 
@@ -100,8 +105,9 @@ pub struct Windscreen {
     /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel that Welkin is not told of. What the context's
-    /// boxes keep off the pane's middle ([`crate::context::Context::set_shelters`]) is taken off besides; a box that holds the
-    /// camera and ends within 3 m before the glass is the vehicle's own and keeps nothing off.
+    /// boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
+    /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends within 3 m
+    /// before the glass is the vehicle's own and keeps nothing off.
     pub exposed: f64,
     /// Mist on the inside, [0, 1].
     pub fogging: f64,

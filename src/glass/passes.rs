@@ -2,7 +2,12 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use super::{LensFrame, lens::LensUniform, step::StepUniform};
+use super::{
+    LensFrame,
+    lens::LensUniform,
+    reach_pass::{self, MapReach, Mapped, MappedKit},
+    step::StepUniform,
+};
 use crate::{
     error::Result,
     gpu::{
@@ -12,6 +17,8 @@ use crate::{
 };
 
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// Shares of the rain that maps let through.
+pub(super) const REACH: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Texels of the picture in one of its smaller copies, along an edge.
 const SMALLER: u32 = 8;
@@ -31,6 +38,8 @@ pub(crate) struct GlassKit {
     decide: wgpu::RenderPipeline,
     gather: wgpu::RenderPipeline,
     declare: wgpu::RenderPipeline,
+    /// Once a view has looked through glass below maps.
+    mapped: Option<MappedKit>,
     shrink_layout: wgpu::BindGroupLayout,
     shrink: [wgpu::RenderPipeline; 3],
     lens_layout: wgpu::BindGroupLayout,
@@ -53,7 +62,7 @@ fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::Bi
     }
 }
 
-fn uniform_entry(has_dynamic_offset: bool, size: usize) -> wgpu::BindGroupLayoutEntry {
+pub(super) fn uniform_entry(has_dynamic_offset: bool, size: usize) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding: 0,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -81,7 +90,7 @@ fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, he
     })
 }
 
-fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
+pub(super) fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
     device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,
@@ -95,7 +104,11 @@ fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
 }
 
 /// A bind group of `resources`, numbered from 0.
-fn bind(device: &Device, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+pub(super) fn bind(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
     let numbered = resources.iter().enumerate();
     let entries: Vec<_> =
         numbered.map(|(i, r)| wgpu::BindGroupEntry { binding: i as u32, resource: r.clone() }).collect();
@@ -104,6 +117,17 @@ fn bind(device: &Device, layout: &wgpu::BindGroupLayout, resources: &[wgpu::Bind
 
 fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
+}
+
+/// A pipeline over the cells.
+pub(super) fn cells_pipeline(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layout: &wgpu::BindGroupLayout,
+    constants: &[(&str, f64)],
+) -> Result<wgpu::RenderPipeline> {
+    let targets = &[CELLS.into()];
+    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts: &[layout], targets, constants, samples: 1 })
 }
 
 impl GlassKit {
@@ -117,8 +141,12 @@ impl GlassKit {
             let desc = wgpu::BindGroupLayoutDescriptor { label: Some("glass"), entries };
             device.device.create_bind_group_layout(&desc)
         };
-        let step_layout =
-            layout(&[uniform_entry(true, size_of::<StepUniform>()), texture_entry(1, uint), texture_entry(2, uint)]);
+        let step_layout = layout(&[
+            uniform_entry(true, size_of::<StepUniform>()),
+            texture_entry(1, uint),
+            texture_entry(2, uint),
+            texture_entry(3, uint),
+        ]);
         let shrink_layout = layout(&[texture_entry(0, float(false))]);
         let lens_layout = layout(&[
             uniform_entry(false, size_of::<LensUniform>()),
@@ -134,20 +162,23 @@ impl GlassKit {
             },
             texture_entry(6, float(false)),
         ]);
-        let pipeline = |shader, entry, layout: &wgpu::BindGroupLayout, format: wgpu::TextureFormat, constants: &[_]| {
-            let targets = &[format.into()];
-            let desc = FullscreenDesc { shader, entry, layouts: &[layout], targets, constants, samples: 1 };
-            pass::fullscreen(device, &desc)
-        };
-        let cells = |shader, entry| pipeline(shader, entry, &step_layout, CELLS, &[]);
+        let cells = |shader, entry| cells_pipeline(device, (shader, entry), &step_layout, &[]);
         let shrink = |factor: u32, encoded: f64| {
-            let constants = [("FACTOR", f64::from(factor)), ("ENCODED", encoded)];
-            pipeline("glass/shrink.wgsl", "shrink", &shrink_layout, SMALL, &constants)
+            let desc = FullscreenDesc {
+                shader: "glass/shrink.wgsl",
+                entry: "shrink",
+                layouts: &[&shrink_layout],
+                targets: &[SMALL.into()],
+                constants: &[("FACTOR", f64::from(factor)), ("ENCODED", encoded)],
+                samples: 1,
+            };
+            pass::fullscreen(device, &desc)
         };
         Ok(Self {
             decide: cells("glass/decide.wgsl", "decide")?,
             gather: cells("glass/gather.wgsl", "gather")?,
             declare: cells("glass/declare.wgsl", "declare")?,
+            mapped: None,
             shrink: [shrink(SMALLER, 0.0)?, shrink(SMALLER, 1.0)?, shrink(SMALLEST, 0.0)?],
             lenses: HashMap::new(),
             sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -196,6 +227,8 @@ pub(super) struct Lattice {
     cells: [wgpu::Texture; 2],
     views: [wgpu::TextureView; 2],
     moves: wgpu::TextureView,
+    /// Share of the rain that maps let through to the net over the pane.
+    mapped: (wgpu::Texture, wgpu::TextureView),
     /// Which of the two is the present state.
     now: usize,
     /// Reading state i and, in place of the moves, the other state; reading state i and the moves.
@@ -211,6 +244,8 @@ impl Lattice {
         let cells = ["glass 0", "glass 1"].map(|label| texture(device, label, CELLS, size));
         let views = [view(&cells[0]), view(&cells[1])];
         let moves = view(&texture(device, "glass moves", CELLS, size));
+        let mapped = texture(device, "glass below maps", REACH, reach_pass::SIZE);
+        let mapped = (mapped.clone(), view(&mapped));
         let alignment = device.device.limits().min_uniform_buffer_offset_alignment as usize;
         let stride = size_of::<StepUniform>().next_multiple_of(alignment.max(16));
         let steps = buffer(device, "glass steps", (stride * most_steps) as u64);
@@ -220,12 +255,12 @@ impl Lattice {
                 offset: 0,
                 size: wgpu::BufferSize::new(size_of::<StepUniform>() as u64),
             };
-            let resources = [wgpu::BindingResource::Buffer(numbers), tex(&views[state]), tex(moves)];
+            let resources = [wgpu::BindingResource::Buffer(numbers), tex(&views[state]), tex(moves), tex(&mapped.1)];
             bind(device, &kit.step_layout, &resources)
         };
         let groups = [0, 1].map(|i| [group(i, &views[1 - i]), group(i, &moves)]);
         let (slots, due) = (Vec::with_capacity(stride * most_steps), Vec::with_capacity(most_steps));
-        Self { size, cells, views, moves, now: 0, groups, steps, stride, slots, due }
+        Self { size, cells, views, moves, mapped, now: 0, groups, steps, stride, slots, due }
     }
 
     /// The present state.
@@ -249,29 +284,53 @@ impl Lattice {
         self.due.push(work);
     }
 
-    /// Records the work that was added; says how many passes that took.
-    pub fn record(&mut self, device: &Device, kit: &GlassKit, encoder: &mut wgpu::CommandEncoder) -> u32 {
+    /// The shares of the rain that maps let through, as of the last frame that had any.
+    pub fn mapped(&self) -> &wgpu::Texture {
+        &self.mapped.0
+    }
+
+    /// Records the work that was added, below what maps show; says how many passes that took.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn record(
+        &mut self,
+        device: &Device,
+        kit: &mut GlassKit,
+        encoder: &mut wgpu::CommandEncoder,
+        below: Option<(&mut Option<Box<MapReach>>, &Mapped<'_>)>,
+    ) -> Result<u32> {
         if self.due.is_empty() {
-            return 0;
+            return Ok(0);
         }
         device.queue.write_buffer(&self.steps, 0, &self.slots);
         let mut passes = 0;
+        let (mut gather, mut declare) = (&kit.gather, &kit.declare);
+        if let Some((reach, mapped)) = below {
+            let more = match &mut kit.mapped {
+                Some(more) => more,
+                none => none.insert(MappedKit::new(device, &kit.step_layout)?),
+            };
+            let reach = reach.get_or_insert_with(|| Box::new(MapReach::new(device, more)));
+            reach.draw(device, more, encoder, mapped, &self.mapped.1);
+            (gather, declare, passes) = (&more.gather, &more.declare, 1);
+        }
         for (i, work) in self.due.iter().enumerate() {
             let offset = (i * self.stride) as u32;
             let (now, next) = (self.now, 1 - self.now);
             if *work == Work::Move {
                 draw(encoder, &kit.decide, (&self.groups[now][0], offset), &self.moves);
-                draw(encoder, &kit.gather, (&self.groups[now][1], offset), &self.views[next]);
+                draw(encoder, gather, (&self.groups[now][1], offset), &self.views[next]);
                 passes += 2;
             } else {
-                draw(encoder, &kit.declare, (&self.groups[now][1], offset), &self.views[next]);
+                draw(encoder, declare, (&self.groups[now][1], offset), &self.views[next]);
                 passes += 1;
             }
             self.now = next;
         }
         self.slots.clear();
         self.due.clear();
-        passes
+        Ok(passes)
     }
 }
 

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::{
     Plane, laws,
+    reach::NODES,
     step::{StepUniform, VOLUME_UNIT_M3, pcg},
 };
 
@@ -71,6 +72,24 @@ fn swept(step: &StepUniform, at: [i32; 2]) -> bool {
         let beside = perp_dot(to, d).abs().min(perp_dot(from, d).abs()) <= now[2] * 4096;
         ahead && (between || beside)
     })
+}
+
+fn node(step: &StepUniform, at: [u32; 2]) -> u32 {
+    let i = at[1] * NODES[0] as u32 + at[0];
+    (step.reach[i as usize / 16][(i as usize / 4) % 4] >> (8 * (i % 4))) & 255
+}
+
+fn reached(step: &StepUniform, cell: [i32; 2]) -> u32 {
+    let at: [u32; 2] =
+        std::array::from_fn(|k| (cell[k] as u32 * 2 + 1) * (NODES[k] as u32 - 1) * 128 / step.key[2 + k]);
+    let ([x, y], part) = (at.map(|v| v >> 8), at.map(|v| v & 255));
+    let below = node(step, [x, y]) * (256 - part[0]) + node(step, [x + 1, y]) * part[0];
+    let above = node(step, [x, y + 1]) * (256 - part[0]) + node(step, [x + 1, y + 1]) * part[0];
+    (below * (256 - part[1]) + above * part[1]) >> 7
+}
+
+fn part_of(number: u32, share: u32) -> u32 {
+    if share > 65_535 { number } else { (number >> 16) * share + (((number & 0xffff) * share) >> 16) }
 }
 
 impl Cells {
@@ -212,7 +231,11 @@ impl Cells {
         c.dry(step, cell);
         let state = cleared(step, cell, before[3], ran, own[3] & WIPED != 0);
         let mut random = cell_hash(cell, step.key[0].wrapping_add(3));
-        let count = step.arrive[..3].iter().filter(|chance| random < **chance).count() as u32;
+        let share = reached(step, cell);
+        let one = part_of(step.arrive[0], share);
+        let two = part_of(part_of(step.arrive[1], share), share);
+        let three = part_of(part_of(part_of(step.arrive[2], share), share), share);
+        let count = [one, two, three].iter().filter(|chance| random < **chance).count() as u32;
         for _ in 0..count {
             random = pcg(random.wrapping_add(1));
             let at = pcg(random.wrapping_add(2));
@@ -279,9 +302,10 @@ fn declare(step: &StepUniform, cell: [i32; 2]) -> Cell {
     let life = pcg(random.wrapping_add(now / LIFE_STEPS));
     let chance = life & 255;
     let share = (chance * chance) >> 6;
-    let water = (step.declared[0].wrapping_mul(age) >> 8).min(1_048_576);
+    let gets = reached(step, cell);
+    let water = (part_of(step.declared[0], gets).wrapping_mul(age) >> 8).min(1_048_576);
     let rests = step.declared[3].wrapping_mul(64 + ((life >> 8) & 127)) >> 8;
     let volume = (water.wrapping_mul(share) >> 8).min(rests);
-    let hits = (step.declared[1].wrapping_mul(age) >> 16).min(MOST_HITS);
+    let hits = (part_of(step.declared[1], gets).wrapping_mul(age) >> 16).min(MOST_HITS);
     [volume, pcg(life.wrapping_add(1)), life << 16, hits | (((now / LIFE_STEPS) & 15) << 12)]
 }

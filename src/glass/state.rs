@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::{
-    LensFrame, MAX_STEPS, Plane, STEPS_PER_S, Windscreen,
+    LensFrame, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
     lens::{LensUniform, Shown},
     passes::{GlassKit, Lattice, LensPass, LensVariant, Work},
+    reach_pass::{MapReach, Mapped},
     reference::Cells,
     step::{Acting, Tables, seed_key},
 };
@@ -18,6 +19,9 @@ use crate::{
     scene::Camera,
     weather::Conditions,
 };
+
+/// What of the rain boxes let through to which part of the glass, and what the maps are that do, if there are any.
+type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
 /// What the weather and the frame say of a moment.
 pub(crate) struct Moment<'a> {
@@ -30,8 +34,8 @@ pub(crate) struct Moment<'a> {
     pub altitude_m: f64,
     /// The weather at a time.
     pub weather: &'a dyn Fn(f64) -> Conditions,
-    /// Share of the rain that what stands about lets through to the glass now.
-    pub share: &'a dyn Fn(&Plane, &Windscreen) -> f64,
+    /// What of the rain gets to the glass now.
+    pub reach: &'a dyn Fn(&Plane, &Windscreen) -> Result<Reached<'a>>,
     /// Nothing of earlier frames may show.
     pub cut: bool,
 }
@@ -58,7 +62,10 @@ pub(crate) struct Glass {
     last: Option<(f64, Windscreen)>,
     plane: Option<Plane>,
     acting: Option<Acting>,
+    /// Of the last frame: what boxes let through, and whether there were maps.
+    reach: (Reach, bool),
     lattice: Option<Lattice>,
+    below: Option<Box<MapReach>>,
     lens: Option<LensPass>,
     tables: Box<Tables>,
     /// The last step that was done.
@@ -74,14 +81,14 @@ fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
-fn acting(screen: &Windscreen, (plane, share): (&Plane, f64), moment: &Moment<'_>, weather: &Conditions) -> Acting {
+fn acting(screen: &Windscreen, plane: &Plane, moment: &Moment<'_>, weather: &Conditions) -> Acting {
     let up = moment.camera.rotation() * moment.up;
     // Steps of 50 m: a road's ups and downs must not cost new tables.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
     Acting {
         cell_m: plane.lattice().0,
         rain: DropSizes::new(&weather.precipitation, factor_in(&weather.air, level)),
-        exposed: screen.exposed * share,
+        exposed: screen.exposed,
         up: plane.out.dot(up),
         approach_m_s: plane.out.dot(screen.velocity_m_s),
         airflow_m_s: screen.airflow_m_s,
@@ -98,7 +105,9 @@ impl Glass {
             last: None,
             plane: None,
             acting: None,
+            reach: (Reach::ALL, false),
             lattice: None,
+            below: None,
             lens: None,
             tables: Box::default(),
             step: None,
@@ -129,7 +138,7 @@ impl Glass {
     pub fn advance(
         &mut self,
         device: &Device,
-        kit: &GlassKit,
+        kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
         moment: &Moment<'_>,
     ) -> Result<u32> {
@@ -146,24 +155,37 @@ impl Glass {
         let now = step_at(moment.time_s);
         let before = self.last.filter(|_| !moment.cut);
         let from = self.step.filter(|s| !moment.cut && *s <= now && now - s <= MAX_STEPS);
-        let reached = (&plane, (moment.share)(&plane, &self.screen));
-        let present = acting(&self.screen, reached, moment, &(moment.weather)(moment.time_s));
+        let (reach, mapped) = (moment.reach)(&plane, &self.screen)?;
+        self.reach = (reach, mapped.is_some());
+        let present = acting(&self.screen, &plane, moment, &(moment.weather)(moment.time_s));
         self.acting = Some(present);
         let Some(from) = from else {
             self.begin(device, kit, moment, &present, (now, size));
-            self.last = Some((moment.time_s, self.screen));
-            return Ok(self.lattice.as_mut().map_or(0, |l| l.record(device, kit, encoder)));
+            return self.record(device, kit, encoder, moment, mapped.as_ref());
         };
         for step in from + 1..=now {
             let time_s = step as f64 / STEPS_PER_S;
             let screen = self.between(before, moment.time_s, time_s);
-            let mut acts = acting(&screen, reached, moment, &(moment.weather)(time_s));
+            let mut acts = acting(&screen, &plane, moment, &(moment.weather)(time_s));
             acts.cell_m = cell_m;
             self.one(device, kit, (&acts, &screen), moment.seed, (step, size), before, moment.time_s);
         }
         self.step = Some(now);
+        self.record(device, kit, encoder, moment, mapped.as_ref())
+    }
+
+    /// Records what is due, and that this frame was.
+    fn record(
+        &mut self,
+        device: &Device,
+        kit: &mut GlassKit,
+        encoder: &mut wgpu::CommandEncoder,
+        moment: &Moment<'_>,
+        mapped: Option<&Mapped<'_>>,
+    ) -> Result<u32> {
         self.last = Some((moment.time_s, self.screen));
-        Ok(self.lattice.as_mut().map_or(0, |l| l.record(device, kit, encoder)))
+        let Some(lattice) = &mut self.lattice else { return Ok(0) };
+        lattice.record(device, kit, encoder, mapped.map(|m| (&mut self.below, m)))
     }
 
     /// The declared state of a moment.
@@ -176,10 +198,10 @@ impl Glass {
         (now, size): (i64, [u32; 2]),
     ) {
         self.step = Some(now);
-        self.moisture = if self.tables.arrive(acts) { 1.0 } else { 0.0 };
+        self.moisture = if self.reach.0.any() && self.tables.arrive(acts) { 1.0 } else { 0.0 };
         if self.moisture > 0.0 {
             let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
-            let numbers = self.tables.at(acts, moment.seed, now, lattice.size, &[None; 2]);
+            let numbers = self.tables.at((acts, &self.reach.0), moment.seed, now, lattice.size, &[None; 2]);
             lattice.add(&numbers, Work::Declare);
         }
     }
@@ -196,7 +218,7 @@ impl Glass {
         before: Option<(f64, Windscreen)>,
         until_s: f64,
     ) {
-        let rains = self.tables.arrive(acts);
+        let rains = self.reach.0.any() && self.tables.arrive(acts);
         if !rains && self.moisture <= 0.0 {
             return;
         }
@@ -205,7 +227,7 @@ impl Glass {
         let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
         if was_dry {
             let dry = Acting { exposed: 0.0, ..*acts };
-            lattice.add(&self.tables.at(&dry, seed, step, lattice.size, &[None; 2]), Work::Declare);
+            lattice.add(&self.tables.at((&dry, &self.reach.0), seed, step, lattice.size, &[None; 2]), Work::Declare);
         }
         let earlier = match before {
             Some((from_s, old)) => blend(&old, &self.screen, share(from_s, until_s, (step - 1) as f64 / STEPS_PER_S)),
@@ -216,7 +238,7 @@ impl Glass {
             let start = earlier.arms[i].map_or(arm.position, |a| a.position);
             Some((arm, [arm.angle(start), arm.angle(arm.position)]))
         });
-        lattice.add(&self.tables.at(acts, seed, step, lattice.size, &arms), Work::Move);
+        lattice.add(&self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms), Work::Move);
     }
 
     /// The windscreen at a time since the last frame.
@@ -261,10 +283,10 @@ impl Glass {
         let (Some(plane), Some(acts)) = (self.plane, self.acting) else {
             return Ok(GlassReport { state_time_s: f64::NAN, ..Default::default() });
         };
-        let arrivals = acts.arrivals();
+        let (arrivals, share) = (acts.arrivals(), self.reached(device)?.mean());
         let mut report = GlassReport {
-            drops_per_s: arrivals.number_m2_s * plane.area_m2(),
-            water_mm_h: arrivals.water_m_s * 3.6e6,
+            drops_per_s: arrivals.number_m2_s * plane.area_m2() * share,
+            water_mm_h: arrivals.water_m_s * 3.6e6 * share,
             state_time_s: self.step.map_or(f64::NAN, |s| s as f64 / STEPS_PER_S),
             ..Default::default()
         };
@@ -272,6 +294,14 @@ impl Glass {
             (report.covered, report.water_m3) = cells.covered(&plane, acts.cell_m);
         }
         Ok(report)
+    }
+
+    /// What of the rain gets where past boxes and maps. Waits for the GPU where there are maps.
+    fn reached(&self, device: &Device) -> Result<Reach> {
+        let (boxes, mapped) = self.reach;
+        let Some(lattice) = self.lattice.as_ref().filter(|_| mapped) else { return Ok(boxes) };
+        let nodes: Vec<u8> = readback::bytes(device, lattice.mapped(), 0)?.into_iter().step_by(4).collect();
+        Ok(boxes.and(&Reach::from_nodes(&nodes)))
     }
 
     /// The cells, if there is water. Waits for the GPU.

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
 use super::{
-    STEPS_PER_S, WiperArm,
+    Reach, STEPS_PER_S, WiperArm,
     laws::{self, Arrivals},
 };
 use crate::rain::sizes::DropSizes;
@@ -44,6 +44,8 @@ pub struct StepUniform {
     /// Beads by volume: (radius in 1/256 cell + 1024 x loss to the air in 1/4096 unit a step), motion x, y in 1/65536
     /// cell, 256 x drive over retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
+    /// [`Reach`]: the shares of the rain that get to the nodes.
+    pub reach: [[u32; 4]; 8],
 }
 
 /// What acts on the glass during a step.
@@ -138,7 +140,7 @@ impl Tables {
     /// The numbers of `step`. `arms` are the wipers with their blades' angles before and now, rad.
     pub fn at(
         &mut self,
-        acting: &Acting,
+        (acting, reach): (&Acting, &Reach),
         seed: u64,
         step: i64,
         size: [u32; 2],
@@ -148,6 +150,7 @@ impl Tables {
         let mut n = self.numbers;
         n.key = [key(seed, step as u64), seed_key(seed), size[0], size[1]];
         n.declared[2] = step as u32;
+        n.reach = reach.words();
         for (i, arm) in arms.iter().enumerate() {
             let rows = arm.as_ref().map_or([[0; 4]; 3], |(arm, angles)| arm_numbers(arm, *angles, acting.cell_m));
             n.arms[3 * i..3 * i + 3].copy_from_slice(&rows);
@@ -262,8 +265,6 @@ fn arm_numbers(arm: &WiperArm, [before, now]: [f64; 2], cell_m: f64) -> [[i32; 4
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::gpu::shader;
 
@@ -316,14 +317,11 @@ mod tests {
 
     #[test]
     fn offsets_agree_with_the_shader() {
-        let text = shader::assemble("glass/cells.wgsl").unwrap();
-        let (size, members) = shader::struct_layout(&text, "Step").unwrap();
-        assert_eq!(size as usize, size_of::<StepUniform>());
-        macro_rules! same {
-            ($($field:ident),*) => {
-                $(assert!(members.contains(&(stringify!($field).into(), offset_of!(StepUniform, $field) as u32)));)*
-            };
-        }
-        same!(key, arrive, declared, limits, arms, drops, beads);
+        shader::assert_layout!(
+            "glass/cells.wgsl",
+            "Step",
+            StepUniform,
+            [key, arrive, declared, limits, arms, drops, beads, reach]
+        );
     }
 }

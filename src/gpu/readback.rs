@@ -9,7 +9,8 @@ use crate::error::{Error, Result, Status};
 fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     use wgpu::TextureFormat as F;
     match format {
-        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb | F::R32Float | F::Rg16Float => Ok(4),
+        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb => Ok(4),
+        F::R32Float | F::R32Uint | F::Rg16Float => Ok(4),
         F::Rgba16Float => Ok(8),
         F::Rgba32Float | F::Rgba32Uint => Ok(16),
         other => Err(Error::unsupported(format!("reading back a texture of format {other:?}"))),

@@ -4,3 +4,4 @@ mod cells;
 mod host;
 mod lens;
 mod pictures;
+mod shelter;

@@ -1,0 +1,34 @@
+// Which share of the rain the host's maps let through to each node of a net over the pane (src/glass/reach.rs).
+//!include "common/fullscreen.wgsl"
+//!include "rain/occluders.wgsl"
+
+const SIZES: u32 = 6u;
+// What a node has that all rain gets to.
+const ALL_OF_IT: f32 = 128.0;
+
+struct PaneUniform {
+    // Before the first node, and from there to the last along the lower edge and up the glass; camera-relative, m.
+    origin: vec4f,
+    along: vec4f,
+    up: vec4f,
+    // Velocities, m/s, and the share of the water that each brings.
+    drops: array<vec4f, SIZES>,
+}
+
+@group(0) @binding(0) var<uniform> pane: PaneUniform;
+
+@fragment
+fn reach_by_maps(in: FullscreenVarying) -> @location(0) vec4u {
+    let place = floor(in.position.xy) / vec2f(15.0, 7.0);
+    let p = (pane.origin + pane.along * place.x + pane.up * place.y).xyz;
+    var kept = 0.0;
+    for (var k = 0u; k < SIZES; k++) {
+        for (var i = 0u; i < occluders.count; i++) {
+            if crosses(i, p, pane.drops[k].xyz) {
+                kept += pane.drops[k].w;
+                break;
+            }
+        }
+    }
+    return vec4u(u32(max(1.0 - kept, 0.0) * ALL_OF_IT + 0.5), 0u, 0u, 0u);
+}

@@ -1,0 +1,90 @@
+//! How much of the rain gets to which part of the pane, past what stands about.
+//!
+//! A net of nodes over the pane's bounds: boxes are asked for on the CPU, in f64, so that every channel has the same bits;
+//! the host's maps, which live on the GPU, by a pass of their own (`shaders/glass/maps.wgsl`). A cell has what lies
+//! between its nodes, in integers.
+
+use std::array::from_fn;
+
+/// Nodes along the pane's lower edge, and up the glass.
+pub const NODES: [usize; 2] = [16, 8];
+/// What a node has that all rain gets to.
+pub const ALL: u8 = 128;
+/// Words of the nodes, four bytes each.
+const WORDS: usize = NODES[0] * NODES[1] / 16;
+/// Sizes of drops that each node is asked for, as much of the water as the others each.
+pub const SIZES: usize = 6;
+
+/// Shares of the rain that get to the nodes, each from 0 to [`ALL`], rows from the lower edge up, packed as
+/// `shaders/glass/cells.wgsl` reads them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach([[u32; 4]; WORDS]);
+
+impl Reach {
+    /// All of it, everywhere.
+    pub const ALL: Self = Self([[ALL as u32 * 0x0101_0101; 4]; WORDS]);
+
+    /// Of the shares, 0 to 1, at places of the pane's bounds, 0 to 1 to the right and up.
+    pub fn of(share: impl Fn([f64; 2]) -> f64) -> Self {
+        let mut nodes = [0u8; NODES[0] * NODES[1]];
+        for (i, node) in nodes.iter_mut().enumerate() {
+            let at = [i % NODES[0], i / NODES[0]];
+            let share = share(from_fn(|k| at[k] as f64 / (NODES[k] - 1) as f64));
+            *node = (share * f64::from(ALL)).round().clamp(0.0, f64::from(ALL)) as u8;
+        }
+        Self::from_nodes(&nodes)
+    }
+
+    /// Of the nodes, row by row; what is missing gets nothing.
+    pub fn from_nodes(nodes: &[u8]) -> Self {
+        let byte = |i: usize| nodes.get(i).copied().unwrap_or(0);
+        Self(from_fn(|w| from_fn(|k| u32::from_le_bytes(from_fn(|b| byte(16 * w + 4 * k + b))))))
+    }
+
+    pub(super) fn words(&self) -> [[u32; 4]; WORDS] {
+        self.0
+    }
+
+    fn nodes(&self) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().flatten().flat_map(|w| w.to_le_bytes()).map(|b| f64::from(b) / f64::from(ALL))
+    }
+
+    /// Whether any gets anywhere.
+    pub fn any(&self) -> bool {
+        self.0.iter().flatten().any(|w| *w != 0)
+    }
+
+    /// What gets past this and past what `other` knows of.
+    pub fn and(&self, other: &Self) -> Self {
+        let mut nodes = [0u8; NODES[0] * NODES[1]];
+        for ((node, a), b) in nodes.iter_mut().zip(self.nodes()).zip(other.nodes()) {
+            *node = (a * b * f64::from(ALL)) as u8;
+        }
+        Self::from_nodes(&nodes)
+    }
+
+    /// Mean share over the pane's bounds: nodes on an edge count half.
+    pub fn mean(&self) -> f64 {
+        let edge = |i: usize, n: usize| if i == 0 || i == n - 1 { 0.5 } else { 1.0 };
+        let weighed = self.nodes().enumerate().map(|(i, share)| {
+            let weight = edge(i % NODES[0], NODES[0]) * edge(i / NODES[0], NODES[1]);
+            share * weight
+        });
+        weighed.sum::<f64>() / ((NODES[0] - 1) * (NODES[1] - 1)) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_is_that_of_a_surface_through_the_nodes() {
+        assert_eq!((Reach::ALL.mean(), Reach::of(|_| 1.0), Reach::of(|_| 0.0).any()), (1.0, Reach::ALL, false));
+        let half = Reach::of(|[x, _]| x);
+        assert!((half.mean() - 0.5).abs() < 1e-2 && half.any(), "{}", half.mean());
+        let corner = Reach::of(|[x, y]| if x == 1.0 && y == 1.0 { 1.0 } else { 0.0 });
+        assert_eq!(corner.words()[WORDS - 1], [0, 0, 0, u32::from(ALL) << 24]);
+        assert!((half.and(&half).mean() - 1.0 / 3.0).abs() < 1e-2 && half.and(&Reach::ALL) == half);
+    }
+}

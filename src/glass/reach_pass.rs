@@ -1,0 +1,122 @@
+//! The pass that asks the host's maps, where they live, which share of the rain gets to which part of the pane.
+
+use super::{
+    SIZES,
+    passes::{self, bind, buffer, uniform_entry},
+    reach::NODES,
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+    rain::{Around, Told, around_layout},
+};
+
+/// `PaneUniform` of `shaders/glass/maps.wgsl`, which explains the fields.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct PaneUniform {
+    pub origin: [f32; 4],
+    pub along: [f32; 4],
+    pub up: [f32; 4],
+    pub drops: [[f32; 4]; SIZES],
+}
+
+/// What glass below maps needs besides.
+pub(super) struct MappedKit {
+    layouts: [wgpu::BindGroupLayout; 2],
+    reach: wgpu::RenderPipeline,
+    pub gather: wgpu::RenderPipeline,
+    pub declare: wgpu::RenderPipeline,
+}
+
+/// A view's maps as its glass asks them.
+pub(super) struct MapReach {
+    around: Around,
+    uniform: wgpu::Buffer,
+    groups: [wgpu::BindGroup; 2],
+}
+
+/// What a frame's maps are and where the pane is among them.
+pub(crate) struct Mapped<'a> {
+    pub told: Told<'a>,
+    pub pane: PaneUniform,
+}
+
+impl MappedKit {
+    /// # Errors
+    /// A missing shader file.
+    pub fn new(device: &Device, step_layout: &wgpu::BindGroupLayout) -> Result<Self> {
+        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            let desc = wgpu::BindGroupLayoutDescriptor { label: Some("glass below maps"), entries };
+            device.device.create_bind_group_layout(&desc)
+        };
+        let layouts = [layout(&[uniform_entry(false, size_of::<PaneUniform>())]), layout(&[])];
+        let reach = pass::fullscreen(
+            device,
+            &FullscreenDesc {
+                shader: "glass/maps.wgsl",
+                entry: "reach_by_maps",
+                layouts: &[&layouts[0], &layouts[1], &around_layout(&device.device)],
+                targets: &[passes::REACH.into()],
+                constants: &[("MAPS", 1.0)],
+                samples: 1,
+            },
+        )?;
+        let cells = |shader, entry| passes::cells_pipeline(device, (shader, entry), step_layout, &[("MAPPED", 1.0)]);
+        Ok(Self {
+            layouts,
+            reach,
+            gather: cells("glass/gather.wgsl", "gather")?,
+            declare: cells("glass/declare.wgsl", "declare")?,
+        })
+    }
+}
+
+impl MapReach {
+    pub fn new(device: &Device, kit: &MappedKit) -> Self {
+        let uniform = buffer(device, "glass below maps", size_of::<PaneUniform>() as u64);
+        let groups =
+            [bind(device, &kit.layouts[0], &[uniform.as_entire_binding()]), bind(device, &kit.layouts[1], &[])];
+        Self { around: Around::new(&device.device), uniform, groups }
+    }
+
+    /// Draws the shares into `target`, of [`NODES`] texels.
+    pub fn draw(
+        &mut self,
+        device: &Device,
+        kit: &MappedKit,
+        encoder: &mut wgpu::CommandEncoder,
+        mapped: &Mapped<'_>,
+        target: &wgpu::TextureView,
+    ) {
+        self.around.follow(device, &mapped.told);
+        device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&mapped.pane));
+        let groups = [&self.groups[0], &self.groups[1], self.around.bind_group()];
+        pass::draw(encoder, "glass below maps", &kit.reach, &groups, target);
+    }
+}
+
+/// Texels of what [`MapReach::draw`] draws into.
+pub(super) const SIZE: [u32; 2] = [NODES[0] as u32, NODES[1] as u32];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{glass::reach::ALL, gpu::shader};
+
+    #[test]
+    fn offsets_and_numbers_are_those_of_the_shaders() {
+        shader::assert_layout!("glass/maps.wgsl", "PaneUniform", PaneUniform, [origin, along, up, drops]);
+        let text = shader::assemble("glass/maps.wgsl").unwrap();
+        for constant in [format!("SIZES: u32 = {SIZES}u"), format!("ALL_OF_IT: f32 = {ALL}.0")] {
+            assert!(text.contains(&constant), "{constant}");
+        }
+        let [across, up] = NODES;
+        assert!(text.contains(&format!("vec2f({}.0, {}.0)", across - 1, up - 1)));
+        let cells = shader::assemble("glass/cells.wgsl").unwrap();
+        assert!(cells.contains(&format!("vec2u({across}u, {up}u)")));
+    }
+}
