@@ -1,6 +1,8 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
 //! (record, fog, glass, ground, parts, rain, sky).
 
+#[path = "../../tests/depth_texture/mod.rs"]
+mod depth_texture;
 mod fog;
 mod glass;
 mod ground;

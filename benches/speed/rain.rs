@@ -14,6 +14,8 @@ use welkin::{
     wind::{WindGrid, WindGridKind},
 };
 
+use crate::depth_texture::depth_texture;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
@@ -151,23 +153,7 @@ fn map(bench: &Bench, side: u32) -> Fallible<(wgpu::Texture, Taken)> {
         (1.0 - at(if bridge { 5.0 } else { 0.0 }) / deep) as f32
     };
     let texels: Vec<f32> = (0..side * side).map(|i| depth(i % side, i / side)).collect();
-    let texture = bench.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    bench.device.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(&texels),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * side), rows_per_image: None },
-        texture.size(),
-    );
-    Ok((texture, taken))
+    Ok((depth_texture(&bench.device, (side, side), &texels), taken))
 }
 
 fn maps(bench: &mut Bench) -> Fallible<()> {

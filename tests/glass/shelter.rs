@@ -12,6 +12,7 @@ use welkin::{
 
 use crate::{
     cells::acting_on,
+    depth_texture::depth_texture,
     host::{Host, upright},
 };
 
@@ -84,23 +85,7 @@ fn map_of(host: &Host, roofed: impl Fn(DVec2) -> bool) -> (wgpu::Texture, Taken)
         taken.clip_from_world.project_point3(p.truncate().extend(z)).z as f32
     };
     let depths: Vec<f32> = (0..SIDE * SIDE).map(depth).collect();
-    let texture = host.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    host.device.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(&depths),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIDE), rows_per_image: None },
-        texture.size(),
-    );
-    (texture, taken)
+    (depth_texture(&host.device, (SIDE, SIDE), &depths), taken)
 }
 
 /// The declared glass, what half a second later has landed in each column, and the drops a second that are reported; below

@@ -3,6 +3,8 @@
 mod areas;
 mod cones;
 mod culled;
+#[path = "../depth_texture/mod.rs"]
+mod depth_texture;
 mod drops;
 mod dry_places;
 mod integrated;

@@ -15,7 +15,10 @@ use welkin::{
     weather::derive,
 };
 
-use crate::scene::{Host, NEAR_M, rain, upright};
+use crate::{
+    depth_texture::depth_texture,
+    scene::{Host, NEAR_M, rain, upright},
+};
 
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
 const WHITE: f64 = 3e4;
@@ -75,23 +78,7 @@ pub fn map(host: &Host, boxes: &[Shelter], taken: &Taken, size: (u32, u32)) -> w
             depths.push(depth as f32);
         }
     }
-    let texture = host.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    host.device.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(&depths),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.0), rows_per_image: None },
-        texture.size(),
-    );
-    texture
+    depth_texture(&host.device, size, &depths)
 }
 
 /// A host at night whose whole picture is white: each pixel says what drops and splashes let through.
