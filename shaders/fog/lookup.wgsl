@@ -7,6 +7,7 @@
 // where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air before it) and
 // `behind` is that of the whole distance. So air lies in front of a far fog bank and behind the fog round the camera, without a seam between.
 //!include "common/depth.wgsl"
+//!include "fog/patterns.wgsl"
 
 // What a pipeline can draw; FogVariant::constants() gives them. Real GPUs step over what the
 // uniform does not ask for, software drivers execute it: there a narrow pipeline is several times as fast.
@@ -14,6 +15,7 @@
 override FOG_KINDS: u32 = 63u;
 override FOG_ABSORBING: bool = true;
 override FOG_PATCHES: bool = true;
+override FOG_CURTAINS: bool = true;
 // All channels have one extinction and one albedo (water).
 override FOG_NEUTRAL: bool = false;
 // The slab has a lower edge above the ground.
@@ -30,61 +32,6 @@ const FOG_WHOLE_SKY: f32 = 3.13845;
 
 fn fog_can(kind: u32) -> bool {
     return (FOG_KINDS & (1u << kind)) != 0u;
-}
-
-struct FogUniform {
-    to_sun: vec3f,
-    // Of the camera, m.
-    altitude: f32,
-    // Slab: altitudes where the flanks begin and end; exponential: reference altitude, scale height.
-    knots: vec4f,
-    // Extinction of each channel over that at 550 nm.
-    ratio: vec3f,
-    // At 550 nm, 1/m; density of the compatibility laws.
-    extinction: f32,
-    // Scaled optical depth over depth at 550 nm.
-    scaling: vec3f,
-    // From the layer's top to the ground, at 550 nm.
-    depth_total: f32,
-    // Slab: 1/height of the lower and the upper flank, 1/m; linear law: start and end, m.
-    pair: vec2f,
-    // Band of sky that the compatibility laws cover, rad.
-    sky_band: f32,
-    // 1 if they measure from the camera's plane.
-    plane_distance: u32,
-    // Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
-    lobes: vec4f,
-    // Distance of the camera from the planet's centre, m; 1e30 for a flat world.
-    radius: f32,
-    // 1/(planet radius + altitude), 1/m.
-    curvature: f32,
-    // Altitude at which rays without an object end, m.
-    ground: f32,
-    inverse_mu0: f32,
-    // Diffusion exponent of absorbing layers.
-    k: vec3f,
-    absorbing: u32,
-    // First scattering; colour of the compatibility laws.
-    first: vec3f,
-    patch_amount: f32,
-    sky_radiance: vec3f,
-    kind: u32,
-    ground_radiance: vec3f,
-    // Of the forward lobe in elevation, rad.
-    spread: f32,
-    // ln(1 - weight of Draine), sign of the Henyey-Greenstein g, share of scattering counted as forward, asymmetry of
-    // the rest.
-    scattering: vec4f,
-    // Source terms c(mu) = [0] + mu [1].
-    constant: array<vec4f, 2>,
-    slope: array<vec4f, 2>,
-    beam: array<vec4f, 2>,
-    rise: array<vec4f, 2>,
-    fall: array<vec4f, 2>,
-    // Wave vector and phase at the camera.
-    patch_waves: array<vec4f, 6>,
-    // Share of the light above the layer that reaches the camera: that of the air inside it.
-    lit: f32,
 }
 
 // colour * transmittance + radiance.
@@ -390,32 +337,6 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return max(l + aureole, vec3f(0.0));
 }
 
-// Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
-const PATCH_ROW: f32 = 8.0;
-
-fn patch_wave(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> f32 {
-    let along = dot(wave.xyz, direction);
-    let x = along * half;
-    let near = abs(x) < 1e-2;
-    let sinc = select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
-    // No row of patches goes on for ever: a ray along one meets others after some.
-    let row = PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
-    return cos(wave.w + dot(wave.xyz, origin) + along * middle) * (sinc * row);
-}
-
-// Written out: an index that the compiler does not know would copy the whole uniform.
-fn patch_mean(u: FogUniform, origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
-    let m = 0.5 * (first + last);
-    let h = 0.5 * (last - first);
-    let sum = patch_wave(u.patch_waves[0], origin, direction, m, h)
-        + patch_wave(u.patch_waves[1], origin, direction, m, h)
-        + patch_wave(u.patch_waves[2], origin, direction, m, h)
-        + patch_wave(u.patch_waves[3], origin, direction, m, h)
-        + patch_wave(u.patch_waves[4], origin, direction, m, h)
-        + patch_wave(u.patch_waves[5], origin, direction, m, h);
-    return max(1.0 + u.patch_amount * 0.5 * sum, 0.0);
-}
-
 fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog {
     let mu = clamp(direction.z, -1.0, 1.0);
     let lift = origin.z;
@@ -429,6 +350,10 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog 
     var depth = path.depth;
     if FOG_PATCHES && u.patch_amount > 0.0 {
         depth *= patch_mean(u, origin, direction, path.first, path.last);
+    }
+    if FOG_CURTAINS && u.curtain_amount > 0.0 {
+        let curtains = curtain_mean(u, origin, direction, path.first, path.last);
+        depth = max(depth * (1.0 + curtains.x), 0.0) + 0.5 * depth * depth * curtains.y;
     }
     let ends = vec2f(layer_depth_above(u, h0), layer_depth_above(u, path.end_altitude));
     let to_sun = direction - u.to_sun;

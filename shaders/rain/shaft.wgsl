@@ -172,7 +172,11 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let front = column_pattern(i, q, u, origin.z, d.z, begin, cut);
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
     fell *= mix(rest, front, (cut - begin) / (end - begin));
-    var depth = columns.list[i].extinction * fell - shaft.own * shared_own;
+    var own = shaft.own;
+    if FOG && FOG_CURTAINS && fog.curtain_amount > 0.0 {
+        own += fog.extinction * curtain_mean(fog, origin, d, begin, end).x;
+    }
+    var depth = columns.list[i].extinction * fell - own * shared_own;
     // What drops near the eye hide is drawn as drops.
     let near = min(range, frame.drops.y);
     depth -= (columns.list[i].near - shaft.own_near) * near * column_left(i, origin + d * (0.5 * near));

@@ -1,7 +1,7 @@
 //! Textures for the host's transparent things
 //!
 //! Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
-//! light that air and fog add on the way to a point, and the share of the light behind that gets through. The mapping
+//! light that air, fog and rain add on the way to a point, and the share of the light behind that gets through. The mapping
 //! from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
 
 use std::{
@@ -25,7 +25,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_veil.rs"));
 
-/// The veil of the view's last frame.
+/// The veil of the view's last frame: air, fog, the weather's rain, and rain areas.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_frame_textures {

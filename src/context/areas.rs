@@ -194,7 +194,7 @@ fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling
 }
 
 /// Share of the extinction of all that falls that is rain's and drizzle's.
-fn liquid_share(f: &Falling) -> f64 {
+pub(super) fn liquid_share(f: &Falling) -> f64 {
     let rain =
         if f.showers > 0.0 { hydrometeors::shower_extinction_per_m } else { hydrometeors::rain_extinction_per_m };
     let liquid = rain(f.rain_mm_h) + hydrometeors::drizzle_extinction_per_m(f.drizzle_mm_h);

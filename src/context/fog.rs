@@ -1,12 +1,23 @@
 //! The fog of a scene: the weather's low layer, or one of the older laws if the host asked for it.
 
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
 use super::{Light, Scene};
 use crate::{
     error::Result,
-    fog::{FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint},
+    fog::{
+        FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint,
+        patterns::{CURTAIN_WAVES, Curtains},
+    },
+    rain::curtain,
     scene::Place,
     weather::{Conditions, lifting},
 };
+
+/// Least change of the optical depth of the longest curtain that shows.
+const LEAST_SHOWN: f64 = 1e-3;
 
 /// What the fog draws: the weather's low layer, and what falls from the clouds as long as nothing else draws it.
 /// Altitudes above the sea.
@@ -131,7 +142,30 @@ impl Scene {
             ground_albedo: self.planet.ground_albedo,
         };
         let view = viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m);
-        FogModel::new(law.unwrap_or(&own), &light, &view)
+        let mut model = FogModel::new(law.unwrap_or(&own), &light, &view)?;
+        if let (None, Law::Layer(layer)) = (law, &own) {
+            model.curtains = self.curtains(layer, seed);
+        }
+        Ok(model)
+    }
+
+    /// The curtains of the weather's own rain in the layer that holds it.
+    fn curtains(&self, layer: &FogLayer, seed: u64) -> Curtains {
+        let falling = &self.conditions.precipitation;
+        let variation = curtain::variation(falling);
+        let rain_per_m = falling.extinction_per_m * super::areas::liquid_share(falling);
+        // In so thin a rain they would not show.
+        if variation * rain_per_m * curtain::OWN_LENGTHS_M[1] < LEAST_SHOWN || layer.extinction_per_m <= 0.0 {
+            return Curtains::NONE;
+        }
+        // The variance of a cosine is a half.
+        let each = variation * (2.0 / CURTAIN_WAVES as f64).sqrt();
+        let place = [0, 1].map(|i| self.map_m[i] - self.drift_m[i]);
+        let at = DVec3::new(place[0], place[1], self.place.altitude_m + self.curtains_fallen_m);
+        let phased = |k: DVec3, phase: f64| (k, (k.dot(at) + phase).rem_euclid(TAU));
+        let waves = curtain::waves::<CURTAIN_WAVES>(seed as u32, curtain::OWN_LENGTHS_M)
+            .map(|[x, y, z, phase]| phased(DVec3::new(x, y, z), phase));
+        Curtains { amount: each * rain_per_m / layer.extinction_per_m, waves }
     }
 }
 
@@ -140,7 +174,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::fog::{reference::patch_mean, transmittance_between};
+    use crate::fog::{patterns::patch_mean, transmittance_between};
     use crate::weather::{FogKind, PrecipitationKind, Weather, derive};
 
     /// A reported visibility is total: what air, haze, rain and the drawn layer each take makes 5 % at that distance.

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     error::Result,
+    rain::curtain,
     scene::{LocalFrame, Place},
     sky::{Disc, Lamp, Observer, Planet, spectral::luminance},
     weather::{CloudLight, Conditions, slab_reflectance},
@@ -42,8 +43,11 @@ pub struct Scene {
     pub world_to_enu: DMat3,
     /// Place on the map, m east and north of the world's origin.
     pub map_m: [f64; 2],
-    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]); 0 where no patch of fog shows it.
+    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]); 0 where no patch of fog or curtain of
+    /// rain shows it.
     pub drift_m: [f64; 2],
+    /// How far the curtains of the weather's rain have fallen, m, in their period.
+    pub curtains_fallen_m: f64,
     /// The weather there.
     pub conditions: Conditions,
     /// The planet's air under that weather.
@@ -215,10 +219,12 @@ impl Context {
         } else {
             above_fog.through_fog(&conditions, &local.place, [&sun, &moon], planet.ground_albedo)?
         };
-        // Only patches show where the air has gone.
+        // Only patches and curtains show where the air has gone.
         let patchy =
             conditions.fog.extinction_per_m > 0.0 && (conditions.fog.coverage < 1.0 || conditions.fog.lifted > 0.0);
-        let drift_m = if patchy { self.wind_displacement(time_s)?.truncate().to_array() } else { [0.0; 2] };
+        let curtained = curtain::variation(&conditions.precipitation) > 0.0;
+        let drift_m =
+            if patchy || curtained { self.wind_displacement(time_s)?.truncate().to_array() } else { [0.0; 2] };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;
         Ok(Scene {
@@ -226,6 +232,7 @@ impl Context {
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position, &local),
             drift_m,
+            curtains_fallen_m: curtain::fallen_m(time_s),
             color: self.color,
             planet,
             sun,

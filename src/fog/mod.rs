@@ -31,6 +31,7 @@
 pub mod candidates;
 pub mod laws;
 pub mod light;
+pub mod patterns;
 pub mod phase;
 mod probe;
 pub mod queries;

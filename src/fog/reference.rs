@@ -27,6 +27,7 @@ use glam::DVec3;
 
 use super::laws::DistanceKind;
 use super::light::Solution;
+use super::patterns::{Curtains, PATCH_WAVES, patch_mean};
 use super::phase::{PhaseLobes, fog_phase_after};
 use crate::scene::depth::RANGE_SKY_M;
 
@@ -54,12 +55,6 @@ const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
 /// Spread of the forward lobe in elevation, rad: how far from the level a ray must be to see only ground or only sky
 /// through it. Fitted to adding and doubling (`tests/fog/light.rs`): .1 to .2 serve droplets and haze alike.
 pub(super) const FORWARD_SPREAD: f64 = 0.12;
-
-/// Half of a path on which a wave of the patches' pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
-/// `shaders/fog/lookup.wgsl`.
-const PATCH_ROW: f64 = 8.0;
-/// Number of plane waves in the patches' pattern: the pairs of four.
-pub const PATCH_WAVES: usize = 6;
 
 /// One light source term c(mu) = `even` + mu `odd`, per channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -144,6 +139,8 @@ pub struct FogModel {
     pub patch_amount: f64,
     /// See `patch_amount`.
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
+    /// Curtains of the rain in it.
+    pub curtains: Curtains,
 }
 
 /// What fog does to one pixel: `colour * transmittance + radiance`.
@@ -427,22 +424,6 @@ fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, 
     source_along(m, mu, beam, a, s, path, left) + (one - unforward) * edges
 }
 
-/// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
-pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, last: f64) -> f64 {
-    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
-    let mut sum = 0.0;
-    for (wave, phase) in &m.patch_waves {
-        let along = wave.dot(direction);
-        let x = along * half;
-        let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
-        // No row of patches goes on for ever: a ray along one meets others after some.
-        let row = PATCH_ROW / (PATCH_ROW + wave.length() * half);
-        sum += (phase + wave.dot(origin) + along * middle).cos() * sinc * row;
-    }
-    // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
-    (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
-}
-
 /// What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with an object
 /// at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
 pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
@@ -471,6 +452,9 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSa
     let mut depth = path.depth;
     if m.patch_amount > 0.0 {
         depth *= patch_mean(m, origin, direction, path.first, path.last);
+    }
+    if m.curtains.amount > 0.0 {
+        depth = m.curtains.depth(depth, m.curtains.mean(origin, direction, path.first, path.last));
     }
     let ends = [h0, path.end_altitude].map(|h| layer_depth_above(m, h));
     let versine = 0.5 * (direction - m.to_sun).length_squared();

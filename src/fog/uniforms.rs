@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::laws::{Curve, DistanceKind};
 use super::light::{Slab, Solution, delta_scaling};
+use super::patterns::{CURTAIN_WAVES, Curtains, PATCH_WAVES};
 use super::phase::PhaseLobes;
-use super::reference::{FORWARD_SPREAD, FogKind, FogModel, PATCH_WAVES, Term, layer_depth_above};
+use super::reference::{FORWARD_SPREAD, FogKind, FogModel, Term, layer_depth_above};
 use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
 use crate::error::Result;
 
@@ -90,6 +91,7 @@ impl FogModel {
             lit: 1.0,
             patch_amount: 0.0,
             patch_waves: [(DVec3::ZERO, 0.0); PATCH_WAVES],
+            curtains: Curtains::NONE,
         }
     }
 
@@ -224,6 +226,7 @@ impl FogModel {
             kinds: 1 << self.kind as u32,
             absorbing: self.absorbing,
             patches: self.patch_amount > 0.0,
+            curtains: self.curtains.amount > 0.0,
             neutral: even(self.ratio) && even(self.scaling) && even(self.k),
             lifted: self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M,
         }
@@ -265,9 +268,11 @@ impl FogModel {
             beam: term(&self.beam),
             rise: term(&self.rise),
             fall: term(&self.fall),
-            patch_waves: self.patch_waves.map(|(k, p)| [k.x as f32, k.y as f32, k.z as f32, p as f32]),
+            patch_waves: self.patch_waves.map(wave),
+            curtain_waves: self.curtains.waves.map(wave),
             lit: self.lit as f32,
-            pad: [0.0; 3],
+            curtain_amount: self.curtains.amount as f32,
+            pad: [0.0; 2],
         }
     }
 }
@@ -283,6 +288,8 @@ pub struct FogVariant {
     pub absorbing: bool,
     /// Layers in patches.
     pub patches: bool,
+    /// Curtains of rain in them.
+    pub curtains: bool,
     /// Only layers whose channels are alike.
     pub neutral: bool,
     /// Slabs with a lower edge.
@@ -291,15 +298,17 @@ pub struct FogVariant {
 
 impl FogVariant {
     /// Everything.
-    pub const ALL: Self = Self { kinds: 63, absorbing: true, patches: true, neutral: false, lifted: true };
+    pub const ALL: Self =
+        Self { kinds: 63, absorbing: true, patches: true, curtains: true, neutral: false, lifted: true };
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 5] {
+    pub fn constants(&self) -> [(&'static str, f64); 6] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
             ("FOG_KINDS", f64::from(self.kinds)),
             ("FOG_ABSORBING", flag(self.absorbing)),
             ("FOG_PATCHES", flag(self.patches)),
+            ("FOG_CURTAINS", flag(self.curtains)),
             ("FOG_NEUTRAL", flag(self.neutral)),
             ("FOG_LIFTED", flag(self.lifted)),
         ]
@@ -315,6 +324,10 @@ fn deep_layer_radiance(light: &FogLight) -> DVec3 {
         let (sun, sky, ground) = (light.sun_irradiance[i], light.sky_irradiance[i], light.ground_albedo[i]);
         Slab { depth: 10.0, albedo, asymmetry, mu0, sun, sky, ground }.solve().intensities(1.0)[0].max(0.0)
     }))
+}
+
+fn wave((k, phase): (DVec3, f64)) -> [f32; 4] {
+    [k.x as f32, k.y as f32, k.z as f32, phase as f32]
 }
 
 fn term(t: &Term) -> [[f32; 4]; 2] {
@@ -356,6 +369,8 @@ pub struct FogUniform {
     pub rise: [[f32; 4]; 2],
     pub fall: [[f32; 4]; 2],
     pub patch_waves: [[f32; 4]; PATCH_WAVES],
+    pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
     pub lit: f32,
-    pub pad: [f32; 3],
+    pub curtain_amount: f32,
+    pub pad: [f32; 2],
 }

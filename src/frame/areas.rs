@@ -199,6 +199,20 @@ impl AreaPass {
         }
     }
 
+    /// Uploads the columns and binds them for the veil of the host's own shaders: layout and group.
+    pub fn bound(
+        &mut self,
+        device: &Device,
+        columns: &Columns<'_>,
+        buffers: [&wgpu::Buffer; 2],
+        (depth, multi): (Option<&wgpu::Texture>, bool),
+    ) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
+        let (blocks, _) = columns.blocks();
+        device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
+        self.bind(device, buffers, depth, multi);
+        self.bound.as_ref().map(|(_, group)| (&self.layouts[usize::from(multi)], group))
+    }
+
     /// Draws the columns into the layer `target`, which is cleared first.
     ///
     /// # Errors

@@ -48,15 +48,15 @@ impl Variant {
     }
 
     /// Those of [`Variant::constants`] that shaders of the veil alone have.
-    pub fn veil_constants(&self) -> [(&'static str, f64); 9] {
-        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, _, f0, f1, f2, f3, f4] = self.constants();
-        [march, fog, kinds, air, f0, f1, f2, f3, f4]
+    pub fn veil_constants(&self) -> [(&'static str, f64); 10] {
+        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, _, f0, f1, f2, f3, f4, f5] = self.constants();
+        [march, fog, kinds, air, f0, f1, f2, f3, f4, f5]
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 21] {
+    pub fn constants(&self) -> [(&'static str, f64); 22] {
         let yes = |b: bool| f64::from(u8::from(b));
-        let [f0, f1, f2, f3, f4] = self.fog.unwrap_or(FogVariant::ALL).constants();
+        let [f0, f1, f2, f3, f4, f5] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
             ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
             ("SURFACE", yes(self.stages.has(Stages::SURFACE))),
@@ -79,6 +79,7 @@ impl Variant {
             f2,
             f3,
             f4,
+            f5,
         ]
     }
 }

@@ -40,7 +40,7 @@ pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
     views: [wgpu::TextureView; 2],
-    pipelines: [Option<wgpu::RenderPipeline>; 8],
+    pipelines: [Option<wgpu::RenderPipeline>; 16],
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -63,30 +63,36 @@ impl Froxels {
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
-        Self { light, through, views, pipelines: [const { None }; 8] }
+        Self { light, through, views, pipelines: [const { None }; 16] }
     }
 
     pub fn bytes(&self) -> u64 {
         2 * 8 * u64::from(TILE.0 * TILES.0 * TILE.1 * TILES.1)
     }
 
-    /// Fills the textures; `groups` are those of the composition.
+    /// Fills the textures; `groups` are those of the composition, or where there are rain areas those of `areas`, its layout.
     pub fn draw(
         &mut self,
         device: &Arc<Device>,
         shared: &Shared,
         encoder: &mut wgpu::CommandEncoder,
         (multi, fog, march): (bool, bool, bool),
-        groups: &[&wgpu::BindGroup],
+        (areas, groups): (Option<&wgpu::BindGroupLayout>, &[&wgpu::BindGroup]),
     ) -> Result<()> {
-        let slot = &mut self.pipelines[usize::from(multi) * 4 + usize::from(fog) * 2 + usize::from(march)];
+        let bits = [march, fog, multi, areas.is_some()];
+        let slot = &mut self.pipelines[bits.iter().rev().fold(0, |at, bit| 2 * at + usize::from(*bit))];
         if slot.is_none() {
             let composite = shared.composite()?;
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+            let [frame, sky, around] = composite.layouts(multi);
+            let (shader, layouts) = match areas {
+                Some(layout) => ("frame/froxels_areas.wgsl", &[layout, sky][..]),
+                None => ("frame/froxels.wgsl", &[frame, sky, around][..]),
+            };
             let desc = FullscreenDesc {
-                shader: "frame/froxels.wgsl",
+                shader,
                 entry: "froxels",
-                layouts: &composite.layouts(multi),
+                layouts,
                 targets: &[target.clone(), target],
                 constants: &[("FOG", f64::from(u8::from(fog))), ("SKY_MARCH", f64::from(u8::from(march)))],
                 samples: 1,

@@ -18,9 +18,9 @@ use crate::{
         Air, AreaField, Around, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
         RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw, Streaks,
         cones::{BANDS_M, CONES},
-        drops,
+        curtain, drops,
         lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
-        pattern, splash,
+        splash,
     },
     scene::ViewRays,
     sky::SkyVolume,
@@ -229,6 +229,38 @@ impl Rain {
         classes
     }
 
+    /// Takes what is drawn as drops near the camera off the columns of rain areas, and gives them their pattern.
+    fn set_near(&mut self, device: &Device, context: &Context, scene: &Scene) {
+        let falling = scene.conditions.precipitation;
+        self.field.near_m = self.reach(context);
+        let share = f64::from(self.shares[0]);
+        self.field.own_near = share * self.near(device, scene, &falling);
+        for i in 0..self.field.columns.len() {
+            let shaft = *self.field.columns[i].shaft();
+            let near = share * self.near(device, scene, &shaft.falling);
+            self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
+        }
+        self.field.waves = curtain::waves(context.seed() as u32, curtain::COLUMN_LENGTHS_M);
+    }
+
+    /// The columns of rain areas as the veil of the host's own shaders needs them, if there are any.
+    pub fn veiling_areas(
+        &mut self,
+        device: &Device,
+        frame: &Frame<'_>,
+        (context, scene): (&Context, &Scene),
+        blocks: [&wgpu::Buffer; 2],
+    ) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
+        if self.field.columns.is_empty() {
+            return None;
+        }
+        self.set_near(device, context, scene);
+        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), constants: &[] };
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
+        let multi = frame.depth.is_some_and(|d| d.sample_count() > 1);
+        pass.bound(device, &columns, blocks, (frame.depth, multi))
+    }
+
     /// Draws the columns of rain areas into the layer; whether there are any.
     pub fn draw_areas(
         &mut self,
@@ -241,16 +273,7 @@ impl Rain {
         if self.field.columns.is_empty() {
             return Ok(false);
         }
-        let falling = scene.conditions.precipitation;
-        self.field.near_m = self.reach(context);
-        let share = f64::from(self.shares[0]);
-        self.field.own_near = share * self.near(device, scene, &falling);
-        for i in 0..self.field.columns.len() {
-            let shaft = *self.field.columns[i].shaft();
-            let near = share * self.near(device, scene, &shaft.falling);
-            self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
-        }
-        self.field.waves = pattern(context.seed() as u32);
+        self.set_near(device, context, scene);
         let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), constants };
         let target = self.layer.view(device, color.size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));

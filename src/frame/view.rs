@@ -435,8 +435,12 @@ impl View {
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
         };
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
-            let variant = (variant.samples > 1, variant.fog.is_some(), variant.march);
-            froxels.draw(&self.device, &self.shared, to.encoder, variant, &groups)?;
+            let areas = self.rain.veiling_areas(&self.device, frame, (context, scene), [&self.uniform, &self.fog]);
+            let own = areas.map(|(_, group)| [group, self.sky.bind_group()]);
+            let samples = if areas.is_some() { frame.depth.map_or(1, |d| d.sample_count()) } else { variant.samples };
+            let variant = (samples > 1, variant.fog.is_some(), variant.march);
+            let groups = (areas.map(|(layout, _)| layout), own.as_ref().map_or(&groups[..], |g| &g[..]));
+            froxels.draw(&self.device, &self.shared, to.encoder, variant, groups)?;
             self.report.passes += 1;
             to.ends(Effect::Veil, true)?;
         }

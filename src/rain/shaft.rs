@@ -380,7 +380,10 @@ impl AreaField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rain::{AreaMotion, AreaShape, RainArea};
+    use crate::rain::{
+        AreaMotion, AreaShape, RainArea,
+        curtain::{self, COLUMN_LENGTHS_M},
+    };
 
     /// The extinction that a column adds at a place, from its description alone.
     fn added(field: &AreaField, i: usize, p: DVec3, patterned: bool) -> f64 {
@@ -430,7 +433,7 @@ mod tests {
         });
         let own = OwnRain { extinction_per_m: own_per_m, top_m: 1200.0, soft_m: 100.0 };
         let mut field = AreaField::new(shafts, (DVec3::Z * 2.0, &DMat3::IDENTITY, 2.0), &own, 77.0);
-        field.waves = crate::rain::pattern(5);
+        field.waves = curtain::waves(5, COLUMN_LENGTHS_M);
         field
     }
 
@@ -488,7 +491,7 @@ mod tests {
         let mut lower = c;
         lower.fallen += 60.0;
         assert!((at(&c, &field, 40.0, 700.0) - at(&lower, &field, 40.0, 640.0)).abs() < 1e-9);
-        field.waves = crate::rain::pattern(6);
+        field.waves = curtain::waves(6, COLUMN_LENGTHS_M);
         assert_ne!(at(&c, &field, 40.0, 700.0), values[0]);
     }
 }

@@ -1,6 +1,7 @@
 //! The drawn functions against their f64 twins, and the accuracy that is promised of them.
 
 use glam::{DVec2, DVec3};
+use welkin::fog::patterns::Curtains;
 use welkin::fog::reference::{FogModel, fog_along};
 use welkin::fog::{
     CompatibilityLaw, DistanceKind, FogLayer, FogUniform, Law, Patches, Phase, Viewpoint, koschmieder_extinction_per_m,
@@ -105,6 +106,22 @@ fn patches_are_drawn_as_the_reference_has_them() {
     for h in [2.0, 60.0] {
         let m = model(layer, &Viewpoint { map_m: [5.5e6, -2e6], ..view(h, EARTH_M) });
         compare(&format!("patches h {h}"), &m, 2e-3);
+    }
+}
+
+#[test]
+fn curtains_are_drawn_as_the_reference_has_them() {
+    let layer = FogLayer { phase: Phase::HenyeyGreenstein { g: 0.0 }, ..slab(3000.0, -1e4, 600.0, 100.0) };
+    for h in [2.0, 300.0, 900.0] {
+        let wave = |i: usize| {
+            let k = 6.283 / (130.0 + 110.0 * i as f64);
+            (DVec3::new(k * (i as f64).cos(), k * (i as f64).sin(), 0.15 * k), i as f64)
+        };
+        let even = model(layer, &view(h, EARTH_M));
+        let m = FogModel { curtains: Curtains { amount: 0.245, waves: std::array::from_fn(wave) }, ..even };
+        compare(&format!("curtains h {h}"), &m, 2e-3);
+        let changed = rays().iter().filter(|i| (twin(&m, **i)[1] - twin(&even, **i)[1]).abs() > 0.03).count();
+        assert!(h > 500.0 || changed > 3, "{h} m: {changed} rays differ");
     }
 }
 
@@ -294,7 +311,9 @@ fn offsets_are_those_of_the_shader() {
         rise,
         fall,
         patch_waves,
-        lit
+        curtain_waves,
+        lit,
+        curtain_amount
     );
     assert_eq!(members, ours);
 }

@@ -108,16 +108,17 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
     for seed in [1, 2, 9] {
         let shot = Shot { tolerance: 0.01, height_m: 2.0, sun_deg: 30.0, far_m: 80.0, fov_deg: 50.0, ..rainy(seed) };
         bench.set(&shot);
-        let mut pictures = |drops: bool| -> Vec<Vec<f64>> {
-            let each = (0..8).map(|_| {
-                bench.pass(1.3);
+        // Both at the same moments: curtains of rain go by.
+        let mut pictures = [vec![], vec![]];
+        for _ in 0..8 {
+            bench.pass(1.3);
+            for (drops, pictures) in [true, false].into_iter().zip(&mut pictures) {
                 let mut parts = [true; PARTS];
                 parts[DROPS] = drops;
-                bench.pinned(&shot, parts)
-            });
-            each.collect()
-        };
-        let (drops, cones) = (textures(&pictures(true)), textures(&pictures(false)));
+                pictures.push(bench.pinned(&shot, parts));
+            }
+        }
+        let [drops, cones] = pictures.map(|p| textures(&p));
         let error = apart(&cones, &drops);
         bench.view.set_budget(Budget::default()).unwrap();
         let (_, plan) = bench.planned(&shot, SETTLED);

@@ -18,7 +18,7 @@ use crate::{
     scene::Host,
 };
 
-fn shower(north_m: f64, rate_mm_h: f64) -> RainArea {
+pub fn shower(north_m: f64, rate_mm_h: f64) -> RainArea {
     RainArea {
         center_m: [0.0, north_m, 0.0],
         shape: AreaShape::Ellipse([2200.0, 1500.0]),
@@ -30,19 +30,19 @@ fn shower(north_m: f64, rate_mm_h: f64) -> RainArea {
     }
 }
 
-fn square(half_m: f64) -> AreaShape {
+pub fn square(half_m: f64) -> AreaShape {
     let mut corners = [[0.0; 2]; MAX_CORNERS];
     corners[..4].copy_from_slice(&[[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]]);
     AreaShape::Polygon(corners, 4)
 }
 
-fn fair(wind_m_s: f64) -> Weather {
+pub fn fair(wind_m_s: f64) -> Weather {
     let mut weather = Weather { visibility_m: 45_000.0, ..Weather::default() };
     (weather.wind.speed_m_s, weather.wind.from_deg) = (wind_m_s, 270.0);
     weather
 }
 
-fn host(weather: &Weather, areas: &[RainArea]) -> Host {
+pub fn host(weather: &Weather, areas: &[RainArea]) -> Host {
     let mut host = Host::new((160, 90));
     host.context.set_weather(weather, 0.0, 0.0).unwrap();
     host.context.set_rain_areas(areas).unwrap();

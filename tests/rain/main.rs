@@ -1,5 +1,6 @@
 //! Rain as a host sees it, and what else falls and blows: where drops are drawn, what they cover, where it is dry. One binary, so that it links once.
 
+mod area_textures;
 mod areas;
 mod cones;
 mod culled;
@@ -7,6 +8,7 @@ mod culled;
 mod depth_texture;
 mod drops;
 mod dry_places;
+mod far;
 mod integrated;
 mod pictures;
 mod processes;

@@ -1,0 +1,20 @@
+// The veil for the host's own transparent shaders where there are rain areas: air and fog, and the columns before them.
+//!include "frame/froxel.wgsl"
+//!include "rain/shaft.wgsl"
+
+@fragment
+fn froxels(in: FullscreenVarying) -> Froxel {
+    let at = froxel_place(in.position.xy);
+    var veil = froxel_veil(at);
+    // From far to near, as the pass before the picture blends them.
+    for (var k = 0u; k < columns.count; k++) {
+        if shaft.rects[k].z <= shaft.rects[k].x {
+            // The rest is not in the picture.
+            break;
+        }
+        let column = shaft_veil(shaft.order[k / 4u][k % 4u], at.ndc, at.distance);
+        let clear = max(1.0 - column.a, 0.0);
+        veil = Veil(veil.light * clear + column.rgb / frame.exposure, veil.transmittance * clear);
+    }
+    return froxel_of(veil);
+}

@@ -1,0 +1,138 @@
+//! What is uneven in a layer: patches of fog, and curtains of rain. Both are sums of waves whose mean along a ray is a closed
+//! form, so that nothing flickers however far away.
+
+use glam::DVec3;
+
+use super::reference::FogModel;
+
+/// Half of a path on which a wave of a pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
+/// `shaders/fog/patterns.wgsl`.
+const PATCH_ROW: f64 = 8.0;
+/// Number of plane waves in the patches' pattern: the pairs of four.
+pub const PATCH_WAVES: usize = 6;
+/// Number of plane waves in the curtains' pattern.
+pub const CURTAIN_WAVES: usize = 8;
+/// Distance from the eye at which curtains begin, m: what is nearer is drawn drop by drop or nearly so. `CURTAIN_START` of
+/// `shaders/fog/patterns.wgsl`.
+pub const CURTAIN_START_M: f64 = 30.0;
+
+/// Curtains of rain in a layer: its extinction is that of even rain times 1 + `amount` times the sum of the waves' cosines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curtains {
+    /// Amplitude of each wave over the layer's whole extinction; 0 for none.
+    pub amount: f64,
+    /// Wave vectors (east, north, up), 1/m, and phases at the camera, rad.
+    pub waves: [(DVec3, f64); CURTAIN_WAVES],
+}
+
+impl Curtains {
+    /// Even rain.
+    pub const NONE: Self = Self { amount: 0.0, waves: [(DVec3::ZERO, 0.0); CURTAIN_WAVES] };
+
+    /// What they add between two distances of a ray, over what an even layer has there, and the variance of that over all places.
+    /// In both only what lies beyond [`CURTAIN_START_M`] counts.
+    pub fn mean(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> (f64, f64) {
+        let start = first.max(CURTAIN_START_M);
+        if last <= start {
+            return (0.0, 0.0);
+        }
+        let (middle, half) = (0.5 * (start + last), 0.5 * (last - start));
+        let part = self.amount * (last - start) / (last - first);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for wave in &self.waves {
+            let (value, size) = wave_mean(*wave, origin, direction, middle, half);
+            (sum, squares) = (sum + value, squares + size * size);
+        }
+        (part * sum, 0.5 * part * part * squares)
+    }
+
+    /// The optical depth that even rain of `depth` shows with them. On the mean over all places as much of the light behind is
+    /// left as even rain leaves, so signs are seen as far: the mean of e^-x of a normal x is e^(v/2) above that of its mean.
+    pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
+        (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
+    }
+}
+
+/// Mean of a wave's cosine along a ray, and how large it may be there.
+fn wave_mean((wave, phase): (DVec3, f64), origin: DVec3, direction: DVec3, middle: f64, half: f64) -> (f64, f64) {
+    let along = wave.dot(direction);
+    let x = along * half;
+    let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
+    // No row goes on for ever: a ray along one meets others after some.
+    let size = sinc * PATCH_ROW / (PATCH_ROW + wave.length() * half);
+    ((phase + wave.dot(origin) + along * middle).cos() * size, size)
+}
+
+/// Mean of the patches' pattern along a ray between `first` and `last` metres: 1 for an even layer.
+pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, last: f64) -> f64 {
+    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
+    let sum: f64 = m.patch_waves.iter().map(|w| wave_mean(*w, origin, direction, middle, half).0).sum();
+    // Pairs of four unit waves: |sum of four|^2 / 4 = 1 + 1/2 sum of cosines, never negative.
+    (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// Waves of 130 to 900 m, `shift` metres further.
+    fn curtains(shift: f64) -> Curtains {
+        let wave = |i: usize| {
+            let angle = TAU * (i as f64 + 0.3) / (2.0 * CURTAIN_WAVES as f64);
+            let k = TAU / (130.0 + 110.0 * ((i * 5) % CURTAIN_WAVES) as f64);
+            let k = DVec3::new(k * angle.cos(), k * angle.sin(), 0.15 * k);
+            (k, 2.4 * i as f64 + k.x * shift)
+        };
+        Curtains { amount: 0.245, waves: std::array::from_fn(wave) }
+    }
+
+    /// One wave along a ray against small steps.
+    #[test]
+    fn a_wave_has_the_mean_of_its_steps() {
+        let wave = curtains(0.0).waves[3];
+        for k in 0..60 {
+            let (azimuth, up) = (f64::from(k) * 0.31, f64::from(k % 7) * 0.05);
+            let d = DVec3::new(azimuth.sin(), azimuth.cos(), up).normalize();
+            let (from, to) = (30.0, 60.0 + 25.0 * f64::from(k));
+            let n = 4000;
+            let at =
+                |i: i32| (wave.1 + wave.0.dot(d) * (from + (to - from) * (f64::from(i) + 0.5) / f64::from(n))).cos();
+            let want = (0..n).map(at).sum::<f64>() / f64::from(n);
+            let half = 0.5 * (to - from);
+            let row = PATCH_ROW / (PATCH_ROW + wave.0.length() * half);
+            let (got, size) = wave_mean(wave, DVec3::ZERO, d, 0.5 * (from + to), half);
+            assert!((got / row - want).abs() < 1e-4 && got.abs() <= size.abs(), "{k}: {got} {want} {size}");
+        }
+    }
+
+    /// On the mean over places what lies behind is left as much of as by even rain, at every distance; without the variance it
+    /// would be more. Near the eye and far beyond all waves there is no pattern.
+    #[test]
+    fn as_much_is_left_as_by_even_rain() {
+        let n = 20_000;
+        for (range, per_m) in [(100.0, 6e-3), (500.0, 3e-3), (2000.0, 1.5e-3), (5000.0, 6e-4)] {
+            let depth = range * per_m;
+            let (mut left, mut plain, mut mean, mut square, mut variance) = (0.0, 0.0, 0.0, 0.0, 0.0);
+            for i in 0..n {
+                let c = curtains(f64::from(i) * 37.0);
+                let azimuth = f64::from(i) * 2.399_963;
+                let d = DVec3::new(azimuth.sin(), azimuth.cos(), 0.0);
+                let (m, v) = c.mean(DVec3::ZERO, d, 0.0, range);
+                (mean, square, variance) = (mean + m, square + m * m, variance + v);
+                plain += (-(depth * (1.0 + m)).max(0.0)).exp();
+                left += (-c.depth(depth, (m, v))).exp();
+            }
+            let [left, plain, mean, square, variance] = [left, plain, mean, square, variance].map(|v| v / f64::from(n));
+            assert!(mean.abs() < 0.01, "{range} m: {mean}");
+            assert!((square / variance - 1.0).abs() < 0.05, "{range} m: {square}, said {variance}");
+            let (off, without) = (left / (-depth).exp() - 1.0, plain / (-depth).exp() - 1.0);
+            println!("{range} m: {off} (without the variance {without}), deviation {}", square.sqrt());
+            assert!(off.abs() < 0.02, "{range} m: {off}, without the variance {without}");
+        }
+        let c = curtains(0.0);
+        assert_eq!(c.mean(DVec3::ZERO, DVec3::Y, 0.0, 29.0), (0.0, 0.0));
+        assert!(c.mean(DVec3::ZERO, DVec3::Y, 0.0, 1e6).0.abs() < 1e-3);
+    }
+}
