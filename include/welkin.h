@@ -3409,12 +3409,12 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * Textures for the host's transparent things
  *
  * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
- * light that air and fog add on the way to a point, and the share of the light behind that gets through. The mapping
+ * light that air, fog and rain add on the way to a point, and the share of the light behind that gets through. The mapping
  * from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
  * ====================================================================================================
  */
 
-/** The veil of the view's last frame. */
+/** The veil of the view's last frame: air, fog, the weather's rain, and rain areas. */
 typedef struct wk_frame_textures {
     /** sizeof(wk_frame_textures) of your header. */
     uint32_t struct_size;

@@ -114,7 +114,7 @@ fn curtains_are_drawn_as_the_reference_has_them() {
     let layer = FogLayer { phase: Phase::HenyeyGreenstein { g: 0.0 }, ..slab(3000.0, -1e4, 600.0, 100.0) };
     for h in [2.0, 300.0, 900.0] {
         let wave = |i: usize| {
-            let k = 6.283 / (130.0 + 110.0 * i as f64);
+            let k = 2.0 * std::f64::consts::PI / (130.0 + 110.0 * i as f64);
             (DVec3::new(k * (i as f64).cos(), k * (i as f64).sin(), 0.15 * k), i as f64)
         };
         let even = model(layer, &view(h, EARTH_M));
