@@ -3790,8 +3790,7 @@ typedef uint32_t wk_rain_model;
 
 /**
  * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
- * the time does not allow it (WK_PART_RAIN, WK_PART_DROPS). With occluder maps as WK_RAIN_MODEL_DROPS, where each drop asks them
- * for itself.
+ * the time does not allow it (WK_PART_RAIN, WK_PART_DROPS).
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */

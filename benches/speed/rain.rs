@@ -285,6 +285,9 @@ pub fn run() -> Fallible<()> {
     let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
     println!("  near drops and cones: the same boxes add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_shelters(&[])?;
+    println!("  and maps:");
+    maps(&mut bench)?;
+    println!("  drops alone:");
     bench.drops(base)?;
     maps(&mut bench)?;
     let lamp = HostLight {

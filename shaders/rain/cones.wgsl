@@ -2,36 +2,22 @@
 // The entry points read the depth: cones_single.wgsl and cones_multi.wgsl.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
+//!include "rain/cone_block.wgsl"
 
-const CONES: u32 = 4u;
 // Streaks of the texture's channels, and of all.
 const STREAKS: vec4f = vec4f(48.0, 192.0, 768.0, 3072.0);
 const ALL_STREAKS: f32 = 4080.0;
 // Texels along either side of the texture.
 const CONE_SIDE: f32 = 256.0;
 
-struct ConeUniform {
-    // Where the drops go as seen from the camera, and two directions across.
-    axis: vec3f,
-    // Mean fall speed, m/s.
-    fall: f32,
-    east: vec3f,
-    // Nearest cone that shows anything.
-    first: u32,
-    north: vec3f,
-    pad1: f32,
-    // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
-    bands: array<vec4f, CONES>,
-    // Per cone: tiles round the axis at right angles to it; Mercator's latitude of a tile; drops per steradian; least
-    // latitude of a tile at right angles to the axis, so that no streak is shorter than a pixel.
-    shapes: array<vec4f, CONES>,
-    // Per cone two sets: how far they have come, in latitude; share of the drops; offset.
-    sets: array<vec4f, 8>,
-}
-
-@group(1) @binding(0) var<uniform> cones: ConeUniform;
 @group(1) @binding(1) var streaks: texture_2d<f32>;
 @group(1) @binding(2) var streaks_sampler: sampler;
+// Of each cone's band, a layer each, the open shares of its parts (rain/open.wgsl).
+@group(1) @binding(3) var open_parts: texture_2d_array<f32>;
+@group(1) @binding(4) var open_sampler: sampler;
+
+// Whether anything near keeps rain off.
+override SHELTERED: bool = false;
 
 // A direction on the cones.
 struct OnCone {
@@ -90,32 +76,29 @@ fn pattern(look: Look, moved: vec4f) -> f32 {
     return max(mix(1.0, dot(shown, seen) / mean, sqrt(min(ALL_STREAKS / max(wanted, 1.0), 1.0))), 0.0);
 }
 
-// Places in a band at which it is asked what keeps the rain off: streaks of a band have no distance of their own.
-const PLACES: u32 = 3u;
-
-// Share of a band before what is at `range` along the ray `d` that the rain comes to.
-fn open_share(d: vec3f, band: vec4f, range: f32, velocity: vec3f) -> f32 {
-    let far = min(range, band.y);
-    var share = 1.0;
-    // A loop that is not begun costs a software driver nothing.
-    for (var i = select(PLACES, 0u, any_shelter()); i < PLACES; i++) {
-        let p = d * mix(band.x, far, (f32(i) + 0.5) / f32(PLACES));
-        share -= select(0.0, 1.0 / f32(PLACES), sheltered(p, velocity, true));
+// Share of a band that the rain comes to and that lies before what is at `range`, for a pixel at `uv`.
+fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
+    let band = cones.bands[j];
+    let before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
+    if !SHELTERED {
+        return before;
     }
-    return max(share, 0.0);
+    let open = textureSampleLevel(open_parts, open_sampler, uv, j, 0.0);
+    let seen = clamp(4.0 * before - vec4f(0.0, 1.0, 2.0, 3.0), vec4f(0.0), vec4f(1.0));
+    // Of a quarter that ends behind what is at `range`, what was found there counts only as far as it lies before that.
+    let sure = min(open, open.xxyz);
+    return dot(sure * seen + (open - sure) * max(2.0 * seen - 1.0, vec4f(0.0)), vec4f(0.25));
 }
 
-// All cones before what is at `range` along the ray `d`: premultiplied light, and what they hide.
-fn rain_on_cones(d: vec3f, range: f32) -> vec4f {
+// All cones before what is at `range` along the ray `d` of the pixel at `uv`: premultiplied light, and what they hide.
+fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
-    let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var seen = vec4f(0.0);
     var light = drop_light(d, d);
     for (var j = cones.first; j < CONES; j++) {
         let band = cones.bands[j];
-        var before = clamp((range - band.x) / (band.y - band.x), 0.0, 1.0);
+        let before = open_share(uv, j, range);
         let p = d * band.z;
-        before *= open_share(d, band, range, velocity);
         if before * band.w <= 0.0 {
             continue;
         }

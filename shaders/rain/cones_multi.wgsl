@@ -12,5 +12,5 @@ fn cones_fragment(in: FullscreenVarying) -> @location(0) vec4f {
     if HAS_DEPTH {
         range = view_range(rain.depth, textureLoad(host_depth, vec2i(in.position.xy), 0).r, ndc);
     }
-    return rain_on_cones(view_ray(rain.depth, ndc).direction, range);
+    return rain_on_cones(view_ray(rain.depth, ndc).direction, in.uv, range);
 }

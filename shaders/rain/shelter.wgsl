@@ -27,42 +27,42 @@ struct Shelters {
 // For how long what came to `p` with `velocity` was in box `i`, or in what planes leave of it, s; below 0: it has not been, and how
 // far it was from it.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
+    return time_nearby(i, p, velocity, 0.0);
+}
+
+// Likewise of a box with all its sides, and planes, so many metres further out.
+fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     let back = shelters.boxes[i].velocity.xyz - velocity;
     let rows = shelters.boxes[i].rows;
     let o = vec3f(dot(rows[0].xyz, p), dot(rows[1].xyz, p), dot(rows[2].xyz, p)) + vec3f(rows[0].w, rows[1].w, rows[2].w);
     let d = vec3f(dot(rows[0].xyz, back), dot(rows[1].xyz, back), dot(rows[2].xyz, back));
     let inverse = 1.0 / select(d, vec3f(1e-9), abs(d) < vec3f(1e-9));
-    let low = min((-1.0 - o) * inverse, (1.0 - o) * inverse);
-    let high = max((-1.0 - o) * inverse, (1.0 - o) * inverse);
+    let side = 1.0 + margin * vec3f(length(rows[0].xyz), length(rows[1].xyz), length(rows[2].xyz));
+    let low = min((-side - o) * inverse, (side - o) * inverse);
+    let high = max((-side - o) * inverse, (side - o) * inverse);
     var near = max(max(low.x, low.y), max(low.z, 0.0));
     var far = min(high.x, min(high.y, high.z));
     for (var j = shelters.boxes[i].cuts.x; j < shelters.boxes[i].cuts.y; j++) {
         let plane = shelters.cuts[j];
         let rate = dot(plane.xyz, d);
-        let at = (plane.w - dot(plane.xyz, o)) / select(rate, 1e-9, abs(rate) < 1e-9);
+        let out = margin * length(plane.x * rows[0].xyz + plane.y * rows[1].xyz + plane.z * rows[2].xyz);
+        let at = (plane.w + out - dot(plane.xyz, o)) / select(rate, 1e-9, abs(rate) < 1e-9);
         near = select(near, max(near, at), rate <= -1e-9);
         far = select(min(far, at), far, rate <= -1e-9);
     }
     return far - near;
 }
 
-fn meets(i: u32, p: vec3f, velocity: vec3f) -> bool {
-    return time_within(i, p, velocity) >= 0.0;
-}
-
-// Whether there is anything near the camera that rain does not pass.
-fn any_shelter() -> bool {
-    if MAPS {
-        return shelters.near + occluders.count > 0u;
-    }
-    return shelters.near > 0u;
-}
-
 // Whether what came to `p`, near the camera, with `velocity` met anything. Not looked for where it is not `wanted`: by loops that
 // are not begun, which is what a software driver leaves out.
 fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
+    return sheltered_nearby(p, velocity, 0.0, wanted);
+}
+
+// Likewise with boxes so many metres wider to all sides.
+fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> bool {
     for (var i = select(MAX_SHELTERS, 0u, wanted); i < shelters.near; i++) {
-        if meets(i, p, velocity) {
+        if time_nearby(i, p, velocity, margin) >= 0.0 {
             return true;
         }
     }

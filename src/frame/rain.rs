@@ -31,8 +31,6 @@ use crate::{
 pub(super) struct Rain {
     layer: RainLayer,
     pub settings: RainSettings,
-    /// What the settings come to here.
-    model: RainModel,
     /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
     shares: [f32; 2],
     /// Drops a class of each rain of late, and what they were counted for.
@@ -65,7 +63,6 @@ impl Rain {
         Self {
             layer: RainLayer::new(device),
             settings,
-            model: settings.model,
             shares: [1.0; 2],
             counted: Vec::new(),
             field: AreaField::empty(),
@@ -77,11 +74,6 @@ impl Rain {
 
     /// Looks what there is for a camera in a scene: what falls round it, and columns further off.
     pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) -> Result<()> {
-        // To ask maps once a pixel and band of cones costs more than all drops, which ask each for itself.
-        self.model = match self.settings.model {
-            RainModel::Automatic if has_maps(context) => RainModel::Drops,
-            model => model,
-        };
         let falling = &scene.conditions.precipitation;
         let at = (eye, &scene.world_to_enu, scene.place.altitude_m);
         self.field.columns.clear();
@@ -96,7 +88,7 @@ impl Rain {
 
     /// Whether drops fall near the camera, as far as the settings draw them.
     pub fn rains(&self) -> bool {
-        self.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
+        self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
     }
 
     /// Whether drops or cones are drawn.
@@ -116,7 +108,7 @@ impl Rain {
 
     /// Shells of the lattice that are drawn.
     fn shells(&self) -> usize {
-        match self.model {
+        match self.settings.model {
             RainModel::Drops | RainModel::Integrated => SHELLS,
             RainModel::Automatic => 1,
             RainModel::Veil | RainModel::Cones => 0,
@@ -140,7 +132,7 @@ impl Rain {
 
     /// Whether near drops are a part of their own in it.
     pub fn has_near_drops(&self) -> bool {
-        self.model == RainModel::Automatic
+        self.settings.model == RainModel::Automatic
     }
 
     /// Draws so much of all rain, and so much of that near the camera drop by drop.
@@ -174,7 +166,7 @@ impl Rain {
 
     /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
     fn has_cones(&self, context: &Context) -> bool {
-        match self.model {
+        match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
             RainModel::Drops | RainModel::Integrated => !context.lights().is_empty(),
             RainModel::Veil => false,
@@ -188,7 +180,7 @@ impl Rain {
 
     /// Share of the near drops that is drawn one by one, the rest on cones.
     fn share_of_drops(&self) -> f64 {
-        match self.model {
+        match self.settings.model {
             RainModel::Automatic => self.shares[1].into(),
             RainModel::Drops | RainModel::Integrated => 1.0,
             RainModel::Veil | RainModel::Cones => 0.0,
@@ -197,7 +189,7 @@ impl Rain {
 
     /// Extinction that drops or cones of a rain near the camera take off its veil, 1/m.
     fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
-        match self.model {
+        match self.settings.model {
             RainModel::Veil => 0.0,
             _ => 0.5 * self.classes(device, scene, falling).extinction_per_m,
         }
@@ -399,7 +391,7 @@ impl Rain {
             let to_enu = context.world().frame_at(g.origin).world_to_enu;
             (g, g.cells_at(frame.camera.position, to_enu))
         });
-        let stepped = (self.model == RainModel::Integrated).then(|| Stepped {
+        let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
             classes: &classes,
             shot: &shot,
             air: &air,

@@ -37,6 +37,8 @@ pub(crate) struct Around {
     staged: Vec<u8>,
     /// Whether the buffer says that there is something.
     told: bool,
+    /// Whether anything near the camera keeps rain off.
+    sheltered: bool,
     none: wgpu::TextureView,
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
@@ -127,12 +129,13 @@ impl Around {
         });
         let layout = layout(device);
         let bound = (None, group(device, &layout, &buffer, &none));
-        Self { layout, buffer, staged: vec![0; STARTS[3]], told: false, none, bound }
+        Self { layout, buffer, staged: vec![0; STARTS[3]], told: false, sheltered: false, none, bound }
     }
 
     /// Brings the blocks up to date for a frame.
     pub fn follow(&mut self, device: &Device, told: &Told<'_>) {
         let present = told.present();
+        self.sheltered = false;
         if present != Present::default() || self.told {
             let end = self.stage(told);
             device.queue.write_buffer(&self.buffer, 0, &self.staged[..end]);
@@ -178,6 +181,7 @@ impl Around {
             put(STARTS[1] + 8, bytemuck::cast_slice(&m.cells_at()));
         }
         put(STARTS[1], &maps.to_ne_bytes());
+        self.sheltered = near + maps > 0;
         let lights = &told.lights[..told.lights.len().min(MAX_LIGHTS)];
         put(STARTS[2], &(lights.len() as u32).to_ne_bytes());
         for (i, light) in lights.iter().enumerate() {
@@ -186,6 +190,11 @@ impl Around {
         }
         // What lies behind the last lamp is not read.
         STARTS[2] + 16 + size_of::<LightUniform>() * lights.len()
+    }
+
+    /// Whether anything near the camera keeps rain off: boxes or maps.
+    pub fn shelters(&self) -> bool {
+        self.sheltered
     }
 
     /// The bind group.

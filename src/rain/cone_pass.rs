@@ -1,8 +1,12 @@
-//! The cones on the GPU: their texture, their block, one full-screen draw.
+//! The cones on the GPU: their texture, their block, one full-screen draw, and before it what keeps rain off them, if anything does.
 
 use std::sync::Arc;
 
-use super::cones::{ConeUniform, SIDE, texture};
+use super::{
+    around::Around,
+    cones::{CONES, ConeUniform, SIDE, texture},
+    open_pass::{self, OpenPass},
+};
 use crate::{
     error::Result,
     gpu::{
@@ -15,7 +19,11 @@ use crate::{
 pub(super) struct ConePass {
     block: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
+    streaks: wgpu::TextureView,
+    samplers: [wgpu::Sampler; 2],
+    /// With a grid of open shares, or one that is not read.
     group: wgpu::BindGroup,
+    open: Option<OpenPass>,
     bytes: u64,
     pipelines: [Option<wgpu::RenderPipeline>; 8],
 }
@@ -30,34 +38,31 @@ impl ConePass {
         });
         let layout = layout(&device.device);
         let (streaks, bytes) = upload(device);
-        let sampler = device.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("streaks"),
-            address_mode_u: wgpu::AddressMode::Repeat,
-            address_mode_v: wgpu::AddressMode::Repeat,
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            // Levels hardly change over a picture; looking at two of them would cost half as much again.
-            mipmap_filter: wgpu::MipmapFilterMode::Nearest,
-            ..Default::default()
+        let samplers = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge].map(|mode| {
+            device.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("cones"),
+                address_mode_u: mode,
+                address_mode_v: mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                // Levels hardly change over a picture; looking at two of them would cost half as much again.
+                mipmap_filter: wgpu::MipmapFilterMode::Nearest,
+                ..Default::default()
+            })
         });
-        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("cones"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&streaks) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&sampler) },
-            ],
-        });
-        Self { block, layout, group, bytes, pipelines: [const { None }; 8] }
+        let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: CONES as u32 };
+        let none = open_pass::grid(&device.device, one);
+        let group = group(&device.device, &layout, &block, &streaks, &samplers, &none);
+        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 8] }
     }
 
     /// Bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
-        self.bytes
+        self.bytes + self.open.as_ref().map_or(0, OpenPass::bytes)
     }
 
-    /// Brings the block up and makes the pipeline for a kind of depth, with or without occluder maps, if it is not there.
+    /// Brings the block up and makes the pipeline for a kind of depth, with or without anything that keeps rain off, if it is
+    /// not there.
     ///
     /// # Errors
     /// A missing shader file.
@@ -66,10 +71,10 @@ impl ConePass {
         device: &Arc<Device>,
         block: &ConeUniform,
         [frame, around]: [&wgpu::BindGroupLayout; 2],
-        (multi, has_depth, maps): (bool, bool, bool),
+        (multi, has_depth, sheltered): (bool, bool, bool),
     ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
-        let slot = &mut self.pipelines[key((multi, has_depth, maps))];
+        let slot = &mut self.pipelines[key((multi, has_depth, sheltered))];
         if slot.is_none() {
             *slot = Some(fullscreen(
                 device,
@@ -83,12 +88,35 @@ impl ConePass {
                         blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
-                    constants: &[("HAS_DEPTH", f64::from(u8::from(has_depth))), ("MAPS", f64::from(u8::from(maps)))],
+                    constants: &[
+                        ("HAS_DEPTH", f64::from(u8::from(has_depth))),
+                        ("SHELTERED", f64::from(u8::from(sheltered))),
+                    ],
                     samples: 1,
                 },
             )?);
         }
         Ok(())
+    }
+
+    /// Asks what keeps rain off for a picture of this size, maps among it or not; `blocks` begin with the rain's.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn shelter(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        (blocks, layout, around): (&wgpu::Buffer, &wgpu::BindGroupLayout, &Around),
+        (picture, maps): (wgpu::Extent3d, bool),
+    ) -> Result<()> {
+        let first = self.open.is_none();
+        let open = self.open.get_or_insert_with(|| OpenPass::new(&device.device, [blocks, &self.block], picture));
+        let (grid, anew) = open.fit(&device.device, picture);
+        if first || anew {
+            self.group = group(&device.device, &self.layout, &self.block, &self.streaks, &self.samplers, grid);
+        }
+        open.draw(device, encoder, (layout, around.bind_group()), maps)
     }
 
     /// Draws what was prepared; the other groups are set.
@@ -101,34 +129,57 @@ impl ConePass {
     }
 }
 
-/// Which pipeline draws: for depth of several samples, for depth at all, for occluder maps.
-fn key((multi, has_depth, maps): (bool, bool, bool)) -> usize {
-    usize::from(maps) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
+/// Which pipeline draws: for depth of several samples, for depth at all, for what keeps rain off.
+fn key((multi, has_depth, sheltered): (bool, bool, bool)) -> usize {
+    usize::from(sheltered) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let block = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: wgpu::BufferSize::new(size_of::<ConeUniform>() as u64),
+    };
+    let texture = |view_dimension| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("cones"),
         entries: &[
-            entry(
-                0,
-                wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: wgpu::BufferSize::new(size_of::<ConeUniform>() as u64),
-                },
-            ),
-            entry(
-                1,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-            ),
-            entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            entry(0, block),
+            entry(1, texture(wgpu::TextureViewDimension::D2)),
+            entry(2, sampler),
+            entry(3, texture(wgpu::TextureViewDimension::D2Array)),
+            entry(4, sampler),
+        ],
+    })
+}
+
+fn group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    block: &wgpu::Buffer,
+    streaks: &wgpu::TextureView,
+    [repeated, clamped]: &[wgpu::Sampler; 2],
+    open: &wgpu::Texture,
+) -> wgpu::BindGroup {
+    let dimension = Some(wgpu::TextureViewDimension::D2Array);
+    let open = open.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("cones"),
+        layout,
+        entries: &[
+            entry(0, block.as_entire_binding()),
+            entry(1, wgpu::BindingResource::TextureView(streaks)),
+            entry(2, wgpu::BindingResource::Sampler(repeated)),
+            entry(3, wgpu::BindingResource::TextureView(&open)),
+            entry(4, wgpu::BindingResource::Sampler(clamped)),
         ],
     })
 }

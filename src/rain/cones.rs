@@ -46,7 +46,7 @@ const HALF_WIDTH: f64 = 0.8;
 /// Time from birth to end of a set of the innermost cone, s; each further one twice as long.
 const LIFE_S: f64 = 0.4;
 
-/// `ConeUniform` of `shaders/rain/cones.wgsl`, which explains the fields.
+/// `ConeUniform` of `shaders/rain/cone_block.wgsl`, which explains the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct ConeUniform {

@@ -25,6 +25,7 @@ pub mod light;
 mod local;
 mod occluder;
 mod occluder_maps;
+mod open_pass;
 mod passes;
 pub mod probe;
 mod settings;

@@ -184,6 +184,8 @@ impl RainLayer {
         self.bind(device, depth, multi);
         self.view(device, color.size());
         let kind = (multi, depth.is_some(), drawn.maps);
+        let sheltered = drawn.around.shelters();
+        let cone_kind = (multi, depth.is_some(), sheltered);
         let areas = drawn.local.is_some();
         let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
         let over = (drawn.over, drawn.around.bind_group());
@@ -192,12 +194,17 @@ impl RainLayer {
             self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
         }
         if let Some(block) = drawn.cones {
-            self.cones.get_or_insert_with(|| ConePass::new(device)).prepare(device, block, frame, kind)?;
+            let cones = self.cones.get_or_insert_with(|| ConePass::new(device));
+            cones.prepare(device, block, frame, cone_kind)?;
+            if sheltered {
+                let told = (&self.blocks, &self.around, drawn.around);
+                cones.shelter(device, encoder, told, (color.size(), drawn.maps))?;
+            }
         }
         if drawn.rain.shells == 0 {
             self.draw_into(encoder, over, |pass, layer| {
                 if drawn.cones.is_some() {
-                    layer.cones.iter().for_each(|c| c.draw(pass, kind));
+                    layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 }
                 layer.draw_stones(pass, kind, drawn);
             });
@@ -222,7 +229,7 @@ impl RainLayer {
         }
         self.draw_into(encoder, over, |pass, layer| {
             if drawn.cones.is_some() {
-                layer.cones.iter().for_each(|c| c.draw(pass, kind));
+                layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies elsewhere,
                 // nor that a group is set, if it is the same one.
                 pass.set_bind_group(2, None, &[]);

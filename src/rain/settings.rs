@@ -10,7 +10,6 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
     /// Each drop to 1.9 m, and cones beyond, to 14.8 m; under a budget ([`crate::plan`]) less if the picture does not need it.
-    /// With occluder maps ([`crate::context::Context::set_occluder_maps`]) as [`RainModel::Drops`], which ask them each for itself.
     #[default]
     Automatic,
     /// No drops: all rain is extinction. Costs nothing beyond the fog.

@@ -1,10 +1,12 @@
 //! The three colour spaces of a host, masks, samples and orientation: each against what the scene-linear frame says.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use welkin::{
     Status,
     frame::{ColorSpace, Exposure, Frame, Stages, ToneCurve, tone},
+    rain::{Planes, Shelter},
     scene::Camera,
+    weather::{Precipitation, PrecipitationKind, Weather},
 };
 
 use crate::host::{Host, SIZE, camera, texture};
@@ -279,5 +281,48 @@ fn a_pixel_at_an_edge_is_the_mean_of_its_samples_composed_one_by_one() {
         assert!((sky[4000][2] - wall[4000][2]).abs() > 100.0, "sky and wall differ: {:?} {:?}", sky[4000], wall[4000]);
         assert_eq!(partly.len() as u32, samples - 1, "the edge leaves every number of samples: {partly:?}");
         host = multi;
+    }
+}
+
+/// Rain of the default model from a camera on its side, below a block over all that is to the right of it in the world, which is one
+/// half of the picture from top to bottom.
+#[test]
+fn a_block_keeps_rain_off_the_same_half_whatever_samples_and_orientation() {
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+    let mut host = Host::new(FORMAT);
+    let mut weather =
+        Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, 300.0), ..Weather::default() };
+    weather.wind.speed_m_s = 0.0;
+    host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+    host.context.update(1.0).unwrap();
+    let block = Shelter {
+        center_m: DVec3::new(20.0, 0.0, 206.0),
+        axes: DMat3::IDENTITY,
+        half_size_m: DVec3::new(20.0, 40.0, 200.0),
+        velocity_m_s: DVec3::ZERO,
+        planes: Planes::NONE,
+    };
+    let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::X, 1.0, 16.0 / 9.0, 0.1);
+    let mut id = 0;
+    for (samples, bottom) in [(1, false), (4, false), (1, true), (4, true)] {
+        host.color = texture(&host.device, FORMAT, samples);
+        host.depth = texture(&host.device, wgpu::TextureFormat::Depth32Float, samples);
+        // Light of the rain above and below the middle.
+        let [open, below] = [&[][..], &[block][..]].map(|blocks| {
+            host.context.set_shelters(blocks).unwrap();
+            host.clear([0.0, 0.0, 0.0, 1.0], 0.001);
+            id += 1;
+            let mut frame = Frame::new(id, camera, &host.color, Some(&host.depth));
+            frame.origin_bottom_left = bottom;
+            host.view.record(&host.context, &frame, Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
+            let pixels = if samples > 1 { resolve(&host) } else { host.pixels() };
+            let half = pixels.len() / 2;
+            [&pixels[..half - 1280], &pixels[half + 1280..]].map(|h| h.iter().map(|p| f64::from(p[1])).sum::<f64>())
+        });
+        // The camera's up is to the right in the world.
+        let (dry, wet) = if bottom { (1, 0) } else { (0, 1) };
+        let what = format!("{samples} samples, bottom {bottom}: {below:?} of {open:?}");
+        assert!(open[dry] > 0.0 && below[dry] == 0.0, "{what}");
+        assert!(below[wet] > 0.98 * open[wet] && below[wet] <= 1.001 * open[wet], "{what}");
     }
 }

@@ -107,6 +107,20 @@ fn lit(host: &mut Host, from_s: f64) -> Vec<f64> {
     sum
 }
 
+/// Share of the rain before what pixel `i` shows that rays past the deck leave, of drops that hide so much and fall so; and
+/// whether there are no splashes, which know whether their own place is dry, not how much of the way to it.
+fn share(host: &Host, deck: &Shelter, falls: &[(f64, DVec3)], i: usize) -> (f64, bool) {
+    let at = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
+    let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();
+    let eye = host.camera.position;
+    let plain = (p.z + eye.z).abs() > 0.01 || p.truncate().length() > splash::REACH_M;
+    let (d, far) = (p.normalize(), p.length().min(BANDS_M[4]));
+    let places = (0..48).map(|k| BANDS_M[0] + (far - BANDS_M[0]) * (f64::from(k) + 0.5) / 48.0);
+    let discs: f64 = falls.iter().map(|f| f.0).sum();
+    let free = |p: DVec3| falls.iter().filter(|f| !sheltered(deck, eye + p, f.1)).map(|f| f.0).sum::<f64>() / discs;
+    (places.map(|s| free(d * s)).sum::<f64>() / 48.0, plain)
+}
+
 #[test]
 fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() {
     let mut host = Host::new((160, 90));
@@ -125,46 +139,52 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
         // What drops of each size hide of all, and how they fall.
         let falls = classes(&weather, u32::MAX).flux.into_iter().filter(|c| c.1 > 0.0);
         let falls: Vec<_> = falls.map(|(d, v, flux)| (flux / v * d * d, air - DVec3::Z * v)).collect();
-        let discs: f64 = falls.iter().map(|f| f.0).sum();
+        // Maps along drops of three sizes.
+        let over = DVec3::new(0.0, 6.0, 0.0);
+        let taken = [6.0, 3.4, 2.1].map(|v| {
+            let f = (air - DVec3::Z * v).normalize();
+            Taken::parallel(over - f * 60.0, f, [20.0; 2], 120.0)
+        });
+        let textures = taken.map(|t| map(&host, &[deck], &t, (512, 512)));
+        let maps = [0, 1, 2].map(|i| OccluderMap { depth: &textures[i], taken: taken[i] });
         // Under it looking out, and from outside looking under it.
         for (k, (what, y)) in [("out", 13.0), ("under", -3.0)].into_iter().enumerate() {
             let t = t + 30.0 * k as f64;
             let eye = DVec3::new(0.0, y, 1.7);
             host.camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, NEAR_M);
-            host.context.set_shelters(&[]).unwrap();
             let start = host.context.save().unwrap();
             let open = lit(&mut host, t);
-            // The same drops once more.
-            host.context.load(&start).unwrap();
-            host.context.set_shelters(&[deck]).unwrap();
-            let seen = lit(&mut host, t);
-            let (mut all, mut got, mut truth, mut inside, mut kept) = (0.0, 0.0, 0.0, 0.0, 0.0);
-            for (i, (seen, open)) in seen.iter().zip(&open).enumerate() {
-                let at = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
-                let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();
-                let (d, far) = (p.normalize(), p.length().min(BANDS_M[4]));
-                let places = (0..48).map(|k| BANDS_M[0] + (far - BANDS_M[0]) * (f64::from(k) + 0.5) / 48.0);
-                let free =
-                    |p: DVec3| falls.iter().filter(|f| !sheltered(&deck, p, f.1)).map(|f| f.0).sum::<f64>() / discs;
-                let share = places.map(|s| free(eye + d * s)).sum::<f64>() / 48.0;
-                // Splashes know whether their own place is dry, not how much of the way to it.
-                if (p.z + eye.z).abs() > 0.01 || p.truncate().length() > splash::REACH_M {
-                    (all, got, truth) = (all + open, got + seen, truth + open * share);
+            // The share of each pixel's rain by rays.
+            let shares: Vec<_> = (0..open.len()).map(|i| share(&host, &deck, &falls, i)).collect();
+            for (by, boxes, maps) in [("a box", &[deck][..], &[][..]), ("maps", &[], &maps[..])] {
+                // The same drops once more.
+                host.context.load(&start).unwrap();
+                host.context.set_shelters(boxes).unwrap();
+                host.context.set_occluder_maps(maps).unwrap();
+                let seen = lit(&mut host, t);
+                host.context.set_shelters(&[]).unwrap();
+                host.context.set_occluder_maps(&[]).unwrap();
+                let [mut all, mut got, mut truth, mut inside, mut kept] = [0.0; 5];
+                for ((seen, open), (share, plain)) in seen.iter().zip(&open).zip(&shares) {
+                    if *plain {
+                        (all, got, truth) = (all + open, got + seen, truth + open * share);
+                    }
+                    if *share == 0.0 {
+                        (inside, kept) = (inside + seen, kept + open);
+                    }
                 }
-                if share == 0.0 {
-                    (inside, kept) = (inside + seen, kept + open);
-                }
+                println!(
+                    "wind {wind}, looking {what}, by {by}: {:.3} of the open rain's light, {:.3} by rays; where all is dry {:.4}",
+                    got / all,
+                    truth / all,
+                    inside / f64::max(kept, 1e-9)
+                );
+                let what = format!("wind {wind}, {what}, by {by}");
+                assert!(((got - truth) / all).abs() < 0.06, "{what}: {got} of {all}, {truth} by rays");
+                // From outside no ray is all under it, and small drops blow in as far as to the camera.
+                assert!((kept > 0.0) == (what.contains("out") && wind < 10.0), "{what}: {kept}");
+                assert!(inside <= 0.01 * kept, "{what}: {inside} of {kept}");
             }
-            println!(
-                "wind {wind}, looking {what}: {:.3} of the open rain's light, {:.3} by rays; where all is dry {:.4}",
-                got / all,
-                truth / all,
-                inside / f64::max(kept, 1e-9)
-            );
-            assert!(((got - truth) / all).abs() < 0.06, "wind {wind}, {what}: {got} of {all}, {truth} by rays");
-            // From outside no ray is all under it, and small drops blow in as far as to the camera.
-            assert!((kept > 0.0) == (what == "out" && wind < 10.0), "wind {wind}, {what}: {kept}");
-            assert!(inside <= 0.01 * kept, "wind {wind}, {what}: {inside} of {kept}");
         }
     }
 }

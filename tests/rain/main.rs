@@ -10,6 +10,7 @@ mod drops;
 mod dry_places;
 mod far;
 mod integrated;
+mod open_shares;
 mod pictures;
 mod processes;
 mod sand;

@@ -102,7 +102,7 @@ pub fn through(host: &mut Host, boxes: &[Shelter]) -> Vec<f64> {
 
 /// Whether the way of what came to `p` with `velocity` met any of the boxes, if that does not hang on where within `slack_m`
 /// `p` is.
-fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<bool> {
+pub fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<bool> {
     let hit = |p: DVec3| boxes.iter().any(|b| sheltered(b, p, velocity));
     let first = hit(p);
     let f = velocity.normalize();

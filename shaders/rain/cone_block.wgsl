@@ -1,0 +1,24 @@
+// The block of rain on cones; src/rain/cones.rs explains the model.
+
+const CONES: u32 = 4u;
+
+struct ConeUniform {
+    // Where the drops go as seen from the camera, and two directions across.
+    axis: vec3f,
+    // Mean fall speed, m/s.
+    fall: f32,
+    east: vec3f,
+    // Nearest cone that shows anything.
+    first: u32,
+    north: vec3f,
+    pad1: f32,
+    // Per cone: near end, far end and middle of its band, m; optical depth of its drops.
+    bands: array<vec4f, CONES>,
+    // Per cone: tiles round the axis at right angles to it; Mercator's latitude of a tile; drops per steradian; least
+    // latitude of a tile at right angles to the axis, so that no streak is shorter than a pixel.
+    shapes: array<vec4f, CONES>,
+    // Per cone two sets: how far they have come, in latitude; share of the drops; offset.
+    sets: array<vec4f, 8>,
+}
+
+@group(1) @binding(0) var<uniform> cones: ConeUniform;

@@ -1,0 +1,162 @@
+//! What comes through to the cones, on a coarse grid over the picture: each band's open shares, asked once a cell and looked up by
+//! every pixel. Drawn only where something near keeps rain off.
+
+use std::sync::Arc;
+
+use super::{
+    cones::{CONES, ConeUniform},
+    uniforms::RainUniform,
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{FullscreenDesc, fullscreen},
+    },
+};
+
+/// Pixels along a cell's side, and fewest cells along the picture's.
+const CELL: u32 = 10;
+const FEWEST: u32 = 40;
+/// Four quarters of a band.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The grid of a view, made when it first needs one.
+pub(super) struct OpenPass {
+    layouts: [wgpu::BindGroupLayout; 2],
+    groups: [wgpu::BindGroup; 2],
+    /// Without and with occluder maps.
+    pipelines: [Option<wgpu::RenderPipeline>; 2],
+    grid: wgpu::Texture,
+    /// A layer for each band.
+    layers: [wgpu::TextureView; CONES],
+}
+
+/// Cells of a grid over a picture.
+fn cells(picture: wgpu::Extent3d) -> wgpu::Extent3d {
+    let along = |pixels: u32| pixels.div_ceil(CELL).max(FEWEST);
+    wgpu::Extent3d { width: along(picture.width), height: along(picture.height), depth_or_array_layers: CONES as u32 }
+}
+
+/// A grid, which may be one cell for the cones to bind where nothing is asked.
+pub(super) fn grid(device: &wgpu::Device, size: wgpu::Extent3d) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("open shares"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
+}
+
+fn layer(grid: &wgpu::Texture, at: usize) -> wgpu::TextureView {
+    grid.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: at as u32,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+impl OpenPass {
+    /// `blocks` begin with the rain's, `cones` is theirs.
+    pub fn new(device: &wgpu::Device, [blocks, cones]: [&wgpu::Buffer; 2], picture: wgpu::Extent3d) -> Self {
+        let sizes = [size_of::<RainUniform>(), size_of::<ConeUniform>()].map(|s| wgpu::BufferSize::new(s as u64));
+        let layouts = sizes.map(|size| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("open shares"),
+                entries: &[wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: size,
+                    },
+                    count: None,
+                }],
+            })
+        });
+        let groups = [(blocks, 0), (cones, 1)].map(|(buffer, i)| {
+            let block = wgpu::BufferBinding { buffer, offset: 0, size: sizes[i] };
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("open shares"),
+                layout: &layouts[i],
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(block) }],
+            })
+        });
+        let grid = grid(device, cells(picture));
+        let layers = std::array::from_fn(|i| layer(&grid, i));
+        Self { layouts, groups, pipelines: [None, None], grid, layers }
+    }
+
+    /// Bytes of GPU memory held.
+    pub fn bytes(&self) -> u64 {
+        let size = self.grid.size();
+        4 * CONES as u64 * u64::from(size.width) * u64::from(size.height)
+    }
+
+    /// The grid for a picture of this size, and whether it is a new one.
+    pub fn fit(&mut self, device: &wgpu::Device, picture: wgpu::Extent3d) -> (&wgpu::Texture, bool) {
+        let size = cells(picture);
+        let anew = self.grid.size() != size;
+        if anew {
+            self.grid = grid(device, size);
+            self.layers = std::array::from_fn(|i| layer(&self.grid, i));
+        }
+        (&self.grid, anew)
+    }
+
+    /// Asks what keeps rain off, maps among it or not, of the group `around`.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        (layout, around): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
+        maps: bool,
+    ) -> Result<()> {
+        let slot = &mut self.pipelines[usize::from(maps)];
+        if slot.is_none() {
+            let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+            let targets = [const { None }; CONES].map(|_: Option<()>| target.clone());
+            *slot = Some(fullscreen(
+                device,
+                &FullscreenDesc {
+                    shader: "rain/open.wgsl",
+                    entry: "open_fragment",
+                    layouts: &[&self.layouts[0], &self.layouts[1], layout],
+                    targets: &targets,
+                    constants: &[("MAPS", f64::from(u8::from(maps)))],
+                    samples: 1,
+                },
+            )?);
+        }
+        let attachments = self.layers.each_ref().map(|view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
+            })
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("open shares"),
+            color_attachments: &attachments,
+            ..Default::default()
+        });
+        if let Some(pipeline) = slot {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &self.groups[0], &[]);
+            pass.set_bind_group(1, &self.groups[1], &[]);
+            pass.set_bind_group(2, around, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        Ok(())
+    }
+}
