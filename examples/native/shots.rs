@@ -267,11 +267,11 @@ pub fn shots() -> Vec<Shot> {
             name: "rain_shaft",
             caption: "A shower 5 km away",
             weather: |c, ground| {
-                sun(c, 305.0, 20.0)?;
+                sun(c, 250.0, 14.0)?;
                 let weather = Weather {
                     visibility_m: 35_000.0,
                     station_altitude_m: ground,
-                    clouds: vec![CloudLayer::of(CloudKind::Stratocumulus, 0.95, 1500.0)],
+                    clouds: vec![CloudLayer::of(CloudKind::Stratocumulus, 0.88, 3000.0)],
                     wind: Wind::of(13.0, 275.0),
                     ..Weather::default()
                 };
@@ -280,22 +280,22 @@ pub fn shots() -> Vec<Shot> {
                     center_m: [f64::from(GROUND.at[0]) + right_m, f64::from(GROUND.at[1]) + ahead_m, ground],
                     shape: AreaShape::Ellipse(semi),
                     heading_deg: 15.0,
-                    rim_m: 0.8 * semi[0].min(semi[1]),
+                    rim_m: 0.5 * semi[0].min(semi[1]),
                     rate_mm_h,
                     kind: AreaRain::Showers,
-                    top_m: ground + 1500.0,
+                    top_m: ground + 3000.0,
                     ..RainArea::default()
                 };
                 c.set_rain_areas(&[
-                    area(9500.0, -2600.0, [1500.0, 1800.0], 5.0),
-                    area(6400.0, 1300.0, [2600.0, 1600.0], 5.0),
-                    area(6200.0, 1700.0, [1200.0, 1000.0], 40.0),
+                    area(7400.0, -1500.0, [500.0, 500.0], 12.0),
+                    area(6300.0, 700.0, [1500.0, 1200.0], 3.0),
+                    area(5900.0, 500.0, [800.0, 700.0], 20.0),
                 ])
             },
             height_m: 130.0,
             azimuth_deg: 10.0,
             elevation_deg: 5.0,
-            fov_y_deg: 38.0,
+            fov_y_deg: 30.0,
             ..GROUND
         },
         Shot {

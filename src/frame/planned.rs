@@ -1,10 +1,19 @@
 //! A view's budget and plan: what it may leave out of its pictures, and what it did.
 
-use super::View;
+use glam::DVec3;
+
+use super::{Frame, View};
 use crate::{
+    context::Scene,
     error::{Error, Result, Status},
-    plan::{self, Budget, Plan, Reason},
+    plan::{self, Budget, Plan, Reason, Situation},
 };
+
+/// What the planner compares pictures by.
+pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
+    let forward = frame.camera.rotation().transpose() * DVec3::NEG_Z;
+    Situation { position: frame.camera.position, forward, sun: scene.sun.direction, conditions: scene.conditions }
+}
 
 impl View {
     /// Sets how wrong the view's pictures may be: what they do not need is left out from some frames later on. Unchanged

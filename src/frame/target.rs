@@ -179,3 +179,10 @@ fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages)
     }
     Err(Error::range(&format!("{name}.usage"), &format!("one with {needed:?}"), format!("{:?}", texture.usage())))
 }
+
+/// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a
+/// display's steps.
+pub(super) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
+    let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
+    !tone || frame.color.is_some_and(|c| is_float(c.format()))
+}

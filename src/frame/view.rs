@@ -12,11 +12,12 @@ use super::{
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
+    planned::situation,
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Stages, check_color, check_depth, check_mask, color_copy},
-    uniform::{FrameUniform, is_float, uniform},
+    target::{ColorSpace, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
+    uniform::{FrameUniform, uniform},
 };
 use crate::{
     context::{Context, Scene},
@@ -25,7 +26,7 @@ use crate::{
     glass::Glass,
     gpu::Device,
     ground::GroundUniform,
-    plan::{Planner, Present, Situation},
+    plan::{Planner, Present},
     rain::{Around, RainSettings},
     scene::{Camera, ViewRays},
     sky::SkyVolume,
@@ -490,17 +491,4 @@ impl View {
         self.bound = Some((bound, group, target));
         Ok(())
     }
-}
-
-/// What the planner compares pictures by.
-fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
-    let forward = frame.camera.rotation().transpose() * DVec3::NEG_Z;
-    Situation { position: frame.camera.position, forward, sun: scene.sun.direction, conditions: scene.conditions }
-}
-
-/// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a
-/// display's steps.
-fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
-    let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
-    !tone || frame.color.is_some_and(|c| is_float(c.format()))
 }
