@@ -97,12 +97,17 @@ fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     var light = drop_light(d, d);
     for (var j = cones.first; j < CONES; j++) {
         let band = cones.bands[j];
-        let before = open_share(uv, j, range);
         let p = d * band.z;
+        var fall = 1.0;
+        if AREAS {
+            fall = local_cones(p);
+        }
+        let before = fall * open_share(uv, j, range);
         if before * band.w <= 0.0 {
             continue;
         }
-        let look = look_at(at, cones.shapes[j]);
+        var look = look_at(at, cones.shapes[j]);
+        look.number *= fall;
         let a = cones.sets[2u * j];
         let b = cones.sets[2u * j + 1u];
         let depth = a.y * pattern(look, a) + b.y * pattern(look, b);

@@ -13,6 +13,8 @@ struct Local {
     weights: array<vec4f, LOCAL_ROWS>,
     // Share of the splashes' slots that are taken.
     splashes: array<vec4f, LOCAL_ROWS>,
+    // Of the rain that the cones' block is made for, how much falls in each.
+    cones: array<vec4f, LOCAL_ROWS>,
 }
 
 @group(0) @binding(8) var<uniform> local: Local;
@@ -39,4 +41,14 @@ fn local_splashes(p: vec3f) -> f32 {
         taken = mix(taken, local.splashes[state / 4u][state % 4u], column_share(i, p));
     }
     return taken;
+}
+
+// Drops at a place over those that the cones' block is made for.
+fn local_cones(p: vec3f) -> f32 {
+    var fall = local.cones[0].x;
+    for (var i = 0u; i < columns.count; i++) {
+        let state = i + 1u;
+        fall = mix(fall, local.cones[state / 4u][state % 4u], column_share(i, p));
+    }
+    return fall;
 }

@@ -45,6 +45,9 @@ pub(super) struct Rain {
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
 const COUNTED: usize = 32;
 
+/// Least share of a rain near a rim in what cones are made for.
+const LEAST_OF_CONES: f64 = 1e-2;
+
 /// What is drawn into: the frame's work, the frame, and its colour.
 pub(super) type To<'a, 'b> = (&'a mut wgpu::CommandEncoder, &'a Frame<'b>, &'a wgpu::Texture);
 
@@ -81,7 +84,7 @@ impl Rain {
             let shafts = context.shafts_at(context.time_s(), &scene.conditions)?;
             self.field.set(shafts, at, &context.own_rain(&scene.conditions), context.time_s());
         }
-        self.local = Some(Local::new(falling, &self.field, at));
+        self.local = Some(Local::new(falling, &self.field, at, REACH_M.max(self.reach(context))));
         self.ice.look(context, scene, eye);
         Ok(())
     }
@@ -295,7 +298,8 @@ impl Rain {
         }
     }
 
-    /// What falls at the camera itself, which cones show all round: parts of each rain, as the drops near a rim are.
+    /// What cones are made for: parts of each rain as at the camera itself, and a little of all that is near, of which there may be
+    /// none at the camera.
     fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
         let weather = scene.conditions.precipitation;
         let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
@@ -311,9 +315,9 @@ impl Rain {
             left -= share;
             let area = self.classes(device, scene, &shaft.falling);
             let before = mixture.get_or_insert_with(|| base.part(0.0));
-            *before = before.with(share * shaft.begun(scene.place.altitude_m), &area);
+            *before = before.with(share.max(LEAST_OF_CONES) * shaft.begun(scene.place.altitude_m), &area);
         }
-        mixture.map_or(base, |m| m.with(left.max(0.0), &base))
+        mixture.map_or(base, |m| m.with(left.max(LEAST_OF_CONES), &base))
     }
 
     fn shot<'a>(&self, frame: &Frame<'_>, height: u32, (scene, rays): (&Scene, &'a ViewRays)) -> Shot<'a> {
@@ -361,7 +365,7 @@ impl Rain {
         if !self.falls_here() {
             return Ok(RainReport::default());
         }
-        let (classes, local) = self.falling_here(device, scene);
+        let (classes, mut local) = self.falling_here(device, scene);
         let shot = self.shot(frame, color.height(), (scene, rays));
         let c = &scene.conditions;
         let air = Air {
@@ -384,7 +388,9 @@ impl Rain {
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from, to| context.carried(from, to);
         let cones = (wet && self.has_cones(context)).then(|| {
-            let all = ConeUniform::new(block.seed, &self.falling_at(device, scene), &shot, &air, &carried);
+            let there = self.falling_at(device, scene);
+            local.iter_mut().for_each(|l| l.set_cones(there.extinction_per_m));
+            let all = ConeUniform::new(block.seed, &there, &shot, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share)
         });
         let around = context.wind_grid().map(|g| {

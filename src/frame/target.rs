@@ -1,5 +1,6 @@
 //! What a host hands over to be drawn into: colour, depth, mask, and how to read them.
 
+use super::{Frame, uniform::is_float};
 use crate::error::{Error, Result};
 
 /// What the numbers in the host's colour texture mean.

@@ -25,7 +25,7 @@ pub(super) struct ConePass {
     group: wgpu::BindGroup,
     open: Option<OpenPass>,
     bytes: u64,
-    pipelines: [Option<wgpu::RenderPipeline>; 8],
+    pipelines: [Option<wgpu::RenderPipeline>; 16],
 }
 
 impl ConePass {
@@ -53,7 +53,7 @@ impl ConePass {
         let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: CONES as u32 };
         let none = open_pass::grid(&device.device, one);
         let group = group(&device.device, &layout, &block, &streaks, &samplers, &none);
-        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 8] }
+        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 16] }
     }
 
     /// Bytes of GPU memory held.
@@ -71,15 +71,15 @@ impl ConePass {
         device: &Arc<Device>,
         block: &ConeUniform,
         [frame, around]: [&wgpu::BindGroupLayout; 2],
-        (multi, has_depth, sheltered): (bool, bool, bool),
+        kind: ConeKind,
     ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
-        let slot = &mut self.pipelines[key((multi, has_depth, sheltered))];
+        let slot = &mut self.pipelines[kind.key()];
         if slot.is_none() {
             *slot = Some(fullscreen(
                 device,
                 &FullscreenDesc {
-                    shader: if multi { "rain/cones_multi.wgsl" } else { "rain/cones_single.wgsl" },
+                    shader: if kind.multi { "rain/cones_multi.wgsl" } else { "rain/cones_single.wgsl" },
                     entry: "cones_fragment",
                     layouts: &[frame, &self.layout, around],
                     targets: &[wgpu::ColorTargetState {
@@ -89,8 +89,9 @@ impl ConePass {
                         write_mask: wgpu::ColorWrites::ALL,
                     }],
                     constants: &[
-                        ("HAS_DEPTH", f64::from(u8::from(has_depth))),
-                        ("SHELTERED", f64::from(u8::from(sheltered))),
+                        ("HAS_DEPTH", f64::from(u8::from(kind.has_depth))),
+                        ("SHELTERED", f64::from(u8::from(kind.sheltered))),
+                        ("AREAS", f64::from(u8::from(kind.areas))),
                     ],
                     samples: 1,
                 },
@@ -120,8 +121,8 @@ impl ConePass {
     }
 
     /// Draws what was prepared; the other groups are set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool)) {
-        if let Some(pipeline) = &self.pipelines[key(kind)] {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: ConeKind) {
+        if let Some(pipeline) = &self.pipelines[kind.key()] {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.group, &[]);
             pass.draw(0..3, 0..1);
@@ -129,9 +130,22 @@ impl ConePass {
     }
 }
 
-/// Which pipeline draws: for depth of several samples, for depth at all, for what keeps rain off.
-fn key((multi, has_depth, sheltered): (bool, bool, bool)) -> usize {
-    usize::from(sheltered) * 4 + usize::from(multi) * 2 + usize::from(has_depth)
+/// Which pipeline draws.
+#[derive(Clone, Copy)]
+pub(super) struct ConeKind {
+    /// Depth of several samples.
+    pub multi: bool,
+    pub has_depth: bool,
+    /// Something near keeps rain off.
+    pub sheltered: bool,
+    /// The rim of a rain area is near.
+    pub areas: bool,
+}
+
+impl ConeKind {
+    fn key(self) -> usize {
+        [self.areas, self.sheltered, self.multi, self.has_depth].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
+    }
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

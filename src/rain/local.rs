@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     MAX_AREAS,
-    lattice::{CLASSES, REACH_M},
+    lattice::CLASSES,
     shaft::{AreaField, ColumnUniform},
     splash::Splashes,
     uniforms::Classes,
@@ -30,6 +30,7 @@ pub(crate) struct LocalUniform {
     pub counts: [[f32; 4]; CLASSES * ROWS],
     pub weights: [[f32; 4]; ROWS],
     pub splashes: [[f32; 4]; ROWS],
+    pub cones: [[f32; 4]; ROWS],
 }
 
 /// Which rains fall within reach of a camera.
@@ -42,12 +43,17 @@ pub(crate) enum Local {
 }
 
 impl Local {
-    /// At a camera, under columns that lie about it.
-    pub fn new(weather: &Falling, field: &AreaField, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64)) -> Self {
+    /// At a camera, under columns that lie about it, as far as `reach_m`.
+    pub fn new(
+        weather: &Falling,
+        field: &AreaField,
+        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
+        reach_m: f64,
+    ) -> Self {
         let mut local = Self::Pure(*weather);
         for (i, column) in field.columns.iter().enumerate() {
             let shaft = column.shaft();
-            let [least, most] = shaft.share_within(eye, to_enu, altitude_m, REACH_M);
+            let [least, most] = shaft.share_within(eye, to_enu, altitude_m, reach_m);
             let begun = shaft.begun(altitude_m);
             local = match local {
                 _ if least >= 1.0 && begun >= 1.0 => Self::Pure(shaft.falling),
@@ -131,6 +137,7 @@ impl LocalUniform {
             block.weights[row][at] = classes.weight as f32;
             // As a rate for now.
             block.splashes[row][at] = (Splashes::new(classes).drawn_per_m2_s * begun) as f32;
+            block.cones[row][at] = (classes.extinction_per_m * begun) as f32;
         };
         put(0, weather, 1.0);
         let mut list = [ColumnUniform::NONE; MAX_AREAS];
@@ -147,6 +154,12 @@ impl LocalUniform {
         }
         (block.count, block.list) = (count as u32, list);
         (block, envelope)
+    }
+
+    /// For cones whose block is made for drops of this extinction.
+    pub fn set_cones(&mut self, extinction_per_m: f64) {
+        let all = extinction_per_m.max(1e-12) as f32;
+        self.cones.iter_mut().flatten().for_each(|v| *v /= all);
     }
 }
 
@@ -171,6 +184,7 @@ mod tests {
             ("counts", offset_of!(LocalUniform, counts)),
             ("weights", offset_of!(LocalUniform, weights)),
             ("splashes", offset_of!(LocalUniform, splashes)),
+            ("cones", offset_of!(LocalUniform, cones)),
         ] {
             assert!(members.contains(&(name.into(), at as u32 - columns)), "{name}: {members:?}");
         }
@@ -194,7 +208,7 @@ mod tests {
             let eye = (DVec3::X * x, &DMat3::IDENTITY, 0.0);
             let own = OwnRain { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
             let field = AreaField::new(std::iter::once(shaft), eye, &own, 0.0);
-            let local = Local::new(&dry, &field, eye);
+            let local = Local::new(&dry, &field, eye, 4.0);
             (local, local.falls(&field))
         };
         assert_eq!(at(0.0), (Local::Pure(area.falling()), true));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     LocalUniform, StoneDraw,
     around::{self, Around},
-    cone_pass::ConePass,
+    cone_pass::{ConeKind, ConePass},
     cones::ConeUniform,
     crown_pass::CrownPass,
     cull_pass::{CullPass, Lattice},
@@ -185,8 +185,8 @@ impl RainLayer {
         self.view(device, color.size());
         let kind = (multi, depth.is_some(), drawn.maps);
         let sheltered = drawn.around.shelters();
-        let cone_kind = (multi, depth.is_some(), sheltered);
         let areas = drawn.local.is_some();
+        let cone_kind = ConeKind { multi, has_depth: depth.is_some(), sheltered, areas };
         let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
         let over = (drawn.over, drawn.around.bind_group());
         let frame = [&self.layouts[usize::from(multi)], &self.around];

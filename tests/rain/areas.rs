@@ -203,12 +203,22 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     assert!(outside == 0.0 && host.view.report().rain.drops == 0, "{outside}");
     // On the border of a narrow rim it rains to the one side only.
     host.context.set_rain_areas(&[RainArea { rim_m: 1.0, ..area }]).unwrap();
-    // Cones have the rain of the camera's place all round, drops their own.
-    host.view.set_rain(RainSettings { model: RainModel::Drops, ..RainSettings::default() }).unwrap();
-    let inside = brightness(&mut host, eye(0.0), whole);
-    let (left, right) =
-        (brightness(&mut host, eye(1500.0), [0.0, 0.45]), brightness(&mut host, eye(1500.0), [0.55, 1.0]));
-    assert!(left > 0.5 * inside && right < 1e-3 * inside, "{left} {right}, inside {inside}");
+    let mut seen = Vec::new();
+    for model in [RainModel::Drops, RainModel::Cones, RainModel::Automatic] {
+        host.view.set_rain(RainSettings { model, ..RainSettings::default() }).unwrap();
+        let inside = brightness(&mut host, eye(0.0), whole);
+        let mut sides = |x: f64| [[0.0, 0.45], [0.55, 1.0]].map(|part| brightness(&mut host, eye(x), part) / inside);
+        let [left, right] = sides(1500.0);
+        assert!(left > 0.5 && right < 1e-3, "{model:?}: {left} {right} on the border");
+        // Cones show the rain of some metres away to who stands dry, and that it is dry there to who stands in the rain.
+        let ([outside, _], [_, inside]) = (sides(1505.0), sides(1495.0));
+        println!("{model:?}: {outside} from 5 m outside, {inside} from 5 m inside");
+        seen.push((outside, inside));
+    }
+    // Where drops end, the veil of the area is what is left to see.
+    for (outside, inside) in &seen[1..] {
+        assert!((1.15..3.0).contains(&(outside / seen[0].0)) && *inside < 0.92, "{seen:?}");
+    }
 }
 
 #[test]
