@@ -38,6 +38,18 @@ fn normal_share(x: f32) -> f32 {
     return 1.0 / (1.0 + exp(-1.5957691 * y * (1.0 + 0.044715 * y * y)));
 }
 
+// Beyond this many root mean squares there are no hollows.
+const FARTHEST_LEVEL: f32 = 6.0;
+
+// Level above which the share `covered` of the hollows lies: the inverse of `normal_share`, y + 0.044715 y^3 = the logarithm of the
+// odds over 1.5957691, by the hyperbolic sine of a third of an angle, as cubics with one root are solved.
+fn level_of(covered: f32) -> f32 {
+    let share = clamp(covered, 1e-6, 1.0 - 1e-6);
+    let odds = log(share / (1.0 - share)) / 1.5957691;
+    let y = 5.46063 * sinh(asinh(0.54938716 * odds) / 3.0);
+    return select(-y, -sign(covered - 0.5) * FARTHEST_LEVEL, share != covered);
+}
+
 // Width of the edge of a puddle and of a film, in units of the hollows' depth.
 const PUDDLE_EDGE: f32 = 0.06;
 const FILM_EDGE: f32 = 0.5;

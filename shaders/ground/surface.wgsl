@@ -92,8 +92,7 @@ fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     return lux / frame.exposure;
 }
 
-// Beyond this many root mean squares there are no hollows; slopes of thin and closed films (src/ground/uniform.rs).
-const FARTHEST_LEVEL: f32 = 6.0;
+// Slopes of thin and closed films (src/ground/uniform.rs).
 const THIN_FILM_SLOPE: f32 = 0.3;
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
@@ -181,7 +180,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let across = vec2f(-along.y, along.x) * side;
     let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
 
-    var here = TerrainPoint(0.0, 0.0, 0.0, 0.0);
+    var here = TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0));
     if TERRAIN {
         here = terrain_at(at);
     }
@@ -202,11 +201,10 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     var film_slope = ground.film_slope;
     if TERRAIN {
         // Water is level whatever lies below it.
-        pool = mix(pool, pooled(here.depth) * smoothstep(0.5, 0.8, level), here.share);
-        soaked_share = mix(soaked_share, here.soaked, here.share);
-        film_level = mix(min(film_level, FARTHEST_LEVEL), here.film_level, here.share);
-        let closed = normal_share(-here.film_level);
-        film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, closed), here.share);
+        pool = mix(pool, here.water.pool * smoothstep(0.5, 0.8, level), here.share);
+        soaked_share = mix(soaked_share, here.water.soaked, here.share);
+        film_level = mix(min(film_level, FARTHEST_LEVEL), level_of(here.water.film), here.share);
+        film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, here.water.film), here.share);
     }
     pool *= bare * gets;
     // A pixel too long to see rings sees a rougher surface.

@@ -7,6 +7,7 @@ mod air;
 mod areas;
 mod fog;
 mod ground;
+mod ground_texture;
 mod lights;
 mod queries;
 mod rain;
@@ -38,7 +39,7 @@ use crate::{
     fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
-    ground::Hollows,
+    ground::{Hollows, texture::TerrainTextures},
     rain::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
@@ -141,6 +142,9 @@ pub struct Context {
     ground: Option<ground::GroundState>,
     host_ground: Option<Box<terrain::HostGround>>,
     ground_revision: u64,
+    /// Another number for each grid.
+    ground_generation: u64,
+    terrain_textures: Mutex<TerrainTextures>,
     /// Counts what the host has told of areas and of standing shelter.
     told: u64,
 }
@@ -182,6 +186,8 @@ impl Context {
             ground: None,
             host_ground: None,
             ground_revision: 0,
+            ground_generation: 0,
+            terrain_textures: Mutex::default(),
             told: 0,
         })
     }

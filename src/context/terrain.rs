@@ -180,6 +180,11 @@ impl HostGround {
         changed
     }
 
+    /// Share of a cell under ice.
+    pub fn ice(&self, cell: usize) -> f32 {
+        (self.glaze.ice * self.glaze.shadow.share(cell)) as f32
+    }
+
     fn shade_third<'a>(&self, thirds: &mut [u8], velocity: DVec3, shelters: impl Iterator<Item = &'a Shelter> + Clone) {
         let grid = &self.terrain.grid;
         let in_world = self.to_enu.transpose() * velocity;
@@ -321,6 +326,7 @@ impl Context {
     pub fn set_ground_grid(&mut self, grid: Option<GroundGrid>) -> Result<()> {
         let Some(grid) = grid else {
             self.host_ground = None;
+            self.ground_generation += 1;
             return Ok(());
         };
         grid.validate()?;
@@ -329,6 +335,7 @@ impl Context {
             return Ok(());
         }
         self.host_ground = Some(Box::new(HostGround::new(grid, &self.desc.world)));
+        self.ground_generation += 1;
         self.show_terrain()
     }
 
@@ -346,7 +353,7 @@ impl Context {
                 film_mm: c.film_mm as f32,
                 soaked: c.soaked as f32,
                 standing_mm: c.standing_mm.max(0.0) as f32,
-                ice: (held.glaze.ice * held.glaze.shadow.share(cell)) as f32,
+                ice: held.ice(cell),
             }
         }))
     }
@@ -363,9 +370,14 @@ impl Context {
         Some((held.water.between(&about), held.water.puddles()))
     }
 
-    /// The host's terrain with its water and the axes at its origin, for drawing.
-    pub(crate) fn drawn_terrain(&self) -> Option<(&Terrain, &TerrainWater, DMat3)> {
-        self.host_ground.as_ref().map(|held| (&held.terrain, &held.water, held.to_enu))
+    /// The host's terrain and what turns the host's axes at its origin, for drawing.
+    pub(crate) fn drawn_terrain(&self) -> Option<(&GroundGrid, DMat3)> {
+        self.host_ground.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
+    }
+
+    /// Whether there is any water on the host's terrain.
+    pub(crate) fn has_wet_terrain(&self) -> bool {
+        self.host_ground.as_ref().is_some_and(|held| !held.water.is_dry())
     }
 
     fn overs(&self, held: &HostGround, time_s: f64, c: &Conditions) -> Result<Overs> {
@@ -468,7 +480,11 @@ impl Context {
     pub(super) fn take_up_terrain(&mut self, loaded: Option<HostGround>) -> Result<()> {
         self.ground_revision += 1;
         match (loaded, &mut self.host_ground) {
-            (Some(loaded), _) => self.host_ground = Some(Box::new(loaded)),
+            (Some(loaded), held) => {
+                let same = held.as_ref().is_some_and(|held| held.terrain.grid == loaded.terrain.grid);
+                self.ground_generation += u64::from(!same);
+                *held = Some(Box::new(loaded));
+            }
             (None, Some(held)) => (held.begun, held.shown) = (false, None),
             (None, None) => {}
         }

@@ -132,6 +132,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
             texture_entry(5, false),
             uniform(6, size_of::<GroundUniform>()),
             texture_entry(7, false),
+            texture_entry(8, false),
         ],
     })
 }
@@ -188,14 +189,14 @@ impl Composite {
     }
 
     /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, the drops before them and
-    /// the cells of the host's terrain.
+    /// water and heights of the host's terrain.
     pub fn bind(
         &self,
         device: &Device,
         [frame, fog, ground]: [&wgpu::Buffer; 3],
         copy: &wgpu::Texture,
         host: &Frame<'_>,
-        [drops, cells]: [Option<&wgpu::TextureView>; 2],
+        [drops, cells, heights]: [Option<&wgpu::TextureView>; 3],
     ) -> wgpu::BindGroup {
         let multi = copy.sample_count() > 1;
         let color_view = copy.create_view(&Default::default());
@@ -220,6 +221,7 @@ impl Composite {
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
                 entry(5, drops.unwrap_or(&self.none)),
                 entry(7, cells.unwrap_or(&self.none)),
+                entry(8, heights.unwrap_or(&self.none)),
             ],
         })
     }

@@ -5,7 +5,6 @@ use crate::{
     context::{Context, Scene},
     error::Result,
     fog::{FogKind, FogModel, reference::layer_depth_above},
-    gpu::Device,
     ground::{GroundUniform, Seen},
     rain::Told,
     scene::WorldKind,
@@ -17,7 +16,7 @@ const MOST_UNITS: f64 = 6e4;
 /// Whether there is any water to draw on surfaces.
 pub(super) fn is_wet(frame: &Frame<'_>, context: &Context, scene: &Scene) -> bool {
     let cover = context.ground_cover_at(frame.camera.position, scene.conditions.surface);
-    let terrain = context.drawn_terrain().is_some_and(|(_, water, _)| !water.is_dry());
+    let terrain = context.has_wet_terrain();
     let glaze = glaze(context, frame, scene);
     frame.depth.is_some() && (terrain || cover.wetness > 0.0 || cover.puddles > 0.0 || glaze > 0.0)
 }
@@ -27,56 +26,6 @@ fn glaze(context: &Context, frame: &Frame<'_>, scene: &Scene) -> f64 {
     let c = context.with_areas(frame.camera.position, context.time_s(), scene.conditions);
     let falls = (c.precipitation.rain_mm_h + c.precipitation.drizzle_mm_h) * c.precipitation.freezing > 0.0;
     if falls { c.surface.ice } else { 0.0 }
-}
-
-/// The cells of the host's terrain on the GPU; there is none where there is no terrain.
-#[derive(Default)]
-pub(super) struct TerrainCells {
-    held: Option<(wgpu::Texture, wgpu::TextureView)>,
-    revision: u64,
-    texels: Vec<[f32; 4]>,
-}
-
-impl TerrainCells {
-    /// Uploads what has changed, if any of it is `wanted`. The view is another one whenever the terrain is.
-    pub fn follow(&mut self, device: &Device, context: &Context, wanted: bool) -> Option<&wgpu::TextureView> {
-        if !wanted {
-            return self.held.as_ref().map(|(_, view)| view);
-        }
-        let Some((terrain, water, _)) = context.drawn_terrain() else {
-            *self = Self::default();
-            return None;
-        };
-        let [width, height] = terrain.grid.nodes;
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let fits = self.held.as_ref().is_some_and(|(texture, _)| texture.size() == size);
-        if !fits {
-            let texture = device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("terrain cells"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            let view = texture.create_view(&Default::default());
-            self.held = Some((texture, view));
-        }
-        let (texture, view) = self.held.as_ref()?;
-        if !fits || self.revision != context.ground_revision() {
-            water.texels(terrain, &mut self.texels);
-            let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: None };
-            device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&self.texels), rows, size);
-            self.revision = context.ground_revision();
-        }
-        Some(view)
-    }
-
-    pub fn bytes(&self) -> u64 {
-        self.held.as_ref().map_or(0, |(t, _)| 16 * u64::from(t.width()) * u64::from(t.height()))
-    }
 }
 
 /// Rounding of a depth format: absolute, and over the value. The rasteriser's own counts as two steps of a float.
@@ -121,7 +70,7 @@ pub(super) fn uniform(
         pixel: [2.0 / width, down / height],
         depth_rounding: frame.depth.map_or([0.0; 2], rounding),
         most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,
-        terrain: context.drawn_terrain().map(|(terrain, _, to_enu)| (&terrain.grid, to_enu)),
+        terrain: context.drawn_terrain(),
         wind_m_s: sheltered.then(|| context.carrying_wind(context.time_s())).transpose()?,
     };
     Ok(seen.uniform())

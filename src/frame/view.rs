@@ -41,8 +41,8 @@ struct Bound {
     own: OwnViews,
 }
 
-/// The drops before the picture, and the cells of the host's terrain.
-type OwnViews = [Option<wgpu::TextureView>; 2];
+/// The drops before the picture, water and heights of the host's terrain.
+type OwnViews = [Option<wgpu::TextureView>; 3];
 
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
@@ -58,7 +58,6 @@ pub struct View {
     froxels: Option<Froxels>,
     rain: Rain,
     around: Around,
-    terrain: surface::TerrainCells,
     pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
@@ -106,7 +105,6 @@ impl View {
             froxels: None,
             rain,
             around,
-            terrain: Default::default(),
             planner,
             planned_for: None,
             light_scale: 0.0,
@@ -375,8 +373,8 @@ impl View {
         if drops.is_none() {
             variant.stages = variant.stages.without(Stages::PARTICLES);
         }
-        let cells = self.terrain.follow(&self.device, context, variant.stages.has(Stages::SURFACE)).cloned();
-        self.bind(frame, color, [drops, cells])?;
+        let [water, heights] = context.terrain_views(variant.stages.has(Stages::SURFACE));
+        self.bind(frame, color, [drops, water, heights])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
             (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
@@ -456,7 +454,6 @@ impl View {
         });
         copy + self.froxels.as_ref().map_or(0, Froxels::bytes)
             + self.rain.bytes()
-            + self.terrain.bytes()
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
@@ -474,7 +471,7 @@ impl View {
     }
 
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
-    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, own: [Option<wgpu::TextureView>; 2]) -> Result<()> {
+    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, own: OwnViews) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
             b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask && b.own == own
         });

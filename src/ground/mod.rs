@@ -17,11 +17,13 @@ mod hollows;
 mod pools;
 pub mod reference;
 pub(crate) mod terrain;
+pub(crate) mod texture;
 mod uniform;
 pub mod water;
 
 pub use grid::{GroundGrid, MAX_GRID_NODES};
 pub use hollows::Hollows;
 pub(crate) use hollows::pattern_axes;
+pub use texture::{GroundTexture, SNIPPET_GLSL, SNIPPET_WGSL};
 pub(crate) use uniform::{GroundUniform, Seen};
 pub use water::GroundWater;

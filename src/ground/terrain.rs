@@ -6,11 +6,12 @@
 //! and a leak to the ground below, and takes whole what falls on it. So rain = change of film, pores and standing water +
 //! evaporated + leaked + drained.
 
+use half::f16;
+
 use super::{
     GroundGrid, GroundWater,
     basins::{Basins, OUT},
     pools::Pools,
-    uniform::{film_level, look_of},
     water::{PORES_MM, Step, Surface, wetness_of},
 };
 
@@ -197,21 +198,14 @@ impl TerrainWater {
         })
     }
 
-    /// What the surface pass reads of each cell, by rows: share of the pores' look that is soaked, level of the film in units of
-    /// the pattern's hollows ([`super::Hollows`]), depth of standing water as in [`CellWater`], mm, and the height, m.
-    pub fn texels(&self, terrain: &Terrain, texels: &mut Vec<[f32; 4]>) {
+    /// Texels of each cell, by rows ([`super::GroundTexture`]): film, mm, soaked share of the pores, depth of standing water as in
+    /// [`CellWater`], mm, and the share under ice.
+    pub fn texels(&self, ice: impl Fn(usize) -> f32, texels: &mut Vec<[u16; 4]>) {
         texels.clear();
-        let mut last = ([f64::NAN; 2], [0.0; 2]);
-        let heights = &terrain.grid.heights_m;
-        texels.extend(self.top.iter().zip(&self.standing).zip(heights).map(|((top, standing), height)| {
-            if *standing > 0.0 {
-                return [1.0, film_level(1.0) as f32, *standing, *height];
-            }
-            if last.0 != *top {
-                let (soaked, film) = look_of(wetness_of(top[0], top[1]));
-                last = (*top, [soaked, film_level(film)]);
-            }
-            [last.1[0] as f32, last.1[1] as f32, *standing, *height]
+        // Beyond what a half float holds water only gets no deeper.
+        let half = |v: f32| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits();
+        texels.extend(self.top.iter().zip(&self.standing).enumerate().map(|(cell, ([film, soaked], standing))| {
+            [*film as f32, (soaked / PORES_MM) as f32, *standing, ice(cell)].map(half)
         }));
     }
 

@@ -29,8 +29,6 @@ const CLOSED_FILM_SLOPE: f64 = 0.15;
 /// Share of the open sea's mean square slope by wind (Cox & Munk 1954: 0.00512 per m/s, of both axes) that puddles have:
 /// they are a few metres long.
 const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
-/// Beyond this many root mean squares there are no hollows.
-const FARTHEST_LEVEL: f64 = 6.0;
 /// Mean square slope of puddles by the rings of drops, per mm/h.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
 
@@ -116,13 +114,8 @@ fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
 }
 
 /// How soaked ground of this wetness looks, and the share of it that a film covers.
-pub(super) fn look_of(wetness: f64) -> (f64, f64) {
+fn look_of(wetness: f64) -> (f64, f64) {
     (smooth(0.0, 0.3, wetness), smooth(0.3, 1.0, wetness))
-}
-
-/// Level of a film that covers this share of the ground, no farther off than blends into another.
-pub(super) fn film_level(film: f64) -> f64 {
-    f64::from(level_of(film)).clamp(-FARTHEST_LEVEL, FARTHEST_LEVEL)
 }
 
 /// Depth of the hollows, in units of their root mean square, above which the share `covered` of the ground lies.
@@ -289,7 +282,6 @@ mod tests {
             format!("const RING_CELLS: u32 = {cells}u;"),
             format!("const RING_SLOT: f32 = {RING_SLOT_S};"),
             format!("const RING_LAYERS: u32 = {RING_LAYERS}u;"),
-            format!("const FARTHEST_LEVEL: f32 = {FARTHEST_LEVEL:?};"),
             format!("const THIN_FILM_SLOPE: f32 = {THIN_FILM_SLOPE};"),
             format!("const CLOSED_FILM_SLOPE: f32 = {CLOSED_FILM_SLOPE};"),
         ] {

@@ -6,3 +6,4 @@ mod mirrors;
 mod rings;
 mod state;
 mod terrain;
+mod texture;

@@ -1,0 +1,173 @@
+//! The water on the host's terrain as a texture: what the surface pass draws from, and what a host samples in its own materials.
+//!
+//! One texel a node, the first one south-west, rows to the north: half floats, which every interface filters. Film and soaked
+//! share are within 1/2048 of their value, standing water within 1/2048 of it, so 0.06 mm at 100 mm. Standing water is signed, so that
+//! between a node under water and one above it the shore lies where the water's level meets the ground.
+
+use glam::{DMat3, DVec4};
+
+use super::{GroundGrid, terrain::Terrain, terrain::TerrainWater};
+use crate::gpu::Device;
+
+/// WGSL text of the functions that say how the water looks; see [`GroundTexture`].
+pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_ground.wgsl");
+/// Their GLSL text, for 3.30 and ES 3.00.
+pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");
+
+/// Water on the host's terrain for its own shaders: as [`GroundCell`](crate::context::GroundCell), one texel a node.
+#[derive(Clone, Debug)]
+pub struct GroundTexture {
+    /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water is negative
+    /// where none stands: how far its hollow's level lies below the ground, or -50 where the hollow is dry. Belongs to the
+    /// context; filled anew by its next [`Context::ground_texture`](crate::context::Context::ground_texture) and by frames with
+    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE).
+    pub texture: wgpu::Texture,
+    /// Another number whenever `texture` is another object: where another grid was set or loaded.
+    pub generation: u64,
+    /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
+    pub revision: u64,
+    /// Rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v.
+    pub uv_from_world: [DVec4; 2],
+}
+
+/// Rows from the host's world to the texture's coordinates; `to_enu` turns its axes at the grid's origin.
+pub(crate) fn uv_from_world(grid: &GroundGrid, to_enu: DMat3) -> [DVec4; 2] {
+    [0, 1].map(|i| {
+        let nodes = f64::from(grid.nodes[i]);
+        let row = to_enu.row(i) / (grid.cell_m * nodes);
+        row.extend(0.5 / nodes - row.dot(grid.origin))
+    })
+}
+
+/// The textures of a terrain.
+#[derive(Clone, Debug)]
+pub(crate) struct Filled {
+    pub water: wgpu::Texture,
+    /// For drawing: of the water and of the heights.
+    pub views: [wgpu::TextureView; 2],
+    /// Of the grid, and of the water.
+    pub generation: u64,
+    pub revision: u64,
+}
+
+/// Keeps the textures of a context's terrain; there are none before somebody asks.
+#[derive(Default)]
+pub(crate) struct TerrainTextures {
+    filled: Option<Filled>,
+    /// Whether the water was written since it was last handed to the host.
+    pub written: bool,
+    texels: Vec<[u16; 4]>,
+}
+
+impl TerrainTextures {
+    /// What there is, however old.
+    pub fn filled(&self) -> Option<&Filled> {
+        self.filled.as_ref()
+    }
+
+    /// Uploads what has changed: heights and water of another grid, or the water alone.
+    pub fn follow(
+        &mut self,
+        device: &Device,
+        (terrain, water, ice): (&Terrain, &TerrainWater, impl Fn(usize) -> f32),
+        [generation, revision]: [u64; 2],
+    ) -> &Filled {
+        let filled = self.filled.take().filter(|f| f.generation == generation);
+        let mut filled = filled.unwrap_or_else(|| Filled::new(device, &terrain.grid, generation));
+        if filled.revision != revision {
+            water.texels(ice, &mut self.texels);
+            write(device, &filled.water, bytemuck::cast_slice(&self.texels), 8);
+            (filled.revision, self.written) = (revision, true);
+        }
+        self.filled.insert(filled)
+    }
+}
+
+impl Filled {
+    /// Textures of a grid, with its heights and no water yet.
+    fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
+        use wgpu::{TextureFormat as F, TextureUsages as U};
+        let [width, height] = grid.nodes;
+        let texture = |label, format| {
+            device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let (water, heights) = (texture("terrain water", F::Rgba16Float), texture("terrain heights", F::R32Float));
+        write(device, &heights, bytemuck::cast_slice(&grid.heights_m), 4);
+        let views = [&water, &heights].map(|t| t.create_view(&Default::default()));
+        Self { water, views, generation, revision: u64::MAX }
+    }
+}
+
+fn write(device: &Device, texture: &wgpu::Texture, bytes: &[u8], texel: u32) {
+    let rows =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * texture.width()), rows_per_image: None };
+    device.queue.write_texture(texture.as_image_copy(), bytes, rows, texture.size());
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn nodes_lie_in_the_middle_of_their_texels() {
+        let grid = GroundGrid {
+            origin: DVec3::new(10.0, -20.0, 3.0),
+            cell_m: 2.0,
+            nodes: [5, 3],
+            heights_m: (0..15).map(|i| i as f32).collect(),
+        };
+        let turned = DMat3::from_rotation_z(0.7);
+        let rows = uv_from_world(&grid, turned);
+        for index in [0, 4, 7, 14] {
+            let uv = rows.map(|r| r.dot(grid.node(index, &turned).extend(1.0)));
+            let wanted = [(index % 5) as f64 + 0.5, (index / 5) as f64 + 0.5];
+            assert!((uv[0] * 5.0 - wanted[0]).abs() < 1e-12 && (uv[1] * 3.0 - wanted[1]).abs() < 1e-12, "{uv:?}");
+        }
+    }
+
+    #[test]
+    fn the_snippets_are_valid_and_say_the_same() {
+        shader::validate(SNIPPET_WGSL).unwrap();
+        let bare = |text: &str, words: &[(&str, &str)]| {
+            let code: String = text.lines().filter(|l| !l.starts_with("//")).collect();
+            words.iter().fold(code, |code, (from, to)| code.replace(from, to)).replace(' ', "")
+        };
+        let laws = |code: &str| {
+            code.split(['{', '}', ';']).filter(|s| s.contains("0.")).map(str::to_owned).collect::<Vec<_>>()
+        };
+        let wgsl = bare(
+            SNIPPET_WGSL,
+            &[("vec2f", "vec2"), ("vec3f", "vec3"), ("vec4f", "vec4"), ("textureDimensions(ground)", "size")],
+        );
+        let glsl = bare(SNIPPET_GLSL, &[("textureSize(ground, 0)", "size")]);
+        let right = |law: &String| law.split_once('=').map_or(law.clone(), |(_, value)| value.to_owned());
+        let (wgsl, glsl) = (laws(&wgsl), laws(&glsl));
+        assert!(wgsl.len() > 6, "{wgsl:?}");
+        // How wetness is chosen is written in two ways.
+        let differ: Vec<_> = wgsl.iter().zip(&glsl).filter(|(w, g)| right(w) != right(g)).collect();
+        assert!(wgsl.len() == glsl.len() && differ.len() == 1 && differ[0].0.contains("wetness"), "{differ:?}");
+    }
+
+    #[test]
+    fn the_snippets_constants_are_those_of_what_is_drawn() {
+        let text = shader::assemble("ground/surface.wgsl").unwrap();
+        for line in ["const WATER_OUTSIDE: f32 = 0.0664;", "const WATER_INSIDE: f32 = 0.4746;"] {
+            assert!(text.contains(line), "{line}");
+        }
+        for line in ["const THIN_FILM_SLOPE: f32 = 0.3;", "const CLOSED_FILM_SLOPE: f32 = 0.15;"] {
+            assert!(text.contains(line), "{line}");
+        }
+    }
+}
