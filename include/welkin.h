@@ -255,6 +255,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SHELTER_SHAPE 45
 /** wk_ground_grid */
 #define WK_STRUCT_TYPE_GROUND_GRID 46
+/** wk_ground_texture */
+#define WK_STRUCT_TYPE_GROUND_TEXTURE 47
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -4725,6 +4727,89 @@ wk_status wk_context_get_ground_cells(const wk_context *context,
 WK_API
 wk_status wk_ground_grid_init(wk_ground_grid *out,
                               uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Water on the host's terrain as a texture
+ *
+ * For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture, uploaded once
+ * for them and for the stage SURFACE. One texel a node, the first one south-west, rows to the north, in every graphics interface.
+ * How it looks is in the published functions, GLSL and WGSL.
+ * ====================================================================================================
+ */
+
+/** The water of the terrain's cells on the GPU. */
+typedef struct wk_ground_texture {
+    /** sizeof(wk_ground_texture) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_GROUND_TEXTURE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm, soaked,
+     * standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm. Where none stands,
+     * standing_mm is negative: how far its hollow's level lies below the ground, mm, or -50 where the hollow is dry; so between
+     * texels a shore is where it crosses 0.
+     */
+    uint64_t texture;
+    /** Another number whenever `texture` is another object, whatever its name: another grid was set or loaded. */
+    uint64_t generation;
+    /** That of wk_context_get_ground_cells, of what the texture holds. */
+    uint64_t revision;
+    /** Texels: the grid's nodes east and north. */
+    uint32_t width;
+    /** Texels: the grid's nodes east and north. */
+    uint32_t height;
+    /**
+     * Two rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v; (0, 0) is the south-western corner of
+     * the first texel. Single precision is enough after the camera's place is taken into the fourth column.
+     */
+    double uv_from_world[2][4];
+} wk_ground_texture;
+
+/** Every field of `wk_ground_texture` at its default. */
+#define WK_GROUND_TEXTURE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_ground_texture), \
+    /* struct_type */ WK_STRUCT_TYPE_GROUND_TEXTURE, \
+    /* next */ NULL, \
+    /* texture */ UINT64_C(0), \
+    /* generation */ UINT64_C(0), \
+    /* revision */ UINT64_C(0), \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* uv_from_world */ { { 0.0, 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 0.0 } } \
+}
+
+/**
+ * The native texture of the terrain's water, up to date: ask after each wk_context_update. What has not changed costs nothing;
+ * what has is uploaded, every 10 s of simulation time at most, in this call or in a wk_view_record with SURFACE, in order with the
+ * host's work on the device's queue or context. It belongs to the context and stays the same until another grid, or none, is set or
+ * loaded: wait for the GPU's work that samples it before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+ * calls, and may be copied from. It has no mipmaps; filter and wrap are the host's own.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_context_get_ground_texture(wk_context *context,
+                                        wk_ground_texture *out_texture);
+
+/**
+ * Gives the text of the functions that say how a place of the texture looks: how dark, how much of it mirrors, how rough;
+ * NUL-terminated UTF-8 that lives as long as the process.
+ * Thread: any.
+ */
+WK_API
+wk_status wk_get_ground_snippet(wk_shading_language language,
+                                const char **out_text);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_GROUND_TEXTURE_INIT`. `struct_size` is `sizeof(wk_ground_texture)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_ground_texture_init(wk_ground_texture *out,
+                                 uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

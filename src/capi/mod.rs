@@ -65,6 +65,8 @@ pub mod ground;
 
 pub mod ground_grid;
 
+pub mod ground_texture;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -140,6 +140,8 @@ pub const WK_STRUCT_TYPE_OCCLUDER_MAP: wk_struct_type = 44;
 pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 /// wk_ground_grid
 pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
+/// wk_ground_texture
+pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -4,7 +4,8 @@ use std::ptr::{null, null_mut};
 
 use super::world::{World, init, message};
 use welkin::capi::{
-    context::*, ground::*, ground_grid::*, rain::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
+    context::*, ground::*, ground_grid::*, ground_texture::*, rain::*, status::*, timeline::*, weather::*,
+    weather_kinds::*, wind::*,
 };
 
 const CELL: u32 = size_of::<wk_ground_cell>() as u32;
@@ -87,6 +88,23 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     assert_eq!(get(&mut cells, CELL, &mut revision), WK_ERROR_WRONG_ORDER);
     // SAFETY: a live handle.
     assert_eq!(unsafe { wk_context_destroy(context) }, WK_OK);
+}
+
+#[test]
+fn a_device_without_shaders_of_the_hosts_has_no_texture_for_them() {
+    let world = World::new();
+    let heights = [0.0f32; 4];
+    let grid = wk_ground_grid { heights_m: heights.as_ptr(), height_count: 4, ..init("wk_ground_grid") };
+    let mut texture = wk_ground_texture { generation: 77, ..init("wk_ground_texture") };
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_set_ground_grid(world.context, &grid), WK_OK, "{}", message());
+        assert_eq!(wk_context_get_ground_texture(world.context, &mut texture), WK_ERROR_UNSUPPORTED);
+        assert!(message().contains("ground textures: they are for hosts that draw"), "{}", message());
+        assert_eq!((texture.texture, texture.generation), (0, 77), "an error writes nothing");
+        assert_eq!(wk_context_get_ground_texture(world.context, null_mut()), WK_ERROR_INVALID_ARGUMENT);
+        assert!(message().contains("out_texture must not be NULL"), "{}", message());
+    }
 }
 
 #[test]

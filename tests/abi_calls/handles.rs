@@ -5,9 +5,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, light::*,
-    occluder::*, plan::*, query::*, rain::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
-    vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, status::*, surface::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -79,6 +79,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_ground_cells", "context", false, |h| unsafe {
             wk_context_get_ground_cells(h.cast(), null_mut(), 0, 0, null_mut())
+        }),
+        case("wk_context_get_ground_texture", "context", false, |h| unsafe {
+            wk_context_get_ground_texture(h.cast(), null_mut())
         }),
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)
@@ -217,6 +220,7 @@ const WITHOUT: &[&str] = &[
     "wk_visibility_cull_distance",
     "wk_utc_from_calendar",
     "wk_get_veil_snippet",
+    "wk_get_ground_snippet",
     "wk_set_log_callback",
     "wk_device_create",
     "wk_device_create_for_window",

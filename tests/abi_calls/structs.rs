@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, light::*,
-    occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*,
-    veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
+    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -149,6 +149,9 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
+        }),
+        case("wk_ground_texture", "out_texture", false, move |p| unsafe {
+            wk_context_get_ground_texture(context, p.cast())
         }),
         case("wk_budget", "budget", true, move |p| unsafe { wk_view_set_budget(view, p.cast()) }),
         case("wk_plan", "out_plan", false, move |p| unsafe { wk_view_get_plan(view, p.cast()) }),
@@ -375,18 +378,24 @@ fn missing_places_for_answers_are_named() {
     }
 }
 
+type Snippet = unsafe extern "C" fn(wk_shading_language, *mut *const std::ffi::c_char) -> wk_status;
+
 #[test]
 fn snippets_are_texts_and_their_language_is_checked() {
     let mut text = null();
     // SAFETY: live pointers.
     unsafe {
-        for (language, word) in [(WK_SHADING_GLSL, "vec3"), (WK_SHADING_WGSL, "fn ")] {
-            assert_eq!(wk_get_veil_snippet(language, &mut text), WK_OK);
-            assert!(std::ffi::CStr::from_ptr(text).to_str().unwrap().contains(word));
+        for (get, name) in [(wk_get_veil_snippet as Snippet, "welkin_veil("), (wk_get_ground_snippet, "welkin_ground(")]
+        {
+            for (language, word) in [(WK_SHADING_GLSL, "vec3 "), (WK_SHADING_WGSL, "fn ")] {
+                assert_eq!(get(language, &mut text), WK_OK);
+                let text = std::ffi::CStr::from_ptr(text).to_str().unwrap();
+                assert!(text.contains(word) && text.contains(name), "{text}");
+            }
+            assert_eq!(get(2, &mut text), WK_ERROR_INVALID_ARGUMENT);
+            assert!(message().contains("language must be one of WK_SHADING_GLSL, WK_SHADING_WGSL"), "{}", message());
+            assert_eq!(get(0, null_mut()), WK_ERROR_INVALID_ARGUMENT);
         }
-        assert_eq!(wk_get_veil_snippet(2, &mut text), WK_ERROR_INVALID_ARGUMENT);
-        assert!(message().contains("language must be one of WK_SHADING_GLSL, WK_SHADING_WGSL"), "{}", message());
-        assert_eq!(wk_get_veil_snippet(0, null_mut()), WK_ERROR_INVALID_ARGUMENT);
     }
 }
 

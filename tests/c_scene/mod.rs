@@ -1,6 +1,8 @@
 //! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
 
-use std::ffi::CStr;
+pub mod ground;
+
+use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 
 use crate::SIZE;
@@ -34,6 +36,11 @@ pub struct Scene {
 
 impl Scene {
     pub fn new(device: *mut wk_device) -> Self {
+        Self::with(device, null())
+    }
+
+    /// `next` of the context's description, after the sky's.
+    pub fn with(device: *mut wk_device, next: *const c_void) -> Self {
         let mut scene = Self { context: null_mut(), view: null_mut() };
         // Small tables: what is tested here is the way in and out, not the sky.
         let sky = wk_sky_settings {
@@ -43,6 +50,7 @@ impl Scene {
             sky_azimuths: 12,
             sky_above: 16,
             sky_below: 8,
+            next,
             ..init("wk_sky_settings")
         };
         let desc = wk_context_desc { next: (&raw const sky).cast(), ..init("wk_context_desc") };

@@ -15,7 +15,7 @@ use crate::{
     images::{framebuffer, image_of, texture},
 };
 
-fn device(host: &Host) -> *mut wk_device {
+pub fn device(host: &Host) -> *mut wk_device {
     let shared = host.mode == GlMode::Shared;
     let desc = wk_opengl_host_desc {
         get_proc: Some(get_proc),
@@ -39,7 +39,7 @@ fn image(image: GlImage) -> wk_opengl_image {
     }
 }
 
-fn target(color: GlImage, depth: GlImage) -> wk_opengl_target {
+pub fn target(color: GlImage, depth: GlImage) -> wk_opengl_target {
     wk_opengl_target {
         color: image(color),
         depth: image(depth),

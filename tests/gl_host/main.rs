@@ -7,6 +7,7 @@ mod c_scene;
 mod capi;
 mod egl;
 mod exercise;
+mod ground;
 mod host;
 mod images;
 mod kinds;

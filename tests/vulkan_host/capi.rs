@@ -27,7 +27,7 @@ fn desc(host: &Host) -> wk_vulkan_host_desc {
     }
 }
 
-fn device(host: &Host) -> *mut wk_device {
+pub fn device(host: &Host) -> *mut wk_device {
     // What the host gave to vkCreateDevice, as far as Welkin reads it.
     let timeline = vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(host.setup.timeline);
     let names = [ash::khr::get_physical_device_properties2::NAME.as_ptr()];
@@ -43,7 +43,7 @@ fn device(host: &Host) -> *mut wk_device {
     device
 }
 
-fn image(owned: &Owned, layout: vk::ImageLayout, final_layout: vk::ImageLayout) -> wk_vulkan_image {
+pub fn image(owned: &Owned, layout: vk::ImageLayout, final_layout: vk::ImageLayout) -> wk_vulkan_image {
     let i = &owned.image;
     wk_vulkan_image {
         image: i.image.as_raw(),

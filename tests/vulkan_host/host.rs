@@ -309,8 +309,13 @@ impl Host {
 
     /// Reads an RGBA8 image that is in `TRANSFER_SRC_OPTIMAL`, after the semaphores given.
     pub fn read(&self, image: &HostImage, wait: &[vk::Semaphore]) -> Vec<[u8; 4]> {
+        self.read_texels(image, wait)
+    }
+
+    /// Same, of an image whose texels are like `T`.
+    pub fn read_texels<T: bytemuck::Pod>(&self, image: &HostImage, wait: &[vk::Semaphore]) -> Vec<T> {
         let pixels = (image.width * image.height) as usize;
-        let (buffer, memory) = self.buffer(pixels as u64 * 4);
+        let (buffer, memory) = self.buffer((pixels * size_of::<T>()) as u64);
         self.run(wait, &[], true, |c| {
             let region = vk::BufferImageCopy::default()
                 .image_subresource(vk::ImageSubresourceLayers {
@@ -326,7 +331,7 @@ impl Host {
         // SAFETY: the memory is host-visible and coherent, the copy is done, and the size fits.
         unsafe {
             let at = self.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty()).unwrap();
-            let out = std::slice::from_raw_parts(at.cast::<[u8; 4]>(), pixels).to_vec();
+            let out = std::slice::from_raw_parts(at.cast::<T>(), pixels).to_vec();
             self.device.destroy_buffer(buffer, None);
             self.device.free_memory(memory, None);
             out

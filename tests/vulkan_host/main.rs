@@ -6,6 +6,7 @@
 mod c_scene;
 mod capi;
 mod draw;
+mod ground;
 mod host;
 mod refusals;
 mod sharing;

@@ -42,11 +42,11 @@ impl Host {
     }
 
     /// # Errors
-    /// [`Status::Unsupported`] where the host draws nothing itself.
-    pub(super) fn check_own_shaders(&self) -> Result<()> {
+    /// [`Status::Unsupported`] for `what` is made for a host's own shaders where it has none.
+    pub(super) fn check_own_shaders(&self, what: &str) -> Result<()> {
         match self {
             Self::Own => {
-                let text = "frame textures: they are for hosts that draw with OpenGL, Vulkan or wgpu themselves";
+                let text = format!("{what}: they are for hosts that draw with OpenGL, Vulkan or wgpu themselves");
                 Err(Error::unsupported(text))
             }
             #[cfg(not(any(target_os = "macos", target_os = "ios")))]

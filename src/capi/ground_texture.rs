@@ -1,0 +1,120 @@
+//! Water on the host's terrain as a texture
+//!
+//! For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture, uploaded once
+//! for them and for the stage SURFACE. One texel a node, the first one south-west, rows to the north, in every graphics interface.
+//! How it looks is in the published functions, GLSL and WGSL.
+
+use std::{
+    ffi::{CString, c_char, c_void},
+    ptr::null,
+    sync::OnceLock,
+};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    host,
+    input::out,
+    layout::{self, init_struct, struct_size},
+    status::*,
+    veil::wk_shading_language,
+};
+use crate::{
+    error::Status,
+    ground::{SNIPPET_GLSL, SNIPPET_WGSL},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_ground_texture.rs"));
+
+/// The water of the terrain's cells on the GPU.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_ground_texture {
+    /// sizeof(wk_ground_texture) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_GROUND_TEXTURE.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm, soaked,
+    /// standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm. Where none stands,
+    /// standing_mm is negative: how far its hollow's level lies below the ground, mm, or -50 where the hollow is dry; so between
+    /// texels a shore is where it crosses 0.
+    pub texture: u64,
+    /// Another number whenever `texture` is another object, whatever its name: another grid was set or loaded.
+    pub generation: u64,
+    /// That of wk_context_get_ground_cells, of what the texture holds.
+    pub revision: u64,
+    /// Texels: the grid's nodes east and north.
+    pub width: u32,
+    /// Texels: the grid's nodes east and north.
+    pub height: u32,
+    /// Two rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v; (0, 0) is the south-western corner of
+    /// the first texel. Single precision is enough after the camera's place is taken into the fourth column.
+    pub uv_from_world: [[f64; 4]; 2],
+}
+
+impl wk_ground_texture {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_GROUND_TEXTURE,
+        next: null(),
+        texture: 0,
+        generation: 0,
+        revision: 0,
+        width: 0,
+        height: 0,
+        uv_from_world: [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]],
+    };
+}
+
+/// The native texture of the terrain's water, up to date: ask after each wk_context_update. What has not changed costs nothing;
+/// what has is uploaded, every 10 s of simulation time at most, in this call or in a wk_view_record with SURFACE, in order with the
+/// host's work on the device's queue or context. It belongs to the context and stays the same until another grid, or none, is set or
+/// loaded: wait for the GPU's work that samples it before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+/// calls, and may be copied from. It has no mipmaps; filter and wrap are the host's own.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_ground_texture(
+    context: *mut wk_context,
+    out_texture: *mut wk_ground_texture,
+) -> wk_status {
+    guard("wk_context_get_ground_texture", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `out_texture`.
+        let place = unsafe { layout::out_struct(&"out_texture", out_texture)? };
+        object.cell.host().check_own_shaders("ground textures")?;
+        object.cell.drain();
+        let ground = object.write().ground_texture()?;
+        place.set(&wk_ground_texture {
+            texture: host::native_texture(&object.cell, &ground.texture)?,
+            generation: ground.generation,
+            revision: ground.revision,
+            width: ground.texture.width(),
+            height: ground.texture.height(),
+            uv_from_world: ground.uv_from_world.map(|row| row.to_array()),
+            ..wk_ground_texture::INIT
+        });
+        Ok(Status::Ok)
+    })
+}
+
+/// Gives the text of the functions that say how a place of the texture looks: how dark, how much of it mirrors, how rough;
+/// NUL-terminated UTF-8 that lives as long as the process.
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_get_ground_snippet(
+    language: wk_shading_language,
+    out_text: *mut *const c_char,
+) -> wk_status {
+    static TEXTS: OnceLock<[CString; 2]> = OnceLock::new();
+    guard("wk_get_ground_snippet", |_| {
+        layout::WK_SHADING_LANGUAGE.check(&"language", language.into())?;
+        let place = out("out_text", out_text)?;
+        let texts = TEXTS.get_or_init(|| [SNIPPET_GLSL, SNIPPET_WGSL].map(|t| CString::new(t).unwrap_or_default()));
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(texts[language as usize].as_ptr()) };
+        Ok(Status::Ok)
+    })
+}
