@@ -94,7 +94,7 @@ fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
 fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
     let at = on_cone(d);
     var seen = vec4f(0.0);
-    var light = drop_light(d, d);
+    let day = day_light(d);
     for (var j = cones.first; j < CONES; j++) {
         let band = cones.bands[j];
         let p = d * band.z;
@@ -113,9 +113,7 @@ fn rain_on_cones(d: vec3f, uv: vec2f, range: f32) -> vec4f {
         let depth = a.y * pattern(look, a) + b.y * pattern(look, b);
         let cover = (1.0 - exp(-band.w * before * depth)) * exp(-rain.extinction * band.z);
         // Only lamps light one band otherwise than another.
-        if lights.count > 0u {
-            light = drop_light(p, d);
-        }
+        let light = day + lamp_light(p, d);
         seen += vec4f(light, 1.0) * (cover * (1.0 - seen.a));
     }
     return seen;

@@ -126,17 +126,25 @@ fn drop_at(kind: Kind, index: u32, away_units: vec3u) -> Drop {
     return Drop(p, kind.diameter, f32(kind.speed) * SPEED_UNIT, share, here.y * f32(1u << kind.s));
 }
 
-// Radiance of a drop at `p` seen along `d`: it shows, small and upside down, most of the half space behind it, and what
-// sun and lamps send through it.
-fn drop_light(p: vec3f, d: vec3f) -> vec3f {
-    let around = mix(rain.below, rain.above, 0.5 + 0.5 * d.z);
-    var beams = rain.sun * drop_phase(dot(d, rain.to_sun));
+// Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it, and what the
+// sun sends through it.
+fn day_light(d: vec3f) -> vec3f {
+    return mix(rain.below, rain.above, 0.5 + 0.5 * d.z) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
+}
+
+// What lamps send through one at `p`.
+fn lamp_light(p: vec3f, d: vec3f) -> vec3f {
+    var beams = vec3f(0.0);
     for (var i = 0u; i < lights.count; i++) {
         let to = p - lights.lamps[i].position;
         let from_lamp = to * inverseSqrt(max(dot(to, to), 1e-6));
         beams += light_at(lights.lamps[i], to) * drop_phase(-dot(d, from_lamp));
     }
-    return around + beams * 0.07957747;
+    return beams * 0.07957747;
+}
+
+fn drop_light(p: vec3f, d: vec3f) -> vec3f {
+    return day_light(d) + lamp_light(p, d);
 }
 
 struct RainVarying {
