@@ -17,6 +17,7 @@ use welkin::{
 
 use crate::{
     depth_texture::depth_texture,
+    pictures::{paint, save},
     scene::{Host, NEAR_M, rain, upright},
 };
 
@@ -463,5 +464,36 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
             // No band is wetter than the next by a third of the water.
             assert!(worst < 0.1, "wind {wind}, by {by}: a row is {worst} off");
         }
+    }
+}
+
+/// The wet wedge below a deck from eye's height, by maps and by the box, to look at.
+#[test]
+fn pictures_of_a_wet_wedge_by_maps_and_by_a_box() {
+    let mut host = Host::new((640, 360));
+    let deck = [upright([0.0, 14.0, 5.2], [30.0, 10.0, 0.4])];
+    host.boxes = deck.to_vec();
+    let mut weather = rain(10.0, 4.0);
+    weather.wind.from_deg = 180.0;
+    host.context.set_weather(&weather, 10.0, 0.0).unwrap();
+    host.context.update(11.0).unwrap();
+    let c = derive(&weather).unwrap();
+    let sizes = DropSizes::new(&c.precipitation, drops::factor_in(&c.air, 0.0));
+    let air = host.context.carrying_wind(11.0).unwrap();
+    let taken = sizes.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]).map(|d| {
+        let f = (air - DVec3::Z * sizes.speed_m_s(d)).normalize();
+        Taken::parallel(DVec3::new(0.0, 14.0, 5.0) - f * 60.0, f, [31.0; 2], 120.0)
+    });
+    let textures = taken.map(|k| map(&host, &deck, &k, (512, 512)));
+    let maps = [0, 1, 2].map(|k| OccluderMap { depth: &textures[k], taken: taken[k] });
+    host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.15, 1.0, -0.25));
+    let ways: [(&str, &[OccluderMap<'_>], &[Shelter]); 2] = [("maps", &maps, &[]), ("box", &[], &deck)];
+    for (name, maps, boxes) in ways {
+        host.context.set_occluder_maps(maps).unwrap();
+        host.context.set_shelters(boxes).unwrap();
+        paint(&host);
+        host.record(Stages::ALL).unwrap();
+        let pixels = save(&host, &format!("wedge_by_{name}.png"));
+        assert!(pixels.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
     }
 }
