@@ -50,9 +50,10 @@ fn sky_share(p: vec3f, n: vec3f) -> f32 {
         return up;
     }
     var hidden = 0.0;
-    if height > 0.01 {
-        let a = (host.deck[0].xy - p.xy) / height;
-        let b = (host.deck[1].xy - p.xy) / height;
+    // A pier is in the deck's shade up to where it meets it.
+    if height > 1e-4 {
+        let a = (host.deck[0].xy - p.xy) / max(height, 1e-2);
+        let b = (host.deck[1].xy - p.xy) / max(height, 1e-2);
         hidden = hidden_by(b) - hidden_by(vec2f(a.x, b.y)) - hidden_by(vec2f(b.x, a.y)) + hidden_by(a);
     }
     // What looks down is lit by the ground.

@@ -93,8 +93,7 @@ fn cuboid(foot: Vec3, size: Vec3, albedo: Vec3, out: &mut Vec<Vertex>) {
 /// deck comes first.
 pub fn bridge() -> Vec<(Vec3, Vec3)> {
     let mut boxes = vec![(Vec3::new(-2.0, 30.0, 5.4), Vec3::new(16.4, 130.0, 0.9))];
-    // Their tops end within the deck: on its underside one would see them through it.
-    boxes.extend((0..6).map(|i| (Vec3::new(-5.0, 8.0 + 18.0 * i as f32, -1.0), Vec3::new(1.4, 1.6, 6.8))));
+    boxes.extend((0..6).map(|i| (Vec3::new(-5.0, 8.0 + 18.0 * i as f32, -1.0), Vec3::new(1.4, 1.6, 6.4))));
     boxes
 }
 

@@ -119,30 +119,56 @@ fn mirrored_lamps(film: Film, at: vec3f, to_eye: vec3f) -> vec3f {
     return light / frame.exposure;
 }
 
-// Least side of the cells of the ground whose rain is tried by the same drops, m.
-const TRIED_CELL: f32 = 0.01;
-
-// Which of four drops is tried at a place of the world: each once in two by two neighbours along any two axes, in an order that is
-// another from there to the next, so that no pattern shows. `place`: along the pattern's axes; `side`: of what lies together.
-fn tried_at(place: vec3f, side: f32) -> u32 {
-    let camera = vec3f(vec2f(ground.cell) * RING_CELL + vec2f(ground.place_u, ground.place_v), ground.place_w);
-    let cell = vec3u(vec3i(floor((camera + place) / side)));
-    let odd = cell & vec3u(1u);
-    let four = cell >> vec3u(1u);
-    return (odd.x + 2u * odd.y) ^ (3u * odd.z) ^ u32(4.0 * ring_chances(four.xy, four.z).x);
-}
-
 // Where something stands off a surface, as far as depth may be wrong.
 fn off_surface(at: vec3f, normal: vec3f, range: f32) -> vec3f {
     return at + normal * (0.02 + 0.002 * range);
 }
 
+// Whether a map keeps a drop of this fall speed off `p`.
+fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
+    return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
+}
+
+// Of each twelfth of the water whether maps keep it off `p`. They are asked for the slowest and the fastest drops and two between,
+// and where two neighbours of these differ, by halves for the size from which on it is otherwise.
+fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
+    let falls = ground.falls;
+    let ends = vec4f(
+        kept_off(p, falls[0].x, true),
+        kept_off(p, falls[1].x, true),
+        kept_off(p, falls[2].x, true),
+        kept_off(p, falls[2].w, true),
+    );
+    let differ = ends.xyz != ends.yzw;
+    let between = vec3f(
+        kept_off(p, falls[0].z, differ.x),
+        kept_off(p, falls[1].z, differ.y),
+        kept_off(p, falls[2].z, differ.z),
+    );
+    let middles = select(ends.xyz, between, differ);
+    let below = ends.xyz != middles;
+    let asked = select(vec3f(falls[0].w, falls[1].w, 0.0), vec3f(falls[0].y, falls[1].y, falls[2].y), below);
+    let last = vec3f(
+        kept_off(p, asked.x, differ.x),
+        kept_off(p, asked.y, differ.y),
+        kept_off(p, asked.z, below.z),
+    );
+    let low = select(middles, last, below);
+    let high = select(middles, last, middles != ends.yzw);
+    return array<vec4f, 3>(
+        vec4f(ends.x, low.x, middles.x, high.x),
+        vec4f(ends.y, low.y, middles.y, high.y),
+        vec4f(ends.z, low.z, middles.z, ends.w),
+    );
+}
+
 // Share of the rain's water that gets to `p` past what keeps it off; `boxes`: past boxes too. Time in a box times fall speed goes
 // evenly with that speed, where a roof's underside and its edge bound it: asked for four drops, it says which of all twelfths
-// of the water come by. A map says yes or no, for one drop of each third of the water, all of them in two by two cells.
-fn rained_on(p: vec3f, tried: u32, boxes: bool) -> f32 {
+// of the water come by.
+fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
+    let mapped = kept_off_twelfths(p);
     var slow = asked.x * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, asked.x), boxes);
     var share = 0.0;
     for (var i = 0u; i < 3u; i++) {
@@ -150,9 +176,7 @@ fn rained_on(p: vec3f, tried: u32, boxes: bool) -> f32 {
         let fast = fall * time_in_standing(p, ground.wind - vec3f(0.0, 0.0, fall), boxes);
         let within = mix(vec4f(slow), vec4f(fast), (falls[i] - asked[i]) / (fall - asked[i]));
         let free = clamp(0.5 - within / max(0.25 * abs(fast - slow), 1e-6), vec4f(0.0), vec4f(1.0));
-        let drop = falls[i][tried];
-        let mapped = mapped_ground(p, ground.wind - vec3f(0.0, 0.0, drop), true);
-        share += select(dot(free, vec4f(0.25)) / 3.0, 0.0, mapped);
+        share += dot(free, vec4f(1.0) - mapped[i]) / 12.0;
         slow = fast;
     }
     return share;
@@ -187,10 +211,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     var gets = 1.0;
     if SHELTER {
         // What falls past boxes the terrain's cells know.
-        let cells = exp2(ceil(max(log2(side * inverseSqrt(cosine) / TRIED_CELL), 0.0)));
-        let axis_w = cross(ground.axis_u, ground.axis_v);
-        let tried = tried_at(vec3f(place, dot(axis_w, at)), TRIED_CELL * cells);
-        gets = rained_on(off_surface(at, facing.normal, range), tried, here.share < 0.5 || ground.glaze > 0.0);
+        gets = rained_on(off_surface(at, facing.normal, range), here.share < 0.5 || ground.glaze > 0.0);
     }
     let bare = facing.sure * (1.0 - plants(albedo));
     let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));

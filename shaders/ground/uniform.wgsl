@@ -53,8 +53,6 @@ struct GroundUniform {
     glaze: f32,
     // Of the air that carries the rain, m/s.
     wind: vec3f,
-    // Where the camera stands on the pattern's third axis, m, counted as the other two are.
-    place_w: f32,
     // Fall speeds of the drops in the middle of each twelfth of the water, m/s, slow ones first.
     falls: array<vec4f, 3>,
     // On the host's terrain: from camera-relative east, north and up to cells east and north of its first node and to metres
