@@ -9,7 +9,7 @@ struct Step {
     arrive: vec4u,
     // Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
     declared: vec4u,
-    // The largest volume of a cell; unused.
+    // The largest volume of a cell; 1 where not all of the rain gets everywhere.
     limits: vec4u,
     // Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is there).
     arms: array<vec4i, 6>,
@@ -127,14 +127,19 @@ fn node(at: vec2u) -> u32 {
     return share;
 }
 
-// Share of the rain that gets to a cell, in 1/65536: between its nodes.
+// Share of the rain that gets to a cell, in 1/65536: between its nodes. A loop that is not begun is what a software driver leaves
+// out.
 fn reached(cell: vec2i) -> u32 {
-    let at = ((vec2u(cell) * 2u + 1u) * (NODES - 1u) * 128u) / step.key.zw;
-    let low = at >> vec2u(8u);
-    let part = at & vec2u(255u);
-    let below = node(low) * (256u - part.x) + node(low + vec2u(1u, 0u)) * part.x;
-    let above = node(low + vec2u(0u, 1u)) * (256u - part.x) + node(low + vec2u(1u, 1u)) * part.x;
-    return (below * (256u - part.y) + above * part.y) >> 7u;
+    var share = 65536u;
+    for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {
+        let at = ((vec2u(cell) * 2u + 1u) * (NODES - 1u) * 128u) / step.key.zw;
+        let low = at >> vec2u(8u);
+        let part = at & vec2u(255u);
+        let below = node(low) * (256u - part.x) + node(low + vec2u(1u, 0u)) * part.x;
+        let above = node(low + vec2u(0u, 1u)) * (256u - part.x) + node(low + vec2u(1u, 1u)) * part.x;
+        share = (below * (256u - part.y) + above * part.y) >> 7u;
+    }
+    return share;
 }
 
 // A share of a number, of 65536.

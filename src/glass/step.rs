@@ -35,7 +35,7 @@ pub struct StepUniform {
     pub arrive: [u32; 4],
     /// Declared state: water a step in 1/256 unit, drops a step in 1/65536, the step, the largest bead that rests.
     pub declared: [u32; 4],
-    /// The largest volume of a cell, units; unused.
+    /// The largest volume of a cell, units; 1 where not all of the rain gets everywhere.
     pub limits: [u32; 4],
     /// Each arm: (pivot x, y, inner, outer radius), (direction before x, y, half way x, y), (now x, y, half width, is there).
     pub arms: [[i32; 4]; 6],
@@ -150,7 +150,7 @@ impl Tables {
         let mut n = self.numbers;
         n.key = [key(seed, step as u64), seed_key(seed), size[0], size[1]];
         n.declared[2] = step as u32;
-        n.reach = reach.words();
+        (n.reach, n.limits[1]) = (reach.words(), u32::from(*reach != Reach::ALL));
         for (i, arm) in arms.iter().enumerate() {
             let rows = arm.as_ref().map_or([[0; 4]; 3], |(arm, angles)| arm_numbers(arm, *angles, acting.cell_m));
             n.arms[3 * i..3 * i + 3].copy_from_slice(&rows);
