@@ -373,9 +373,12 @@ fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let (a, b) = (host.drawn_by(&veil).unwrap(), host.drawn_by(&veil).unwrap());
     // The same twice: nothing is brighter.
     assert!(a.brighter(&b, 1.0).iter().all(|d| d.abs() < 1e-9) && a.last == b.last);
-    let mut darker = rain::Blocks::new((80, 40));
-    darker.add(&a.last.iter().map(|y| 0.5 * y).collect::<Vec<_>>());
-    let d = darker.brighter(&a, 0.0);
+    let of_last = |share: f64| {
+        let mut blocks = rain::Blocks::new((80, 40));
+        blocks.add(&a.last.iter().map(|y| share * y).collect::<Vec<_>>());
+        blocks
+    };
+    let d = of_last(0.5).brighter(&of_last(1.0), 0.0);
     assert!(d.len() == 3200 && d.iter().all(|d| (d + 0.5).abs() < 1e-6), "{:?}", &d[..4]);
 }
 

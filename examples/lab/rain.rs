@@ -188,12 +188,22 @@ impl Host {
     fn blocks(&mut self, settings: RainSettings) -> Result<Blocks> {
         self.set(settings)?;
         let mut blocks = Blocks::new(self.size);
-        for _ in 0..MOMENTS {
-            self.at(self.context.time_s() + 7.3)?;
-            self.frame()?;
-            blocks.add(&self.luminances()?);
-        }
+        self.moments(|host, _| {
+            host.frame()?;
+            blocks.add(&host.luminances()?);
+            Ok(())
+        })?;
         Ok(blocks)
+    }
+
+    /// Draws at some moments, the same for every way to draw: curtains of rain go by.
+    fn moments(&mut self, mut draw: impl FnMut(&mut Self, u64) -> Result<()>) -> Result<()> {
+        let start = self.context.save()?;
+        for i in 0..MOMENTS {
+            self.at(self.context.time_s() + 7.3)?;
+            draw(self, i as u64)?;
+        }
+        self.context.load(&start)
     }
 
     /// The luminances of what lies behind drops that are to be drawn up to `reach_m`: what they would hide is left out.
@@ -222,16 +232,17 @@ impl Host {
 
     /// Blocks of pictures with these layers before what lies behind, and the luminance that is shown as white.
     fn before(&mut self, reach_m: f64, layer: impl Fn(&Drops, u64) -> Vec<[f64; 2]>) -> Result<(Blocks, f64)> {
-        let behind = self.behind(reach_m)?;
         let drops = Drops::new(self)?;
         let mut blocks = Blocks::new(self.size);
         let mut logs = 0.0;
-        for i in 0..MOMENTS {
+        self.moments(|host, i| {
+            let behind = host.behind(reach_m)?;
             let over = |(b, [light, cover]): (&f64, &[f64; 2])| b * (1.0 - cover) + light;
-            let picture: Vec<f64> = behind.iter().zip(&layer(&drops, i as u64)).map(over).collect();
+            let picture: Vec<f64> = behind.iter().zip(&layer(&drops, i)).map(over).collect();
             blocks.add(&picture);
             logs += picture.iter().map(|y| y.max(1e-9).ln()).sum::<f64>() / (picture.len() * MOMENTS) as f64;
-        }
+            Ok(())
+        })?;
         Ok((blocks, logs.exp() / 0.18))
     }
 
