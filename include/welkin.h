@@ -2929,7 +2929,7 @@ typedef struct wk_rain_on {
 
 /**
  * The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
- * roughness, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
+ * roughness up to 100 m and stays as it is there above, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
  * from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
  * plus the height above its own ground. At and below the roughness length nothing blows.
  * Thread: concurrent.
@@ -3215,7 +3215,10 @@ typedef uint32_t wk_stage_flags;
 #define WK_STAGE_PARTICLES 16
 /** Water on the windscreen. */
 #define WK_STAGE_LENS 32
-/** Exposure, tone curve, encoding and dither of the whole picture. */
+/**
+ * Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
+ * others are encoded as sRGB here.
+ */
 #define WK_STAGE_TONE 64
 /** Everything in one call. */
 #define WK_STAGE_ALL 127
@@ -4001,13 +4004,16 @@ typedef struct wk_rain_area {
     /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
     double heading_deg;
     /**
-     * Width inside of the border over which the rain fades, m. Range [1, 1e6], of an ellipse at most the smaller half extent.
-     * Default 500.
+     * Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half extent, or the radius
+     * of the largest circle in a polygon. Default 500.
      */
     double rim_m;
     /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
-    /** Altitude above the sea of the cloud base that it falls from, m. Range [-1000, 20 000], default 1500. */
+    /**
+     * Altitude above the sea (not above the ground) of the cloud base that it falls from, m: above it there is neither the
+     * area's rain nor the weather's. Range [-1000, 20 000], default 1500.
+     */
     double top_m;
     /** Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN. */
     double velocity_m_s[2];
@@ -4569,7 +4575,7 @@ typedef uint32_t wk_ground_model;
  */
 #define WK_GROUND_REPORTED 0
 /**
- * A state from simulation time 0 on: rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
+ * A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
  * (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
  */
 #define WK_GROUND_SIMULATED 1

@@ -47,7 +47,9 @@ fn glitter(slope: f32, disc2: f32, up: vec3f, facet: vec3f, to_eye: vec3f, to_la
     let c = dot(up, facet);
     let lit = dot(up, to_lamp);
     let seen = dot(up, to_eye);
-    if c <= 0.0 || lit <= 0.0 {
+    // Of calm water, none is seen from its level or from below.
+    let area = seen_area(slope, seen) * seen_area(slope, lit);
+    if c <= 0.0 || lit <= 0.0 || area <= 1e-6 {
         return 0.0;
     }
     let tilt = facet / c - up;
@@ -58,5 +60,5 @@ fn glitter(slope: f32, disc2: f32, up: vec3f, facet: vec3f, to_eye: vec3f, to_la
     let opening = max(dot(facet, to_eye), 1e-3);
     let s2 = vec2f(disc2, disc2 / (opening * opening)) + slope * slope;
     let density = exp(-min(0.5 * (along / s2.x + across / s2.y), 80.0)) * inverseSqrt(s2.x * s2.y) / (6.28318531 * c * c * c * c);
-    return density * lit / (4.0 * seen_area(slope, seen) * seen_area(slope, lit));
+    return density * lit / (4.0 * area);
 }

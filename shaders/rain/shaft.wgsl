@@ -138,7 +138,8 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let chord = column_chord(i, q, u, 0.0);
     let up = select(d.z, select(-1e-6, 1e-6, d.z >= 0.0), abs(d.z) < 1e-6);
     let a = (ground - BELOW - origin.z) / up;
-    let b = (top - origin.z) / up;
+    // The higher of both clouds: above its own it keeps the weather's rain away too.
+    let b = (max(top, shaft.own_top) - origin.z) / up;
     var end = min(min(range, max(a, b)), chord.y);
     if range >= RANGE_SKY && d.z < 0.0 && origin.z > ground {
         end = min(end, (ground - origin.z) / up);
@@ -173,7 +174,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
     fell *= mix(rest, front, (cut - begin) / (end - begin));
     var own = shaft.own;
-    if FOG && FOG_CURTAINS && fog.curtain_amount > 0.0 {
+    if FOG && FOG_CURTAINS && own > 0.0 && fog.curtain_amount > 0.0 {
         own += fog.extinction * curtain_mean(fog, origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;

@@ -62,12 +62,13 @@ pub struct wk_rain_area {
     pub rain: wk_area_rain,
     /// Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], of an ellipse at most the smaller half extent.
-    /// Default 500.
+    /// Width inside of the border over which the rain fades, m. Range [1, 1e6], at most an ellipse's smaller half extent, or the radius
+    /// of the largest circle in a polygon. Default 500.
     pub rim_m: f64,
     /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude above the sea of the cloud base that it falls from, m. Range [-1000, 20 000], default 1500.
+    /// Altitude above the sea (not above the ground) of the cloud base that it falls from, m: above it there is neither the
+    /// area's rain nor the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
     /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
     pub velocity_m_s: [f64; 2],

@@ -29,7 +29,7 @@ include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
 pub type wk_ground_model = u32;
 /// The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
-/// A state from simulation time 0 on: rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
+/// A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
 /// (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 

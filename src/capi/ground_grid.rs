@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     context::GroundCell,
-    error::Status,
+    error::{Error, Status},
     ground::{GroundGrid, MAX_GRID_NODES},
 };
 
@@ -116,7 +116,8 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
             nodes: c.nodes,
             heights_m: heights.to_vec(),
         };
-        object.write().set_ground_grid(Some(grid))?;
+        let named = |e: Error| Error::new(e.status, e.message.replace("heights_m' count", "height_count"));
+        object.write().set_ground_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })
 }
@@ -140,10 +141,7 @@ pub unsafe extern "C" fn wk_context_get_ground_cells(
         let revision = input::out("out_revision", out_revision)?;
         let context = object.read();
         let water = context.ground_cells().ok_or_else(|| {
-            crate::error::Error::new(
-                Status::WrongOrder,
-                "cells come after wk_context_set_ground_grid: there is no terrain",
-            )
+            Error::new(Status::WrongOrder, "cells come after wk_context_set_ground_grid: there is no terrain")
         })?;
         if capacity > 0 {
             room.check_capacity("capacity", water.len())?;

@@ -202,7 +202,8 @@ pub unsafe extern "C" fn wk_context_set_shelters(
                 axes: DMat3::from_cols_array(&c.axes),
                 half_size_m: DVec3::from_array(c.half_size_m),
                 velocity_m_s: DVec3::from_array(c.velocity_m_s),
-                planes: shape.map_or(Ok(Planes::NONE), |s| s.planes())?,
+                planes: shape
+                    .map_or(Ok(Planes::NONE), |s| s.planes().map_err(|e| e.within(&format!("shelters[{i}]."))))?,
             };
             let named = |e: Error| Error::new(e.status, e.message.replacen("shelter.", &format!("shelters[{i}]."), 1));
             shelter.validate().map_err(named)?;

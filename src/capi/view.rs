@@ -62,7 +62,8 @@ pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 /// Water on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
-/// Exposure, tone curve, encoding and dither of the whole picture.
+/// Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
+/// others are encoded as sRGB here.
 pub const WK_STAGE_TONE: wk_stage_flags = 64;
 /// Everything in one call.
 pub const WK_STAGE_ALL: wk_stage_flags = 127;

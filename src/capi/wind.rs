@@ -170,7 +170,7 @@ impl wk_rain_on {
 }
 
 /// The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
-/// roughness, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
+/// roughness up to 100 m and stays as it is there above, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
 /// from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
 /// plus the height above its own ground. At and below the roughness length nothing blows.
 /// Thread: concurrent.

@@ -15,7 +15,7 @@ use super::{
     status::*,
 };
 use crate::{
-    error::Status,
+    error::{Error, Status},
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
@@ -102,7 +102,8 @@ pub unsafe extern "C" fn wk_context_set_wind_grid(
             kind: if c.kind == WK_WIND_GRID_ADDED { WindGridKind::Added } else { WindGridKind::Whole },
             velocities_m_s: velocities.to_vec(),
         };
-        object.write().set_wind_grid(Some(grid))?;
+        let named = |e: Error| Error::new(e.status, e.message.replace("velocities_m_s' count", "velocity_count"));
+        object.write().set_wind_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })
 }

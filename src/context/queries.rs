@@ -75,7 +75,8 @@ impl Context {
         }
         let areas = (-self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
         through = through.map(|t| (t * areas).min(1.0));
-        let mean = -through[1].max(f64::MIN_POSITIVE).ln() / distance;
+        // The logarithm of 1 has a sign of its own.
+        let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }
 

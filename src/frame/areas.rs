@@ -111,12 +111,12 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 
 /// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east, north,
 /// up.
-fn part_of_picture(column: &Column, clip: &DMat4) -> Option<[f32; 4]> {
+fn part_of_picture(column: &Column, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
     let r = column.shaft().radius_m;
     let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     for corner in 0..8u32 {
         let side = |bit: u32| if corner & bit != 0 { 1.0 } else { -1.0 };
-        let z = if corner & 4 != 0 { column.top } else { column.ground - BELOW_M };
+        let z = if corner & 4 != 0 { column.top.max(own_top) } else { column.ground - BELOW_M };
         let middle = column.center + column.shaft().lean * (z - column.ground);
         let at = *clip * (middle + glam::DVec2::new(side(1), side(2)) * r).extend(z).extend(1.0);
         if at.w < 1.0 {
@@ -135,6 +135,8 @@ pub(super) struct Columns<'a> {
     pub field: &'a AreaField,
     pub scene: &'a Scene,
     pub clip: DMat4,
+    /// Whether the fog, with the weather's own rain in it, lies before the picture.
+    pub veiled: bool,
     /// Of the veil before them.
     pub constants: &'a [Constant],
 }
@@ -155,11 +157,14 @@ impl Columns<'_> {
         (s.above, s.below, s.sun, s.to_sun) = (v(light.above), v(light.below), v(light.sun), v(light.to_sun));
         (s.own, s.own_soft) = (field.own.extinction_per_m as f32, field.own.soft_m as f32);
         (s.own_top, s.own_near) = (field.own_top as f32, field.own_near as f32);
+        if !self.veiled {
+            (s.own, s.own_near) = (0.0, 0.0);
+        }
         s.waves = field.waves.map(|w| w.map(|v| v as f32));
         let mut seen = [(0.0f64, 0u32, [0.0f32; 4]); MAX_AREAS];
         let mut count = 0;
         for (i, column) in field.columns.iter().enumerate().take(MAX_AREAS) {
-            if let Some(part) = part_of_picture(column, &self.clip) {
+            if let Some(part) = part_of_picture(column, field.own_top, &self.clip) {
                 seen[count] = (column.center.length_squared(), i as u32, part);
                 count += 1;
             }

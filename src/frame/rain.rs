@@ -39,6 +39,8 @@ pub(super) struct Rain {
     field: AreaField,
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
+    /// Whether the frame's fog, with the weather's own rain in it, lies before the picture.
+    pub veiled: bool,
     ice: Ice,
 }
 
@@ -69,6 +71,7 @@ impl Rain {
             shares: [1.0; 2],
             counted: Vec::new(),
             field: AreaField::empty(),
+            veiled: true,
             local: None,
             areas: None,
             ice: Ice::default(),
@@ -250,7 +253,7 @@ impl Rain {
             return None;
         }
         self.set_near(device, context, scene);
-        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), constants: &[] };
+        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: true, constants: &[] };
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
         let multi = frame.depth.is_some_and(|d| d.sample_count() > 1);
         pass.bound(device, &columns, blocks, (frame.depth, multi))
@@ -269,7 +272,7 @@ impl Rain {
             return Ok(false);
         }
         self.set_near(device, context, scene);
-        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), constants };
+        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: self.veiled, constants };
         let target = self.layer.view(device, color.size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
         pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth), target)?;

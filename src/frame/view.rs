@@ -228,6 +228,7 @@ impl View {
             self.prepare(context, frame, &scene, to)?;
             self.prepare_lens(context, frame, &scene, to)?;
         }
+        self.rain.veiled = self.recorded.with(asked).has(Stages::MEDIUM);
         if let Some(rays) = rays {
             // The glass lies before the tone curve, where the target can hold the picture between them.
             let mut lens = self.shows_lens(stages);

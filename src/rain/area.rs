@@ -62,13 +62,15 @@ pub struct RainArea {
     pub shape: AreaShape,
     /// Where `ahead` of the shape points: degrees clockwise from true north, \[-360, 360\].
     pub heading_deg: f64,
-    /// Width inside of the border over which the rain fades, m, \[1, 1e6\]; of an ellipse at most its smaller half extent.
+    /// Width inside of the border over which the rain fades, m, \[1, 1e6\]; at most an ellipse's smaller half extent, or the radius of
+    /// the largest circle in a polygon.
     pub rim_m: f64,
     /// Rate at the ground, mm/h, \[0, 500\].
     pub rate_mm_h: f64,
     /// What falls.
     pub kind: AreaRain,
-    /// Altitude above the sea of the cloud base that it falls from, m, \[-1000, 20 000\].
+    /// Altitude above the sea of the cloud base that it falls from, m, \[-1000, 20 000\]: above it there is neither the area's rain
+    /// nor the weather's.
     pub top_m: f64,
     /// What moves it.
     pub motion: AreaMotion,
@@ -111,7 +113,11 @@ impl RainArea {
                 }
                 check_range("rain_area.rim_m", self.rim_m, 1.0, semi[0].min(semi[1]), "m")?;
             }
-            AreaShape::Polygon(corners, count) => validate_corners(corners, *count)?,
+            AreaShape::Polygon(corners, count) => {
+                validate_corners(corners, *count)?;
+                let inner = inner_radius(&edges(&corners[..*count])[..*count]);
+                check_range("rain_area.rim_m", self.rim_m, 1.0, inner.max(1.0), "m")?;
+            }
         }
         check_range("rain_area.rate_mm_h", self.rate_mm_h, 0.0, 500.0, "mm/h")?;
         check_range("rain_area.top_m", self.top_m, -1000.0, 20_000.0, "m")?;
@@ -156,7 +162,37 @@ fn validate_corners(corners: &[[f64; 2]; MAX_CORNERS], count: usize) -> Result<(
     let flat = || Error::range("rain_area.corners_m", "those of a convex region of more than 1 m^2", "others");
     let area = 0.5 * twice_area(corners).abs();
     let convex = edges[..count].iter().all(|e| corners.iter().all(|c| e.depth(DVec2::from(*c)) > -1e-6 * area.sqrt()));
-    if area > 1.0 && convex { Ok(()) } else { Err(flat()) }
+    if area > 1.0 && convex && turns_once(corners) { Ok(()) } else { Err(flat()) }
+}
+
+/// Whether the sides turn by one round in all: corners that go round twice are convex too.
+fn turns_once(corners: &[[f64; 2]]) -> bool {
+    let next = corners.iter().cycle().skip(1);
+    let sides = corners.iter().zip(next).map(|(a, b)| DVec2::from(*b) - DVec2::from(*a));
+    let sides: Vec<DVec2> = sides.filter(|s| s.length_squared() > 0.0).collect();
+    let turned: f64 = sides.iter().zip(sides.iter().cycle().skip(1)).map(|(a, b)| a.angle_to(*b)).sum();
+    turned.abs() < 1.5 * std::f64::consts::TAU
+}
+
+/// Radius of the largest circle inside of sides: it touches three of them.
+fn inner_radius(edges: &[Edge]) -> f64 {
+    let mut most = 0.0f64;
+    for (i, a) in edges.iter().enumerate() {
+        for (j, b) in edges.iter().enumerate().skip(i + 1) {
+            for c in &edges[j + 1..] {
+                let rows = [a, b, c].map(|e| e.normal.extend(-1.0));
+                let touching = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
+                if touching.determinant().abs() < 1e-12 {
+                    continue;
+                }
+                let at = touching.inverse() * -DVec3::new(a.offset, b.offset, c.offset);
+                if edges.iter().all(|e| e.depth(at.truncate()) >= at.z * (1.0 - 1e-9) - 1e-9) {
+                    most = most.max(at.z);
+                }
+            }
+        }
+    }
+    most
 }
 
 fn twice_area(corners: &[[f64; 2]]) -> f64 {
@@ -180,7 +216,7 @@ impl Edge {
 /// The sides of a polygon. One that has no length says nothing: every point lies inside.
 fn edges(corners: &[[f64; 2]]) -> [Edge; MAX_CORNERS] {
     let turn = twice_area(corners).signum();
-    let mut edges = [Edge { normal: DVec2::ZERO, offset: f64::MAX }; MAX_CORNERS];
+    let mut edges = [Edge { normal: DVec2::ZERO, offset: 1e9 }; MAX_CORNERS];
     for (i, edge) in edges.iter_mut().enumerate().take(corners.len()) {
         let [a, b] = [corners[i], corners[(i + 1) % corners.len()]].map(DVec2::from);
         if let Some(along) = (b - a).try_normalize() {

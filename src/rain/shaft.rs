@@ -134,12 +134,12 @@ fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
 }
 
 impl Column {
-    fn new(shaft: Shaft, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64), time_s: f64) -> Option<Self> {
+    fn new(shaft: Shaft, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64), own: &OwnRain, time_s: f64) -> Option<Self> {
         let away = to_enu * (shaft.center - eye);
         let distance = away.length() - shaft.radius_m;
         // Nothing of it shows from so far away; it goes without a jump.
         let shown = 1.0 - smoothstep(1.5e5, 2.5e5, distance);
-        if shown <= 0.0 || shaft.top_m <= shaft.ground_m - BELOW_M {
+        if shown <= 0.0 || shaft.top_m.max(own.top_m) <= shaft.ground_m - BELOW_M {
             return None;
         }
         // On a round planet it stands as low as its centre's place does.
@@ -203,7 +203,15 @@ impl Column {
                 let (mut first, mut last) = (-1e9f64, 1e9f64);
                 for e in &edges[..*count] {
                     let (f, g) = (e.depth(q) - inset, e.normal.dot(u));
-                    let t = -f / if g.abs() < 1e-9 { 1e-9f64.copysign(g) } else { g };
+                    // Minus zero too leads neither in nor out.
+                    let t = -f
+                        / if g.abs() >= 1e-9 {
+                            g
+                        } else if g >= 0.0 {
+                            1e-9
+                        } else {
+                            -1e-9
+                        };
                     if g >= 0.0 { first = first.max(t) } else { last = last.min(t) }
                 }
                 (last > first).then_some([first, last])
@@ -301,7 +309,7 @@ impl AreaField {
     ) {
         self.columns.clear();
         self.columns.reserve_exact(MAX_AREAS);
-        self.columns.extend(shafts.filter_map(|s| Column::new(s, (eye, to_enu, altitude_m), time_s)));
+        self.columns.extend(shafts.filter_map(|s| Column::new(s, (eye, to_enu, altitude_m), own, time_s)));
         (self.own, self.own_top, self.own_near) = (*own, own.top_m - altitude_m, 0.0);
         for i in 0..self.columns.len() {
             let later = (i + 1..self.columns.len()).filter(|j| self.columns[i].meets(&self.columns[*j]));
@@ -323,9 +331,9 @@ impl AreaField {
         let q = c.turned(origin.truncate() - c.center - lean * (origin.z - c.ground));
         let u = c.turned(d.truncate() - lean * d.z);
         let [first, last] = c.chord(q, u, 0.0)?;
-        // Between the valleys and the cloud.
+        // Between the valleys and the higher of both clouds: above its own it keeps the weather's rain away too.
         let up = if d.z.abs() < 1e-6 { 1e-6f64.copysign(d.z) } else { d.z };
-        let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top - origin.z) / up];
+        let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top.max(self.own_top) - origin.z) / up];
         let mut end = range.min(a.max(b)).min(last);
         if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
             // Where the host drew nothing, the ground ends it.
@@ -388,11 +396,11 @@ mod tests {
     /// The extinction that a column adds at a place, from its description alone.
     fn added(field: &AreaField, i: usize, p: DVec3, patterned: bool) -> f64 {
         let c = &field.columns[i];
-        if p.z < c.ground - BELOW_M || p.z > c.top {
+        if p.z < c.ground - BELOW_M || p.z > c.top.max(field.own_top) {
             return 0.0;
         }
         let q = c.turned(p.truncate() - c.center - c.shaft.lean * (p.z - c.ground));
-        let begun = ((c.top - p.z) / c.shaft.soft_m()).min(1.0);
+        let begun = ((c.top - p.z) / c.shaft.soft_m()).clamp(0.0, 1.0);
         let own = ((field.own_top - p.z) / field.own.soft_m).clamp(0.0, 1.0);
         let wave = |(i, w): (usize, &[f64; 4])| {
             let at = q * c.fine();

@@ -57,9 +57,14 @@ pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
 }
 
 /// Extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30 000 per m^3 mm and
-/// 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h.
+/// 5.7 R^-0.21 per mm; a power law fitted from 0.1 to 1 mm/h, and above a quartic in ln R that goes on from it, within 0.5 % of the
+/// integral to 500 mm/h (tested).
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
-    if rate_mm_h <= 0.0 { 0.0 } else { 5.575e-4 * libm::pow(rate_mm_h, 0.605) }
+    if rate_mm_h <= 0.0 {
+        return 0.0;
+    }
+    let x = libm::log(rate_mm_h).max(0.0);
+    5.575e-4 * libm::pow(rate_mm_h, 0.605) * libm::exp(x * x * (8.645e-3 + x * (-1.047e-3 + x * 1.3258e-4)))
 }
 
 /// Extinction of snow, 1/m, at a melted rate.
@@ -210,7 +215,7 @@ mod tests {
 
     #[test]
     fn drizzle_fit_holds_to_the_integral() {
-        for r in [0.1f64, 0.2, 0.3, 0.5, 0.7, 1.0] {
+        for r in [0.1f64, 0.2, 0.3, 0.5, 0.7, 1.0, 3.0, 10.0, 50.0, 150.0, 500.0] {
             let (rate, ext) = integrals(30_000.0, 5.7 * r.powf(-0.21));
             assert!((drizzle_extinction_per_m(r) * rate / (ext * r) - 1.0).abs() < 0.005, "{r}");
         }

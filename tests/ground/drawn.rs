@@ -6,7 +6,7 @@ use glam::DVec3;
 use welkin::{
     frame::{ColorSpace, Frame, Stages},
     ground::reference::{WATER_OUTSIDE, fresnel_water, wet_share},
-    weather::{SurfaceState, Weather},
+    weather::{Surface, SurfaceState, Weather, Wind},
 };
 
 use crate::host::{Hit, Host, SIZE, ground, look, ray};
@@ -34,6 +34,23 @@ fn dry_ground_is_drawn_bit_for_bit_as_without_the_stage() {
     }
     let alone = host.shoot(camera, Stages::SURFACE, world);
     assert_eq!((host.view.report().passes, alone[0][0]), (0, 0.0), "nothing is drawn, nothing is paid");
+}
+
+/// Water that nothing moves has no slope that shows from its level or from below: a wall reaches above the eye.
+#[test]
+fn walls_beside_calm_water_stay_as_they_are_in_a_breath_of_wind() {
+    let mut host = Host::new();
+    let mut under = |wind_m_s: f64| {
+        let surface = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
+        let weather = Weather { surface, wind: Wind::of(wind_m_s, 270.0), ..Weather::default() };
+        host.context.set_weather(&weather, host.context.time_s(), 0.0).unwrap();
+        let wall = |d: DVec3| (d.y > 0.0).then(|| (8.0 / d.y, [900.0; 3]));
+        host.shoot(look(EYE, 0.0, 0.0, 0.8), Stages::SURFACE, wall)
+    };
+    let (calm, breath) = (under(0.0), under(0.1));
+    for (i, (a, b)) in calm.iter().zip(&breath).enumerate() {
+        assert!((0..3).all(|c| (a[c] - b[c]).abs() < 9.0), "pixel {i}: {a:?}, in wind {b:?}");
+    }
 }
 
 #[test]

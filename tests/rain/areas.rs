@@ -137,6 +137,63 @@ fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
     }
 }
 
+/// Along a side of a polygon, up and down, and over an area whose cloud is lower than the weather's: ways that are parallel to
+/// what bounds it.
+#[test]
+fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain_too() {
+    let precipitation = Precipitation::of(PrecipitationKind::Rain, 3.0);
+    let clouds = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 1200.0)];
+    let steady = Weather { precipitation, visibility_m: 3000.0, clouds, ..fair(0.0) };
+    for (weather, top_m) in [(fair(0.0), 1500.0), (steady.clone(), 1500.0), (steady, 400.0)] {
+        let area = RainArea { shape: square(500.0), top_m, rim_m: 100.0, ..shower(0.0, 50.0) };
+        let (host, dry) = (host(&weather, &[area]), host(&weather, &[]));
+        for (from, to) in [
+            ([-800.0, 0.0, 2.0], [800.0, 0.0, 2.0]),
+            ([800.0, 0.0, 2.0], [-800.0, 0.0, 2.0]),
+            ([0.0, -800.0, 2.0], [0.0, 800.0, 2.0]),
+            ([0.0, 800.0, 2.0], [0.0, -800.0, 2.0]),
+            ([0.0, 0.0, 2.0], [0.0, 0.0, 700.0]),
+            ([0.0, 0.0, 700.0], [0.0, 0.0, 2.0]),
+            ([-700.0, 30.0, 600.0], [700.0, 30.0, 600.0]),
+        ] {
+            let (from, to) = (DVec3::from(from), DVec3::from(to));
+            let n = 500;
+            let extinction = |h: &Host, p| h.context.rain_at(p, 0.0).unwrap().extinction_per_m;
+            let depth: f64 = (0..n)
+                .map(|i| from.lerp(to, (f64::from(i) + 0.5) / f64::from(n)))
+                .map(|p| extinction(&host, p) - extinction(&dry, p))
+                .sum::<f64>()
+                * (to - from).length()
+                / f64::from(n);
+            let through = |h: &Host| h.context.between(from, to, 0.0).unwrap().transmittance[1];
+            let got = -(through(&host) / through(&dry)).ln();
+            assert!(
+                (got - depth).abs() < 0.02 + 0.03 * depth.abs(),
+                "top {top_m}, {from} to {to}: {got}, want {depth}"
+            );
+        }
+    }
+    let clear = host(&fair(0.0), &[]);
+    let above = clear.context.between(DVec3::Z * 130e3, DVec3::Z * 140e3, 0.0).unwrap();
+    assert_eq!((above.transmittance[1], above.visibility_m), (1.0, f64::INFINITY));
+}
+
+/// A dry hole takes rain from the fog: not where there is none in the picture.
+#[test]
+fn what_falls_alone_takes_nothing_away_that_was_not_drawn() {
+    let precipitation = Precipitation::of(PrecipitationKind::Rain, 20.0);
+    let weather = Weather { precipitation, visibility_m: 1500.0, ..fair(0.0) };
+    let mut host = host(&weather, &[shower(3000.0, 0.0)]);
+    host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.0, 1.0, 0.05));
+    let mut least = |stages: &[Stages]| {
+        host.draw(|_, _| [0.0; 3]);
+        stages.iter().for_each(|s| host.record(*s).unwrap());
+        host.pixels().iter().flat_map(|p| p[..3].to_vec()).fold(f32::INFINITY, f32::min)
+    };
+    assert!(least(&[Stages::PREPARE.with(Stages::PARTICLES)]) >= 0.0);
+    assert!(least(&[Stages::ALL.without(Stages::TONE)]) >= 0.0);
+}
+
 /// What is drawn of a white wall behind a shaft 5 km away is what the f64 integral leaves of its contrast.
 #[test]
 fn a_shaft_from_afar_takes_what_the_integral_says() {
@@ -330,6 +387,13 @@ fn bad_areas_are_named_and_leave_the_running_ones() {
         }
         AreaShape::Polygon(c, 5)
     };
+    let twice = {
+        let mut c = [[0.0; 2]; MAX_CORNERS];
+        for (i, c) in c.iter_mut().enumerate() {
+            *c = [[-900.0, -900.0], [900.0, -900.0], [900.0, 900.0], [-900.0, 900.0]][i % 4];
+        }
+        AreaShape::Polygon(c, 8)
+    };
     let flat = AreaShape::Polygon([[0.0; 2]; MAX_CORNERS], 4);
     let good = shower(0.0, 20.0);
     for (bad, name) in [
@@ -338,6 +402,8 @@ fn bad_areas_are_named_and_leave_the_running_ones() {
         (RainArea { shape: flat, ..good }, "rain_areas[1].corners_m"),
         (RainArea { shape: star, ..good }, "rain_areas[1].corners_m"),
         (RainArea { shape: AreaShape::Polygon([[1.0; 2]; MAX_CORNERS], 9), ..good }, "rain_areas[1].corner_count"),
+        (RainArea { shape: twice, ..good }, "rain_areas[1].corners_m"),
+        (RainArea { shape: square(399.0), ..good }, "rain_areas[1].rim_m must be in [1, 399] m"),
         (RainArea { rim_m: 0.0, ..good }, "rain_areas[1].rim_m"),
         (RainArea { rim_m: 1501.0, ..good }, "rain_areas[1].rim_m"),
         (RainArea { rate_mm_h: -1.0, ..good }, "rain_areas[1].rate_mm_h"),

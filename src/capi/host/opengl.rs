@@ -77,7 +77,8 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
         images.push(host.depth(&gpu.device, depth, (map.width, map.height), map.generation).map_err(named)?);
     }
     let list: Vec<_> = maps.zip(&images).map(|(c, depth)| OccluderMap { depth, taken: c.taken(true) }).collect();
-    object.write().set_occluder_maps(&list)
+    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].opengl"));
+    object.write().set_occluder_maps(&list).map_err(named)
 }
 
 /// The target as the Rust side takes it; `None` without a colour image.

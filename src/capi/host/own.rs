@@ -56,7 +56,8 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     }
     let list: Vec<_> =
         maps.zip(&textures).map(|(c, t)| OccluderMap { depth: &t.texture, taken: c.taken(false) }).collect();
-    object.write().set_occluder_maps(&list)
+    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].texture"));
+    object.write().set_occluder_maps(&list).map_err(named)
 }
 
 /// An object of this device, or nothing for NULL.

@@ -179,7 +179,8 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     let gpu = object.cell.gpu();
     let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
     let mut encoder = gpu.device.create_command_encoder(&label);
-    object.write().record_occluder_maps(&list, &mut encoder)?;
+    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].vulkan"));
+    object.write().record_occluder_maps(&list, &mut encoder).map_err(named)?;
     // One image may show in several maps.
     let mut lent: Vec<(HostImage, ImageRole, &wgpu::Texture)> = Vec::new();
     for i in &images {
