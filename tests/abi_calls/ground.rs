@@ -73,7 +73,7 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
         (wk_ground_grid { cell_m: -1.0, ..grid }, "ground_grid.cell_m must be in [0.01, 10000]"),
         (wk_ground_grid { nodes: [1, 25], ..grid }, "ground_grid.nodes[0] must be in [2, 512]"),
         (wk_ground_grid { nodes: [513, 5], ..grid }, "ground_grid.nodes[0] must be in [2, 512]"),
-        (wk_ground_grid { height_count: 24, ..grid }, "ground_grid.heights_m' count must be 25"),
+        (wk_ground_grid { height_count: 24, ..grid }, "ground_grid.height_count must be 25"),
         (wk_ground_grid { heights_m: null(), ..grid }, "ground_grid.heights_m must not be NULL"),
         (wk_ground_grid { reserved0: 1, ..grid }, "ground_grid.reserved0 must be 0"),
     ] {

@@ -270,7 +270,7 @@ fn a_wind_that_varies_in_space_comes_through_and_goes_again() {
     assert_eq!([0, 1, 2].map(|i| there.velocity_m_s[i] - before.velocity_m_s[i]), [3.0, -4.0, 5.0]);
     let beside = [10.5, 0.0, 10.0];
     assert_eq!(wind(&world, beside, 0.0).velocity_m_s, before.velocity_m_s);
-    refused(set(&wk_wind_grid { velocity_count: 7, ..grid }), "wind_grid.velocities_m_s' count must be 8");
+    refused(set(&wk_wind_grid { velocity_count: 7, ..grid }), "wind_grid.velocity_count must be 8");
     refused(set(&wk_wind_grid { nodes: [2, 2, 33], ..grid }), "wind_grid.nodes[2] must be");
     refused(set(&wk_wind_grid { velocities_m_s: null(), ..grid }), "wind_grid.velocities_m_s must not be NULL");
     assert_eq!(wind(&world, MAST, 0.0).velocity_m_s, there.velocity_m_s, "an error changes nothing");
