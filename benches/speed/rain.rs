@@ -105,6 +105,24 @@ impl Bench {
         }
         Ok((median(&mut a[1..]), median(&mut b[1..])))
     }
+
+    /// Medians of some frames of either in turn: the first after a change may pay for it.
+    fn in_turns(
+        &mut self,
+        mut first: impl FnMut(&mut Self) -> Fallible<()>,
+        mut second: impl FnMut(&mut Self) -> Fallible<()>,
+    ) -> Fallible<(f64, f64)> {
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        for _ in 0..5 {
+            first(self)?;
+            self.frame()?;
+            a.extend((0..3).map(|_| self.frame()).collect::<Fallible<Vec<_>>>()?);
+            second(self)?;
+            self.frame()?;
+            b.extend((0..3).map(|_| self.frame()).collect::<Fallible<Vec<_>>>()?);
+        }
+        Ok((median(&mut a), median(&mut b)))
+    }
 }
 
 fn median(v: &mut [f64]) -> f64 {
@@ -160,11 +178,11 @@ fn maps(bench: &mut Bench) -> Fallible<()> {
     let (depth, taken) = map(bench, 512)?;
     let map = [OccluderMap { depth: &depth, taken }];
     let (a, b) =
-        bench.compare(12, |s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&map)?))?;
+        bench.in_turns(|s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&map)?))?;
     println!("  a map of 512 x 512 of what keeps it off adds {:.0} %", 100.0 * (b / a - 1.0));
     let maps = [map[0]; 4];
     let (a, b) =
-        bench.compare(8, |s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&maps)?))?;
+        bench.in_turns(|s| Ok(s.context.set_occluder_maps(&[])?), |s| Ok(s.context.set_occluder_maps(&maps)?))?;
     println!("  four of them add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_occluder_maps(&[])?;
     let start = Instant::now();
@@ -212,16 +230,7 @@ fn integrated(bench: &mut Bench, each: &[u32]) -> Fallible<()> {
     for fov in [0.9, 1e-3] {
         bench.fov = fov;
         for &n in each {
-            // Some frames of either in turn: the first of integrated drops starts them.
-            let (mut none, mut state) = (Vec::new(), Vec::new());
-            for _ in 0..4 {
-                for (model, times) in [(RainModel::Drops, &mut none), (RainModel::Integrated, &mut state)] {
-                    bench.model(model, n)?;
-                    bench.frame()?;
-                    times.extend((0..3).map(|_| bench.frame()).collect::<Fallible<Vec<_>>>()?);
-                }
-            }
-            let (a, b) = (median(&mut none), median(&mut state));
+            let (a, b) = bench.in_turns(|s| s.model(RainModel::Drops, n), |s| s.model(RainModel::Integrated, n))?;
             println!("  {n} drops, {fov} rad: without a state {a:.2} ms, integrated {b:.2} ms, {:.2} times", b / a);
         }
     }
@@ -278,11 +287,11 @@ pub fn run() -> Fallible<()> {
             planes: Planes::NONE,
         })
         .collect();
-    let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
+    let (a, b) = bench.in_turns(|s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
     println!("  16 boxes that keep rain off, 3 of them near, add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_shelters(&[])?;
     bench.model(RainModel::Automatic, base)?;
-    let (a, b) = bench.compare(12, |s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
+    let (a, b) = bench.in_turns(|s| Ok(s.context.set_shelters(&[])?), |s| Ok(s.context.set_shelters(&boxes)?))?;
     println!("  near drops and cones: the same boxes add {:.0} %", 100.0 * (b / a - 1.0));
     bench.context.set_shelters(&[])?;
     println!("  and maps:");
