@@ -10,13 +10,13 @@ use std::{ffi::c_void, ptr::null};
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     input,
     layout::{init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::{Error, Status},
+    error::Status,
     rain::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea},
 };
 
@@ -152,7 +152,7 @@ pub unsafe extern "C" fn wk_context_set_rain_areas(
         unsafe {
             input::each("areas", areas, count as usize, stride as usize, MAX_AREAS, &mut take)?;
         }
-        let named = |e: Error| Error::new(e.status, e.message.replacen("rain_areas[", "areas[", 1));
+        let named = |e| renamed("rain_areas[", "areas[", e);
         object.write().set_rain_areas(&list[..count as usize]).map_err(named)?;
         Ok(Status::Ok)
     })

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     input,
     layout::{self, init_struct, struct_size},
     status::*,
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
             nodes: c.nodes,
             heights_m: heights.to_vec(),
         };
-        let named = |e: Error| Error::new(e.status, e.message.replace("heights_m' count", "height_count"));
+        let named = |e| renamed("heights_m' count", "height_count", e);
         object.write().set_ground_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })

@@ -9,13 +9,13 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     input,
     layout::{init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::{Error, Status},
+    error::Status,
     scene::{HostLight, MAX_LIGHTS},
 };
 
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn wk_context_set_lights(
                 inner_deg: c.inner_deg,
                 outer_deg: c.outer_deg,
             };
-            let named = |e: Error| Error::new(e.status, e.message.replacen("light.", &format!("lights[{i}]."), 1));
+            let named = |e| renamed("light.", &format!("lights[{i}]."), e);
             light.validate().map_err(named)?;
             list[i] = Some(light);
             Ok(())

@@ -15,7 +15,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     input,
     layout::{self, init_struct, struct_size},
     status::*,
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn wk_context_set_shelters(
                 planes: shape
                     .map_or(Ok(Planes::NONE), |s| s.planes().map_err(|e| e.within(&format!("shelters[{i}]."))))?,
             };
-            let named = |e: Error| Error::new(e.status, e.message.replacen("shelter.", &format!("shelters[{i}]."), 1));
+            let named = |e| renamed("shelter.", &format!("shelters[{i}]."), e);
             shelter.validate().map_err(named)?;
             list[i] = Some(shelter);
             Ok(())

@@ -9,13 +9,13 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     input,
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::{Error, Status},
+    error::Status,
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn wk_context_set_wind_grid(
             kind: if c.kind == WK_WIND_GRID_ADDED { WindGridKind::Added } else { WindGridKind::Whole },
             velocities_m_s: velocities.to_vec(),
         };
-        let named = |e: Error| Error::new(e.status, e.message.replace("velocities_m_s' count", "velocity_count"));
+        let named = |e| renamed("velocities_m_s' count", "velocity_count", e);
         object.write().set_wind_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })

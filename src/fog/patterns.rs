@@ -53,13 +53,17 @@ impl Curtains {
     }
 }
 
+/// sin x / x: mean over x to either side of a wave's middle of what it has there.
+pub(crate) fn sinc(x: f64) -> f64 {
+    if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x }
+}
+
 /// Mean of a wave's cosine along a ray, and how large it may be there.
 fn wave_mean((wave, phase): (DVec3, f64), origin: DVec3, direction: DVec3, middle: f64, half: f64) -> (f64, f64) {
     let along = wave.dot(direction);
     let x = along * half;
-    let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
     // No row goes on for ever: a ray along one meets others after some.
-    let size = sinc * PATCH_ROW / (PATCH_ROW + wave.length() * half);
+    let size = sinc(x) * PATCH_ROW / (PATCH_ROW + wave.length() * half);
     ((phase + wave.dot(origin) + along * middle).cos() * size, size)
 }
 

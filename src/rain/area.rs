@@ -8,6 +8,7 @@
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use super::lattice::smoothstep;
 use crate::{
     error::{Error, Result, check_range},
     weather::{Falling, hydrometeors},
@@ -281,11 +282,6 @@ const MOST_LEAN: f64 = 3.0;
 /// Share of a column's height, and depths, m, between which lies the part below the cloud in which the rain sets in.
 const SOFT_SHARE: f64 = 0.25;
 const SOFT_M: [f64; 2] = [50.0, 400.0];
-
-fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
 
 impl Shaft {
     /// Of an area whose centre has come to `center`, of place altitude `center_altitude_m`; `cloud_m_s` is the velocity of what

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use super::lattice::random3;
+use super::lattice::{random3, smoothstep};
 use crate::weather::Falling;
 
 /// Waves of the pattern of columns.
@@ -58,7 +58,7 @@ pub(crate) fn variation(falling: &Falling) -> f64 {
         return 0.0;
     }
     let [drizzle, steady, convective] = VARIATION;
-    let t = ((falling.rain_mm_h - CONVECTIVE_MM_H[0]) / (CONVECTIVE_MM_H[1] - CONVECTIVE_MM_H[0])).clamp(0.0, 1.0);
-    let share = (t * t * (3.0 - 2.0 * t)).max(falling.showers.clamp(0.0, 1.0));
+    let heavy = smoothstep(CONVECTIVE_MM_H[0], CONVECTIVE_MM_H[1], falling.rain_mm_h);
+    let share = heavy.max(falling.showers.clamp(0.0, 1.0));
     (falling.rain_mm_h * (steady + (convective - steady) * share) + falling.drizzle_mm_h * drizzle) / liquid
 }

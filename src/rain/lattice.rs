@@ -119,7 +119,8 @@ pub struct Drop {
     pub share: f64,
 }
 
-fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
+/// 0 at `a`, 1 at `b`, level at both.
+pub(super) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
     let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

@@ -11,9 +11,9 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{
     area::{MAX_AREAS, MAX_CORNERS, Outline, Shaft},
     curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
-    lattice::HIDDEN_M,
+    lattice::{HIDDEN_M, smoothstep},
 };
-use crate::scene::depth::RANGE_SKY_M;
+use crate::{fog::patterns::sinc, scene::depth::RANGE_SKY_M};
 
 /// How far below the station's altitude columns reach, m: into the valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
@@ -113,11 +113,6 @@ pub(crate) struct AreaField {
     pub near_m: f64,
     /// Wave numbers to the right, ahead and up (1/m), and phases (rad) of the pattern.
     pub waves: [[f64; 4]; WAVES],
-}
-
-fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// Mean of a ramp that is 1 from `soft` below `top` down and 0 above it, between two heights.
@@ -228,9 +223,8 @@ impl Column {
         let mut sum = 0.0;
         for (i, [kx, ky, kz, phase]) in waves.iter().enumerate() {
             let x = ((kx * u.x + ky * u.y) * fine + kz * dz) * half;
-            let sinc = if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x };
             let turn = self.turn() * (i as f64 + 1.0);
-            sum += (kx * at.x + ky * at.y + kz * height + phase + turn).cos() * sinc;
+            sum += (kx * at.x + ky * at.y + kz * height + phase + turn).cos() * sinc(x);
         }
         let shown = smoothstep(PATTERN_M[0], PATTERN_M[1], middle);
         (1.0 + AMOUNT * shown * sum).max(0.0)

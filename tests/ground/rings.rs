@@ -7,7 +7,7 @@ use welkin::{
         GroundGrid,
         reference::{RING_DIAMETER_MM, ring_drops_per_m2_s},
     },
-    rain::{drops::factor_in, sizes::DropSizes},
+    rain::{drops::factor_in, lattice::random3, sizes::DropSizes},
     weather::{Precipitation, PrecipitationKind, Surface, SurfaceState, Weather, Wind},
 };
 
@@ -28,16 +28,7 @@ struct Ring {
 
 /// Three numbers of \[0, 1) (PCG, Jarzynski & Olano 2020).
 fn chances([x, y]: [u32; 2], slot: u32) -> [f64; 3] {
-    let mut v = [x, y, slot].map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    let stir = |v: &mut [u32; 3]| {
-        v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[2]));
-        v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
-        v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
-    };
-    stir(&mut v);
-    v = v.map(|v| v ^ (v >> 16));
-    stir(&mut v);
-    v.map(|v| f64::from(v >> 8) / 16_777_216.0)
+    random3([x, y, slot]).map(|v| f64::from(v >> 8) / 16_777_216.0)
 }
 
 /// Rings that stand at a time in cells between two corners of the world, each slot of a cell taken by this chance.

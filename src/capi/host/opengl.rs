@@ -5,7 +5,7 @@ use wgpu::hal::{api::Gles, gles::TextureInner};
 use super::{Host, in_frame, target};
 use crate::{
     capi::{
-        context::ContextObject,
+        context::{ContextObject, renamed},
         device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
         frame::{self, Images, wk_frame},
         occluder::wk_occluder_map,
@@ -77,8 +77,7 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
         images.push(host.depth(&gpu.device, depth, (map.width, map.height), map.generation).map_err(named)?);
     }
     let list: Vec<_> = maps.zip(&images).map(|(c, depth)| OccluderMap { depth, taken: c.taken(true) }).collect();
-    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].opengl"));
-    object.write().set_occluder_maps(&list).map_err(named)
+    object.write().set_occluder_maps(&list).map_err(|e| renamed("].depth", "].opengl", e))
 }
 
 /// The target as the Rust side takes it; `None` without a colour image.

@@ -6,7 +6,7 @@ use super::{in_frame, target};
 use crate::{
     capi::{
         boundary::Call,
-        context::ContextObject,
+        context::{ContextObject, renamed},
         device_cell::DeviceCell,
         frame::{self, Images, wk_frame, wk_own_target},
         handles::Object,
@@ -56,8 +56,7 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     }
     let list: Vec<_> =
         maps.zip(&textures).map(|(c, t)| OccluderMap { depth: &t.texture, taken: c.taken(false) }).collect();
-    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].texture"));
-    object.write().set_occluder_maps(&list).map_err(named)
+    object.write().set_occluder_maps(&list).map_err(|e| renamed("].depth", "].texture", e))
 }
 
 /// An object of this device, or nothing for NULL.

@@ -7,7 +7,7 @@ use ash::vk::{self, Handle};
 use super::{Host, in_frame, target};
 use crate::{
     capi::{
-        context::ContextObject,
+        context::{ContextObject, renamed},
         device::{self, wk_device},
         device_cell::DeviceCell,
         frame::{self, Images, wk_frame},
@@ -179,8 +179,7 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     let gpu = object.cell.gpu();
     let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
     let mut encoder = gpu.device.create_command_encoder(&label);
-    let named = |e: Error| Error::new(e.status, e.message.replace("].depth", "].vulkan"));
-    object.write().record_occluder_maps(&list, &mut encoder).map_err(named)?;
+    object.write().record_occluder_maps(&list, &mut encoder).map_err(|e| renamed("].depth", "].vulkan", e))?;
     // One image may show in several maps.
     let mut lent: Vec<(HostImage, ImageRole, &wgpu::Texture)> = Vec::new();
     for i in &images {
