@@ -66,8 +66,8 @@ fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
 // Sum of the haze's phase function over the quadrature about the sun: 1 for an endless rule. The gather divides by
 // it, so that a peak between two directions neither wins nor loses light.
 @fragment
-fn norm(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let here = place_of(position);
+fn norm(in: FullscreenVarying) -> @location(0) vec4f {
+    let here = place_of(in.position);
     var sum = 0.0;
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
         let d = rule_row(here.altitude, m);
@@ -92,8 +92,8 @@ fn ground_light(mu_s: Cosine) -> Radiance {
 const LIGHT_SCALE: f32 = 4096.0;
 
 @fragment
-fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let here = place_of(position);
+fn gather(in: FullscreenVarying) -> @location(0) vec4f {
+    let here = place_of(in.position);
     let d = rule_row(here.altitude, here.tile.y);
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
@@ -134,8 +134,8 @@ fn tail(before: vec3f, term: vec3f) -> vec3f {
 }
 
 @fragment
-fn scatter(@builtin(position) position: vec4f) -> Sums {
-    let here = place_of(position);
+fn scatter(in: FullscreenVarying) -> Sums {
+    let here = place_of(in.position);
     let steps = vec2f(f32(dims.azimuths - 1u), f32(dims.zeniths - 1u));
     let angle = source_direction(vec2f(here.tile) / steps);
     let mu = sin(angle.y);
@@ -165,7 +165,7 @@ fn scatter(@builtin(position) position: vec4f) -> Sums {
     let b = air.mie_scattering * density.y;
     let mean = (a * gas + b * haze / max(peak, 1e-6)) / max(a + b, vec3f(1e-30));
     let source = select(vec3f(0.0), mean, a + b > vec3f(0.0)) * f32(here.at.x > 0u);
-    let texel = vec2u(position.xy);
+    let texel = vec2u(in.position.xy);
     var sum = source;
     if (job.order > 1u) {
         sum += sky_decode(textureLoad(sources_sum, texel, 0));
@@ -180,8 +180,8 @@ fn scatter(@builtin(position) position: vec4f) -> Sums {
 // light with it, times the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left,
 // up); the others vanish by symmetry.
 @fragment
-fn light(@builtin(position) position: vec4f) -> Sums {
-    let here = place_of(position);
+fn light(in: FullscreenVarying) -> Sums {
+    let here = place_of(in.position);
     var order = vec3f(0.0);
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
         let d = rule_row(here.altitude, m);
@@ -202,7 +202,7 @@ fn light(@builtin(position) position: vec4f) -> Sums {
         }
     }
     order *= 2.0 * LIGHT_SCALE;
-    let texel = vec2u(position.xy);
+    let texel = vec2u(in.position.xy);
     var sum = order;
     if (job.order > 1u) {
         sum += textureLoad(lights_sum, texel, 0).rgb;
@@ -217,8 +217,8 @@ fn light(@builtin(position) position: vec4f) -> Sums {
 
 // Hillaire 2020: light scattered twice, and what comes back of a field of light, both taken as alike in all directions.
 @fragment
-fn isotropic_gather(@builtin(position) position: vec4f) -> Sums {
-    let here = place_of(position);
+fn isotropic_gather(in: FullscreenVarying) -> Sums {
+    let here = place_of(in.position);
     let d = rule_row(here.altitude, here.tile.y);
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
@@ -233,8 +233,8 @@ fn isotropic_gather(@builtin(position) position: vec4f) -> Sums {
 }
 
 @fragment
-fn isotropic_scatter(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let here = place_of(position);
+fn isotropic_scatter(in: FullscreenVarying) -> @location(0) vec4f {
+    let here = place_of(in.position);
     var twice = vec3f(0.0);
     var back = vec3f(0.0);
     for (var m = 0u; m < 2u * dims.rule_zeniths; m++) {
@@ -259,8 +259,8 @@ struct Once {
 // Light scattered once over (altitude, view angle, sun angle) without the phase functions, in the sun's azimuth (Elek
 // 2008, 3.4).
 @fragment
-fn once(@builtin(position) position: vec4f) -> Once {
-    let here = place_of(position);
+fn once(in: FullscreenVarying) -> Once {
+    let here = place_of(in.position);
     let row = here.tile.y * 8u + here.tile.x;
     let mu = once_mu(air, here.altitude, row);
     let nu = cosine_between(mu, here.mu_s, 1.0);

@@ -4,6 +4,6 @@
 @group(0) @binding(0) var copied: texture_2d<f32>;
 
 @fragment
-fn copy(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return textureLoad(copied, vec2u(position.xy), 0);
+fn copy(in: FullscreenVarying) -> @location(0) vec4f {
+    return textureLoad(copied, vec2u(in.position.xy), 0);
 }

@@ -84,8 +84,8 @@ fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
 }
 
 @fragment
-fn sky(@builtin(position) position: vec4f) -> SkyTexel {
-    let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
+fn sky(in: FullscreenVarying) -> SkyTexel {
+    let view = view_texel(vec2u(in.position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let light = kept_light(ray, ray.length, dims.sky_panels, view.nu);
     if (view.below) {
@@ -96,8 +96,8 @@ fn sky(@builtin(position) position: vec4f) -> SkyTexel {
 }
 
 @fragment
-fn volume(@builtin(position) position: vec4f) -> SkyTexel {
-    let px = vec2u(position.xy);
+fn volume(in: FullscreenVarying) -> SkyTexel {
+    let px = vec2u(in.position.xy);
     let slice = px.x / dims.air_azimuths;
     let texel = vec2u(px.x - slice * dims.air_azimuths, px.y);
     let view = view_texel(texel, dims.air_azimuths, dims.air_above, dims.air_below);
@@ -129,8 +129,8 @@ fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLigh
 
 // A whole ray. From space it is that of the point where it enters the air, under the sun angle there.
 @fragment
-fn sky_from_table(@builtin(position) position: vec4f) -> SkyTexel {
-    let view = view_texel(vec2u(position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
+fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
+    let view = view_texel(vec2u(in.position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let light = once_at(ray.altitude, ray.mu, mu_s_at_start(ray, view.nu), view.below);
     let even = light.gas * rayleigh_phase(view.nu) * f32(ray.length > 0.0);
@@ -144,8 +144,8 @@ fn sky_from_table(@builtin(position) position: vec4f) -> SkyTexel {
 
 // A part of a ray: the whole less what comes from behind the part's end, through the part.
 @fragment
-fn volume_from_table(@builtin(position) position: vec4f) -> SkyTexel {
-    let px = vec2u(position.xy);
+fn volume_from_table(in: FullscreenVarying) -> SkyTexel {
+    let px = vec2u(in.position.xy);
     let slice = px.x / dims.air_azimuths;
     let texel = vec2u(px.x - slice * dims.air_azimuths, px.y);
     let view = view_texel(texel, dims.air_azimuths, dims.air_above, dims.air_below);

@@ -6,6 +6,6 @@
 @group(0) @binding(1) var<uniform> air: SkyAir;
 
 @fragment
-fn part(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return vec4f(air_part(air, textureLoad(triple, vec2u(position.xy), 0).rgb), 1.0);
+fn part(in: FullscreenVarying) -> @location(0) vec4f {
+    return vec4f(air_part(air, textureLoad(triple, vec2u(in.position.xy), 0).rgb), 1.0);
 }

@@ -15,21 +15,21 @@ fn answer(radiance: vec3f, transmittance: vec3f) -> Answer {
 }
 
 @fragment
-fn probe_sky(@builtin(position) position: vec4f) -> Answer {
-    let dir = textureLoad(questions, vec2u(position.xy), 0).xyz;
+fn probe_sky(in: FullscreenVarying) -> Answer {
+    let dir = textureLoad(questions, vec2u(in.position.xy), 0).xyz;
     return answer(sky_radiance(dir), sky_transmittance(dir));
 }
 
 @fragment
-fn probe_aerial(@builtin(position) position: vec4f) -> Answer {
-    let question = textureLoad(questions, vec2u(position.xy), 0);
+fn probe_aerial(in: FullscreenVarying) -> Answer {
+    let question = textureLoad(questions, vec2u(in.position.xy), 0);
     let seen = aerial(question.xyz, question.w);
     return answer(seen.radiance, seen.transmittance);
 }
 
 // Direct light of the lamps and light of the sky on a level surface at the observer's altitude.
 @fragment
-fn probe_irradiance(@builtin(position) position: vec4f) -> Answer {
+fn probe_irradiance(in: FullscreenVarying) -> Answer {
     var direct = vec3f(0.0);
     for (var i = 0u; i < sky_view.lamp_count; i++) {
         direct += lamp_irradiance(i, sky_view.altitude) * max(sky_view.lamps[i].toward.z, 0.0);
@@ -39,7 +39,7 @@ fn probe_irradiance(@builtin(position) position: vec4f) -> Answer {
 
 // The ground's own light, and the discs'.
 @fragment
-fn probe_ground(@builtin(position) position: vec4f) -> Answer {
-    let dir = textureLoad(questions, vec2u(position.xy), 0).xyz;
+fn probe_ground(in: FullscreenVarying) -> Answer {
+    let dir = textureLoad(questions, vec2u(in.position.xy), 0).xyz;
     return answer(ground_radiance(dir), disc_radiance(dir, 1e-4));
 }

@@ -120,6 +120,8 @@ pub(crate) use assert_layout;
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     fn files<'a>(set: &'a [(&'a str, &'a str)]) -> impl Fn(&str) -> Option<String> + 'a {
@@ -131,6 +133,45 @@ mod tests {
         for name in names() {
             let text = assemble(name).unwrap();
             validate(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        }
+    }
+
+    type Type = wgpu::naga::Handle<wgpu::naga::Type>;
+
+    /// Locations of an entry point's arguments or result.
+    fn locations<'a>(
+        module: &'a wgpu::naga::Module,
+        bound: impl Iterator<Item = (Option<&'a wgpu::naga::Binding>, Type)>,
+    ) -> BTreeSet<u32> {
+        use wgpu::naga::{Binding, TypeInner};
+        let mut all = BTreeSet::new();
+        for (binding, ty) in bound {
+            let members = match &module.types[ty].inner {
+                TypeInner::Struct { members, .. } => members.iter().map(|m| m.binding.as_ref()).collect(),
+                _ => vec![binding],
+            };
+            all.extend(members.into_iter().flatten().filter_map(|b| match b {
+                Binding::Location { location, .. } => Some(*location),
+                Binding::BuiltIn(_) => None,
+            }));
+        }
+        all
+    }
+
+    #[test]
+    fn fragments_read_all_that_a_vertex_shader_of_their_file_writes() {
+        use wgpu::naga::{ShaderStage, front::wgsl::parse_str};
+        for name in names() {
+            let module = parse_str(&assemble(name).unwrap()).unwrap();
+            let of = |stage| module.entry_points.iter().filter(move |e| e.stage == stage);
+            let results = of(ShaderStage::Vertex).filter_map(|e| e.function.result.as_ref());
+            let written: Vec<_> =
+                results.map(|r| locations(&module, [(r.binding.as_ref(), r.ty)].into_iter())).collect();
+            for fragment in of(ShaderStage::Fragment).filter(|_| !written.is_empty()) {
+                let arguments = fragment.function.arguments.iter();
+                let read = locations(&module, arguments.map(|a| (a.binding.as_ref(), a.ty)));
+                assert!(written.contains(&read), "{name}: {} reads {read:?} of {written:?}", fragment.name);
+            }
         }
     }
 

@@ -6,6 +6,9 @@ use std::sync::Mutex;
 use ash::vk;
 use welkin::gpu::vulkan::{EnabledFeatures, HostImage, VulkanHostDesc};
 
+/// Set where the validation layer cannot be installed: the tests then run without it, which they otherwise refuse.
+pub const UNVALIDATED: &str = "WELKIN_WITHOUT_VALIDATION";
+
 /// How the host sets itself up.
 #[derive(Clone)]
 pub struct Setup {
@@ -75,9 +78,11 @@ impl Host {
             let layer = c"VK_LAYER_KHRONOS_validation";
             let layers = entry.enumerate_instance_layer_properties().unwrap();
             let validated = layers.iter().any(|l| l.layer_name_as_c_str() == Ok(layer));
-            if !validated {
-                eprintln!("{} is not installed: nothing is validated", layer.to_string_lossy());
-            }
+            assert!(
+                validated || std::env::var_os(UNVALIDATED).is_some(),
+                "{} is not installed; set {UNVALIDATED}=1 to test without it",
+                layer.to_string_lossy()
+            );
             let complaints = Box::<Complaints>::default();
             let app = vk::ApplicationInfo::default().api_version(setup.api_version);
             let layer_names = if validated { vec![layer.as_ptr()] } else { Vec::new() };
@@ -85,10 +90,13 @@ impl Host {
             if validated {
                 instance_extensions.push(ash::ext::debug_utils::NAME.as_ptr());
             }
+            let checks = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+            let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&checks);
             let info = vk::InstanceCreateInfo::default()
                 .application_info(&app)
                 .enabled_layer_names(&layer_names)
                 .enabled_extension_names(&instance_extensions);
+            let info = if validated { info.push_next(&mut features) } else { info };
             let instance = entry.create_instance(&info, None).expect("a Vulkan instance");
             let messenger = validated.then(|| {
                 let utils = ash::ext::debug_utils::Instance::new(&entry, &instance);
@@ -96,7 +104,9 @@ impl Host {
                     .message_severity(
                         vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING,
                     )
-                    .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
+                    .message_type(
+                        vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
+                    )
                     .pfn_user_callback(Some(collect))
                     .user_data((&raw const *complaints).cast_mut().cast());
                 let made = utils.create_debug_utils_messenger(&info, None).unwrap();
@@ -268,13 +278,15 @@ impl Host {
     /// Clears a colour image and leaves it in `layout`.
     pub fn clear_colour(&self, c: vk::CommandBuffer, image: &HostImage, rgba: [f32; 4], layout: vk::ImageLayout) {
         self.transition(c, image, vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        self.fill(c, image, vk::ImageLayout::TRANSFER_DST_OPTIMAL, rgba);
+        self.transition(c, image, vk::ImageLayout::TRANSFER_DST_OPTIMAL, layout);
+    }
+
+    /// Clears a colour image that is in `layout`, without any barrier.
+    pub fn fill(&self, c: vk::CommandBuffer, image: &HostImage, layout: vk::ImageLayout, rgba: [f32; 4]) {
         let value = vk::ClearColorValue { float32: rgba };
         // SAFETY: plain Vulkan by its rules.
-        unsafe {
-            let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-            self.device.cmd_clear_color_image(c, image.image, target, &value, &[RANGE]);
-        }
-        self.transition(c, image, vk::ImageLayout::TRANSFER_DST_OPTIMAL, layout);
+        unsafe { self.device.cmd_clear_color_image(c, image.image, layout, &value, &[RANGE]) };
     }
 
     /// Clears a depth image and leaves it in `layout`.
