@@ -73,3 +73,17 @@ pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     }
     found
 }
+
+/// Every whole number of every struct but sizes, types and pointers: struct, field, offset, bytes of one, element count.
+pub fn integers() -> Vec<(&'static str, &'static str, usize, usize, usize)> {
+    let mut found = Vec::new();
+    for s in STRUCTS {
+        let tagged = s.fields.first().is_some_and(|f| f.name == "struct_size");
+        for f in s.fields.iter().skip(if tagged { 3 } else { 0 }) {
+            if !matches!(f.kind, Kind::F32 | Kind::F64 | Kind::Pointer | Kind::Struct(_)) {
+                found.push((s.name, f.name, f.offset, f.kind.size(), f.count));
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,69 @@
+//! What every answer of the C interface must be like, whatever was asked.
+
+use std::collections::BTreeSet;
+
+use welkin::capi::{abi, status::*};
+
+use crate::structs::message;
+
+/// Names that a host can find in the header: fields of structs and parameters of functions.
+pub struct Judge {
+    public: BTreeSet<&'static str>,
+}
+
+/// Words of the inside, which say nothing to a host.
+const INTERNAL: &[&str] = &[
+    "wgpu::",
+    "Validation",
+    "naga",
+    "TextureUsages",
+    "Some(",
+    "None)",
+    "Error {",
+    "unwrap",
+    "src/",
+    ".rs:",
+    "Label",
+    "overflow",
+    "panicked",
+    "encoder",
+    "bind group",
+];
+
+impl Judge {
+    pub fn new() -> Self {
+        let mut public: BTreeSet<&'static str> =
+            abi::structs().into_iter().flat_map(|s| s.3.into_iter().map(|f| f.0)).collect();
+        for call in abi::HEADER.split("WK_API").skip(1) {
+            let inside = call.split(';').next().unwrap_or_default().split('(').nth(1).unwrap_or_default();
+            let parameters = inside.trim_end_matches(')').split(',');
+            public.extend(parameters.filter_map(|p| p.rsplit([' ', '*']).next()));
+        }
+        Self { public }
+    }
+
+    /// What is wrong with an answer of `function`, if anything.
+    pub fn fault(&self, function: &str, status: wk_status) -> Option<String> {
+        if status >= 0 {
+            return None;
+        }
+        let text = message();
+        if status == WK_ERROR_INTERNAL || status == WK_ERROR_POISONED || status == WK_ERROR_DEVICE_LOST {
+            return Some(format!("status {status}: {text}"));
+        }
+        let Some(what) = text.strip_prefix(&format!("{function}: ")) else {
+            return Some(format!("the message does not begin with the function's name: {text:?}"));
+        };
+        if let Some(word) = INTERNAL.iter().find(|w| what.contains(**w)) {
+            return Some(format!("the message has {word:?} in it: {text:?}"));
+        }
+        if what.len() > 1000 {
+            return Some(format!("the message has {} bytes: {text:?}", what.len()));
+        }
+        let mut words = what.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        if !words.any(|w| self.public.contains(w)) {
+            return Some(format!("the message names no field or parameter of the header: {text:?}"));
+        }
+        None
+    }
+}
