@@ -54,8 +54,8 @@ const PLACES: [(f64, &[f64]); 4] = [
     (200_000.0, &[102.8, 103.6, 105.0, 120.0, 175.0]),
 ];
 
-/// Relative errors of radiance, sorted, and the largest of transmittance, over sky and aerial rays.
-fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<f64>, f64) {
+/// Relative errors of radiance, each with its place, sorted, and the largest of transmittance, over sky and aerial rays.
+fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<(f64, String)>, f64) {
     let options = Options { disc_strips: 3, ..Default::default() };
     let truth = Reference::solve(planet, &options).unwrap();
     let device = Device::headless(&DeviceOptions::default()).unwrap();
@@ -73,12 +73,22 @@ fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<f64>, f64) {
                 let rays: Vec<Ray> = places.iter().map(ray).collect();
                 let question = if distance > 0.0 { Question::Aerial } else { Question::Sky };
                 let drawn = probe.under_sun(question, altitude, f64::to_radians(sun), &rays).unwrap();
-                for ((view, azimuth), drawn) in places.iter().zip(drawn) {
-                    let view = View::degrees(altitude, sun, *view, *azimuth);
+                for ((zenith, azimuth), drawn) in places.iter().zip(drawn) {
+                    let view = View::degrees(altitude, sun, *zenith, *azimuth);
                     let along =
                         if distance > 0.0 { truth.aerial(&view, distance) } else { truth.radiance(&view) }.unwrap();
                     for c in 0..3 {
-                        errors.push((f64::from(drawn.radiance[c]) / along.radiance[c].max(1e-8) - 1.0).abs());
+                        let error = (f64::from(drawn.radiance[c]) / along.radiance[c].max(1e-8) - 1.0).abs();
+                        let place = if error > 0.2 {
+                            format!(
+                                "from {altitude} m, sun at {sun}, view at {zenith} from the zenith, {azimuth} from the sun, \
+                                 {distance} m far, channel {c}: {:.2e} per unit irradiance",
+                                along.radiance[c]
+                            )
+                        } else {
+                            String::new()
+                        };
+                        errors.push((error, place));
                         if along.transmittance[c] > 0.01 {
                             worst = worst.max((f64::from(drawn.transmittance[c]) / along.transmittance[c] - 1.0).abs());
                         }
@@ -87,26 +97,32 @@ fn errors(planet: &Planet, settings: &SkySettings) -> (Vec<f64>, f64) {
             }
         }
     }
-    errors.sort_by(f64::total_cmp);
+    errors.sort_by(|a, b| a.0.total_cmp(&b.0));
     (errors, worst)
 }
 
-fn holds_against_the_reference(name: &str, planet: &Planet) {
-    let (errors, worst) = errors(planet, &SkySettings::default());
-    let at = |share: f64| errors[(errors.len() as f64 * share) as usize];
-    println!("{name}: median {:.4} p95 {:.4} max {:.3}, transmittance {worst:.5}", at(0.5), at(0.95), at(0.9999));
-    assert!(at(0.5) < 0.006 && at(0.95) < 0.03, "{name}: median {} p95 {}", at(0.5), at(0.95));
-    assert!(worst < 1e-3, "{name}: {worst}");
+/// The documented errors: median, 95th percentile and worst of radiance, worst of transmittance.
+fn holds_against_the_reference(name: &str, planet: &Planet, documented: [f64; 4]) {
+    let (errors, transmittance) = errors(planet, &SkySettings::default());
+    let at = |share: f64| errors[(errors.len() as f64 * share) as usize].0;
+    let (worst, place) = errors.last().expect("rays");
+    let found = [at(0.5), at(0.95), *worst, transmittance];
+    println!("{name}: median, p95, worst, transmittance {found:.5?}; worst {place}");
+    for (found, documented) in found.iter().zip(documented) {
+        assert!(*found < documented, "{name}: {found} is above the documented {documented}; worst {place}");
+        // A figure that has become much better is to be written anew.
+        assert!(*found > 0.7 * documented, "{name}: {found} is far below the documented {documented}");
+    }
 }
 
 #[test]
 fn default_model_follows_the_reference_in_clear_air() {
-    holds_against_the_reference("golden", &golden_planet());
+    holds_against_the_reference("golden", &golden_planet(), [0.003, 0.016, 0.8, 1e-4]);
 }
 
 #[test]
 fn default_model_follows_the_reference_with_ozone() {
-    holds_against_the_reference("earth", &Planet::earth());
+    holds_against_the_reference("earth", &Planet::earth(), [0.0035, 0.018, 0.4, 5e-4]);
 }
 
 fn hazy_planet() -> Planet {
@@ -118,7 +134,7 @@ fn hazy_planet() -> Planet {
 
 #[test]
 fn default_model_follows_the_reference_in_haze() {
-    holds_against_the_reference("haze", &hazy_planet());
+    holds_against_the_reference("haze", &hazy_planet(), [0.0035, 0.024, 0.8, 7e-4]);
 }
 
 /// Every number of [`SkySettings`] at its least.
@@ -151,7 +167,7 @@ type Field = fn(&mut SkySettings) -> &mut u32;
 fn coarsest_settings_still_draw_a_sky_and_coarser_ones_are_refused() {
     for planet in [golden_planet(), Planet::earth(), hazy_planet()] {
         let (errors, worst) = errors(&planet, &LEAST);
-        let at = |share: f64| errors[(errors.len() as f64 * share) as usize];
+        let at = |share: f64| errors[(errors.len() as f64 * share) as usize].0;
         println!("least: median {:.4} p95 {:.4}", at(0.5), at(0.95));
         assert!(at(0.5) < 0.1 && at(0.95) < 0.6 && worst < 1e-3, "{} {} {worst}", at(0.5), at(0.95));
     }
@@ -303,7 +319,7 @@ fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
     let planet = Planet::earth();
     // The whole comparison is for acceptance: every three wavelengths are a planet of their own.
     let long = std::env::var_os("WELKIN_ACCEPT").is_some();
-    let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.045) };
+    let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.024) };
     let set = SpectralSet::new(many).unwrap();
     let coarse = Resolution {
         altitudes: 16,
@@ -327,4 +343,5 @@ fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
     let [three, more] = [3, some].map(|count| colour_error(&planet, count, &exact));
     println!("worst channel, rms: 3 wavelengths {three:.4}, {some} {more:.4}");
     assert!(three > 0.05 && more < allowed, "{three} {more}");
+    assert!(long || three < 0.06, "{three}");
 }

@@ -29,6 +29,12 @@ pub enum Cell {
     Jumps,
     /// The library refuses these numbers.
     Refused,
+    /// The right one of two answers, which has no error to measure.
+    Right,
+    /// The wrong one.
+    Wrong,
+    /// There is nothing to measure here.
+    Nothing,
 }
 
 impl Cell {
@@ -44,6 +50,9 @@ impl Cell {
             Self::NotFinite => "not finite",
             Self::Jumps => "jumps",
             Self::Refused => "refused",
+            Self::Right => "right",
+            Self::Wrong => "wrong",
+            Self::Nothing => "nothing there",
         }
     }
 
@@ -54,6 +63,9 @@ impl Cell {
             Self::NotFinite => (214, 30, 190),
             Self::Jumps => (240, 140, 20),
             Self::Refused => (178, 182, 188),
+            Self::Right => (206, 226, 206),
+            Self::Wrong => (120, 60, 20),
+            Self::Nothing => (255, 255, 255),
         }
     }
 }
@@ -216,7 +228,8 @@ pub fn borders(name: &str, map: &Map) -> Vec<String> {
     for panel in map.panels.iter().filter(|p| p.ours) {
         let wrong = |c: &Cell| match c {
             Cell::Error(e) => *e > map.tolerance,
-            other => *other != Cell::Refused,
+            Cell::Right | Cell::Nothing | Cell::Refused => false,
+            _ => true,
         };
         let bad: Vec<usize> = (0..panel.cells.len()).filter(|i| wrong(&panel.cells[*i])).collect();
         if bad.is_empty() {
@@ -278,7 +291,8 @@ fn draw(map: &Map) -> Canvas {
     }
     canvas.text("error", (GAP - 8.0, y + 6.0), 12.0, INK, Anchor::Right);
     let mut x = GAP + 320.0;
-    for cell in [Cell::Diverged, Cell::NotFinite, Cell::Jumps, Cell::Refused] {
+    let kinds = [Cell::Diverged, Cell::NotFinite, Cell::Jumps, Cell::Refused, Cell::Right, Cell::Wrong, Cell::Nothing];
+    for cell in kinds.into_iter().filter(|k| map.panels.iter().any(|p| p.cells.contains(k))) {
         canvas.fill([x, y, x + 16.0, y + 12.0], cell.color());
         canvas.text(cell.kind(), (x + 22.0, y + 6.0), 12.0, INK, Anchor::Left);
         x += 50.0 + Canvas::width_of(cell.kind(), 12.0);

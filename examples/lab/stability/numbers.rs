@@ -101,7 +101,7 @@ pub fn depth() -> Result<Map> {
     };
     let cell = |near: f64, reversed, distance: f64| {
         if distance < near {
-            return Cell::Error(0.0);
+            return Cell::Nothing;
         }
         step(near, reversed, distance).map_or(Cell::Refused, Cell::of)
     };
