@@ -427,6 +427,96 @@ fn the_committed_charts_are_complete_and_their_defaults_lie_on_the_front() {
     }
 }
 
+/// A file of the committed lab.
+fn committed(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab").join(name)
+}
+
+/// An error that a committed chart states.
+fn charted(chart: &str, row: &str, column: &str) -> f64 {
+    let table = Table::read(&committed(chart)).unwrap().unwrap();
+    table.number(table.row(row).unwrap(), column).unwrap()
+}
+
+/// One row of the sky's chart, measured anew against a coarser truth, which is good to a part of its error.
+#[test]
+fn the_committed_sky_chart_says_what_is_drawn_today() {
+    let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
+    let scene = scenes::SKY.into_iter().find(|s| s.name == "noon").unwrap();
+    let truth = sky::truth(&[scene], scene.air, sky::SIZE, true).unwrap().remove(0);
+    for name in ["directional-eighth", "isotropic-eighth"] {
+        let mut drawn = sky::make(&device, &welkin::plan::candidate(Effect::Sky, name).unwrap()).unwrap();
+        drawn.rebuild(&scene.air.planet()).unwrap();
+        let pixels = sky::pixels(&scene, sky::SIZE);
+        let veils = drawn.veils(&scene, &pixels).unwrap();
+        let picture = sky::compose(&scene, &pixels, &veils, truth.ground, sky::SIZE);
+        let now = picture.figures(&truth.picture).unwrap().luminance.p95;
+        let then = charted("sky.csv", name, "p95_noon");
+        println!("{name}: {now:.5}, charted {then:.5}");
+        assert!((now / then - 1.0).abs() < 0.1, "{name} errs by {now} at noon, the chart says {then}");
+    }
+}
+
+#[test]
+fn the_committed_quadrature_chart_says_what_is_drawn_today() {
+    let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
+    for (rule, n) in [("offset-0.3", 20), ("midpoint", 32)] {
+        let now = quadrature::transmittance_error(&device, rule, n).unwrap().p95;
+        let then = charted("quadrature.csv", &format!("transmittance/{rule} {n}"), "p95");
+        assert!((now / then - 1.0).abs() < 0.02, "{rule} {n} errs by {now}, the chart says {then}");
+    }
+}
+
+/// The maps that need no GPU, made anew.
+#[test]
+fn the_committed_maps_say_what_is_computed_today() {
+    let table = Table::read(&committed("stability.csv")).unwrap().unwrap();
+    let maps = [
+        ("horizon-distance", numbers::horizon_distance()),
+        ("phase", numbers::phase()),
+        ("depth", numbers::depth().unwrap()),
+        ("origin", numbers::origin().unwrap()),
+        ("drag", particles::drag()),
+        ("gust", particles::gust().unwrap()),
+        ("over-relaxation", particles::over_relaxation()),
+        ("time-steps", particles::time_steps().unwrap()),
+    ];
+    for (name, map) in maps {
+        for (i, panel) in map.panels.iter().enumerate() {
+            let now = stability::summary(name, i, panel);
+            let then = table.row(&now[0]).unwrap_or_else(|| panic!("{} is not committed", now[0]));
+            // All but the date: key, method, counts by kind, median and worst error.
+            assert_eq!(now[..9], then[..9], "{name}");
+            for k in 9..11 {
+                let [a, b] = [&now[k], &then[k]].map(|v| v.parse::<f64>().unwrap());
+                assert!((a - b).abs() <= 0.02 * b + 1e-9, "{}: {a}, the map says {b}", now[0]);
+            }
+        }
+    }
+}
+
+/// One row of the rain's chart, measured anew as it was.
+#[test]
+fn the_committed_rain_chart_says_what_is_drawn_today() {
+    let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
+    let light = scenes::rain()[0];
+    let mut host = rain::Host::new(&device, &light, rain::SIZE).unwrap();
+    let start = std::time::Instant::now();
+    let truth = host.truth(1).unwrap();
+    println!("truth in {:?}", start.elapsed());
+    for name in ["veil", "cones"] {
+        let welkin::plan::Method::Rain(method) = welkin::plan::candidate(Effect::Rain, name).unwrap().method else {
+            panic!("no rain")
+        };
+        let mut errors = host.drawn_by(&method).unwrap().errors(&truth.0, truth.1);
+        errors.sort_by(f64::total_cmp);
+        let now = welkin::plan::difference::percentile(&errors, 0.95);
+        let then = charted("rain.csv", name, &format!("p95_{}", light.name));
+        println!("{name}: {now:.5}, charted {then:.5}; {:?}", start.elapsed());
+        assert!((now / then - 1.0).abs() < 0.05, "{name} errs by {now}, the chart says {then}");
+    }
+}
+
 /// Fog's chart end to end on the software driver, the cheapest chart.
 #[test]
 fn no_fog_of_the_chart_is_better_than_the_default() {
@@ -436,6 +526,12 @@ fn no_fog_of_the_chart_is_better_than_the_default() {
     let error = |name: &str| table.number(table.row(name).unwrap(), "p95").unwrap();
     assert!(error("exact") < 1e-4 && error("exact") < error("froxels-64"));
     assert!(error("froxels-64") < error("froxels-16") && error("froxels-16") < error("exponential"));
+    // The committed chart says what today's shaders draw: errors depend on no machine.
+    let committed = Table::read(&committed("fog.csv")).unwrap().unwrap();
+    for row in &table.rows {
+        let (now, then) = (error(&row[0]), committed.number(committed.row(&row[0]).unwrap(), "p95").unwrap());
+        assert!((now - then).abs() < 0.05 * then + 1e-6, "fog: {} errs by {now}, the chart says {then}", row[0]);
+    }
     // Nothing is better; what costs less is another matter on a busy machine.
     let points = chart::points(&table, "cost");
     let default = points.iter().find(|p| p.default).unwrap();

@@ -48,8 +48,31 @@ impl Lab {
         let caps = self.device.caps();
         let how = if options.quick { "quick" } else { "full" };
         let clean = |s: &str| s.replace(',', ";");
-        format!("{what}; {how}; {}; {}; {}", clean(&caps.adapter_name), clean(&caps.driver), clean(&cpu()))
+        let (name, driver) = (clean(&caps.adapter_name), clean(&caps.driver));
+        format!("{what}; {how}; {name}; {driver}; {}; shaders {}", clean(&cpu()), shaders(what))
     }
+}
+
+/// A hash of the shaders that a chart's numbers come from (FNV-1a over the sources of their folders, in order of path), so that
+/// a chart that is older than they are can be told.
+pub fn shaders(what: &str) -> String {
+    let folders: &[&str] = match what {
+        "sky" | "quadrature" => &["common", "sky"],
+        "fog" | "stability" => &["common", "fog", "frame", "sky"],
+        "rain" => &["common", "fog", "frame", "rain", "sky"],
+        _ => &["common", "fog", "frame", "ground", "rain", "sky"],
+    };
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for folder in folders {
+        let mut paths: Vec<_> =
+            std::fs::read_dir(root.join(folder)).into_iter().flatten().flatten().map(|f| f.path()).collect();
+        paths.sort();
+        for byte in paths.iter().filter_map(|p| std::fs::read(p).ok()).flatten() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    format!("{:08x}", hash >> 32)
 }
 
 /// The processor's model.

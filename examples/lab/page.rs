@@ -280,6 +280,9 @@ fn how_section(out: &mut String, tables: [&Option<Table>; 5]) {
             .position(|c| c == "date")
             .map_or(Vec::new(), |i| table.rows.iter().map(|r| &r[i]).collect());
         let date = dates.iter().max().map_or(String::new(), |d| format!("; {d}"));
-        let _ = writeln!(out, "- {}{date}.", table.note);
+        let what = table.note.split(';').next().unwrap_or_default();
+        let old =
+            if table.note.ends_with(&crate::chart::shaders(what)) { "" } else { "; the shaders have changed since" };
+        let _ = writeln!(out, "- {}{date}{old}.", table.note);
     }
 }

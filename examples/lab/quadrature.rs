@@ -2,10 +2,10 @@
 //! shader functions. Transmittance to space over 64 altitudes and 256 angles; light scattered once from four altitudes
 //! under four suns.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use welkin::gpu::{Device, readback, shader};
-use welkin::plan::difference;
+use welkin::plan::{Difference, difference};
 use welkin::sky::reference::medium::Medium;
 use welkin::sky::reference::ray::{Ray, horizon_mu};
 use welkin::sky::reference::{Options as Truth, Orders, Reference, View};
@@ -196,6 +196,22 @@ fn by_sun(drawn: &[f64], truth: &[f64]) -> Result<[f64; 4]> {
         *slot = difference(&of(drawn), &of(truth), 1.0 / 0.18)?.p95;
     }
     Ok(out)
+}
+
+/// The error of transmittance to space by the rule of `name` with `n` nodes, as it is drawn now.
+///
+/// # Errors
+/// An unknown rule; the GPU.
+pub fn transmittance_error(device: &Arc<Device>, name: &str, n: u32) -> Result<Difference> {
+    let known = || RULES.map(|r| r.0).join(", ");
+    let rule = RULES.iter().find(|r| r.0 == name);
+    let (_, number) = rule.ok_or_else(|| Error::range("rule", &format!("one of {}", known()), name))?;
+    let rules = Rules::new(device)?;
+    let wide = wgpu::TextureFormat::Rgba32Float;
+    let small = target(device, (COLUMN_COUNT, ROWS), wide);
+    rules.run(&rules.pipeline("transmittance", *number, wide), n, &small)?;
+    let drawn: Vec<f64> = readback::rgba(device, &small)?.iter().map(|t| f64::from(t[1])).collect();
+    difference(&drawn, &true_transmittance(), 1.0)
 }
 
 /// Measures all rules and draws both charts.

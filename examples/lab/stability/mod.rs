@@ -200,7 +200,8 @@ pub fn run(names: &[&str], options: &Options) -> Result<()> {
     page::write(&options.out)
 }
 
-fn summary(name: &str, index: usize, panel: &Panel) -> Vec<String> {
+/// A panel's row of the table.
+pub fn summary(name: &str, index: usize, panel: &Panel) -> Vec<String> {
     let count = |kind: &str| panel.cells.iter().filter(|c| c.kind() == kind).count().to_string();
     let mut errors: Vec<f64> =
         panel.cells.iter().filter_map(|c| if let Cell::Error(e) = c { Some(*e) } else { None }).collect();
