@@ -54,6 +54,11 @@ pub fn panic_in_next_call() {
     boundary::inject(boundary::Injected::Panic);
 }
 
+/// The next call of this thread that reaches a device finds it lost, as after a driver's reset.
+pub fn lose_in_next_call() {
+    boundary::inject(boundary::Injected::Loss);
+}
+
 /// The next call of this thread that reaches a device logs a message there.
 pub fn log_in_next_call() {
     boundary::inject(boundary::Injected::Message);

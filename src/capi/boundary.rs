@@ -47,6 +47,7 @@ impl Call {
             Injected::Nothing => {}
             Injected::Panic => panic!("injected"),
             Injected::Message => log::info!(target: "welkin", "injected"),
+            Injected::Loss => device.gpu().simulate_loss(),
         }
     }
 }
@@ -88,6 +89,7 @@ pub(super) enum Injected {
     Nothing,
     Panic,
     Message,
+    Loss,
 }
 
 /// It happens in the next call of this thread that reaches a device.

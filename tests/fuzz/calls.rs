@@ -4,14 +4,14 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, device::*, fog_law::*, ground::*, ground_grid::*, ground_texture::*, light::*,
-    occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*, veil::*,
-    view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, ground::*, ground_grid::*, ground_texture::*,
+    light::*, occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*,
+    veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
     dice::Dice,
-    structs::{MOST, Struct},
+    structs::{MOST, Struct, message},
     texts,
 };
 
@@ -47,7 +47,12 @@ pub struct World {
     plan: Vec<u8>,
     time_s: f64,
     frame: u64,
+    /// Whether the objects go with this world.
+    owner: bool,
 }
+
+// SAFETY: handles are numbers; that calls from several threads are answered is what is tested.
+unsafe impl Send for World {}
 
 /// A random element, now and then none or a number that is none.
 fn handle<T>(dice: &mut Dice, live: &[*mut T]) -> *mut T {
@@ -91,7 +96,38 @@ impl World {
             plan: vec![],
             time_s: 0.0,
             frame: 0,
+            owner: true,
         }
+    }
+
+    /// The same objects in the hands of another thread.
+    pub fn shared(&self) -> Self {
+        Self {
+            devices: self.devices.clone(),
+            contexts: self.contexts.clone(),
+            views: self.views.clone(),
+            textures: self.textures.clone(),
+            saved: self.saved.clone(),
+            plan: self.plan.clone(),
+            time_s: self.time_s,
+            frame: self.frame,
+            owner: false,
+        }
+    }
+
+    /// Takes over what another thread made.
+    pub fn adopt(&mut self, other: &Self) {
+        self.devices.extend(&other.devices);
+        self.contexts.extend(&other.contexts);
+        self.views.extend(&other.views);
+        self.textures.extend(&other.textures);
+    }
+
+    /// Loses the first device, and says what its status is.
+    pub fn lose(&self) -> wk_status {
+        abi::lose_in_next_call();
+        // SAFETY: a live handle.
+        unsafe { wk_device_get_status(self.devices[0]) }
     }
 
     /// A time: now, a little later, or anything.
@@ -106,6 +142,9 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
+        if !self.owner {
+            return;
+        }
         // SAFETY: children first; what is dead is refused.
         unsafe {
             self.views.iter().for_each(|&v| _ = wk_view_destroy(v));
@@ -113,7 +152,8 @@ impl Drop for World {
             self.textures.iter().for_each(|&t| _ = wk_texture_destroy(t));
             for &device in &self.devices {
                 let status = wk_device_destroy(device);
-                assert!(status == WK_OK || status == WK_ERROR_BAD_HANDLE, "a device is left with status {status}");
+                let gone = status == WK_OK || status == WK_ERROR_BAD_HANDLE;
+                assert!(gone || std::thread::panicking(), "a device is left with status {status}: {}", message());
             }
         }
     }
@@ -155,7 +195,11 @@ fn made<T>(
     destroy: impl FnOnce(*mut T),
 ) -> Answer {
     if status == WK_OK {
-        if kept.len() < most { kept.push(out) } else { destroy(out) }
+        if kept.len() < most {
+            kept.push(out);
+        } else {
+            destroy(out);
+        }
     }
     let faults =
         if (status == WK_OK) == out.is_null() { vec!["the out-parameter does not agree".into()] } else { vec![] };

@@ -16,7 +16,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use welkin::capi::abi;
+use welkin::capi::{abi, status::WK_ERROR_DEVICE_LOST};
 
 use calls::{Answer, CALLS, ELSEWHERE, World};
 use dice::Dice;
@@ -152,4 +152,54 @@ fn damaged_texts_are_read_or_refused_by_name() {
         assert!(accepted > 0 && accepted < times * many, "{reader}: {accepted} of {}", times * many);
     }
     tally.assert_clean();
+}
+
+/// Every call answers on a device that is lost, by its status or as if nothing had happened; all can be destroyed, and a new
+/// device works beside it.
+#[test]
+fn a_lost_device_is_answered_by_every_call() {
+    let judge = Judge::new();
+    for seed in 0..4 {
+        let mut dice = Dice::new(seed);
+        let mut world = World::new();
+        assert_eq!(world.lose(), WK_ERROR_DEVICE_LOST);
+        for (function, call) in CALLS.iter().flat_map(|c| std::iter::repeat_n(c, 5)) {
+            let answer = call(&mut dice, &mut world);
+            let lost = answer.status == WK_ERROR_DEVICE_LOST;
+            assert!(answer.faults.is_empty(), "{function}: {:?}", answer.faults);
+            let text = structs::message();
+            assert!(!lost || text.contains("destroy it and create a new one"), "{function}: {text}");
+            assert!(lost || judge.fault(function, answer.status).is_none(), "{function}: {} {text}", answer.status);
+        }
+        let mut tally = Tally::default();
+        play(seed, &judge, &mut tally, false);
+        tally.assert_clean();
+    }
+}
+
+/// Three threads call at random on the same objects, exclusive ones too, and destroy what the others use: each call is answered.
+#[test]
+fn threads_that_break_the_rules_are_answered() {
+    let judge = Judge::new();
+    for round in 0..if std::env::var_os("WELKIN_ACCEPT").is_some() { 40 } else { 6 } {
+        let mut world = World::new();
+        let worlds = std::thread::scope(|scope| {
+            let start = |thread: u64| {
+                let (mut own, judge) = (world.shared(), &judge);
+                scope.spawn(move || {
+                    let mut dice = Dice::new(1000 * round + thread);
+                    for _ in 0..LENGTH {
+                        let (function, call) = dice.pick(CALLS);
+                        let answer = call(&mut dice, &mut own);
+                        let fault = judge.fault(function, answer.status);
+                        assert!(fault.is_none(), "round {round}, {function}: {fault:?}");
+                    }
+                    own
+                })
+            };
+            let threads: Vec<_> = (0..3).map(start).collect();
+            threads.into_iter().map(|t| t.join().expect("no fault")).collect::<Vec<_>>()
+        });
+        worlds.iter().for_each(|w| world.adopt(w));
+    }
 }
