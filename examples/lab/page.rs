@@ -182,7 +182,11 @@ fn quadrature_section(out: &mut String, t: &Table) {
 
 fn fog_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
-    out.push_str("## Which fog\n\n![cost of fog against error](fog.svg)\n\n");
+    out.push_str(
+        "## Which fog\n\nErrors are against the fog's own law in f64, for the laws differ in what they mean by a visibility. How far the \
+         layer's light is from adding and doubling is in `src/fog/mod.rs`, held by `tests/fog/light.rs`.\n\n\
+         ![cost of fog against error](fog.svg)\n\n",
+    );
     out.push_str(
         "| fog | cost | error p95 | median | worst | perceptual | per view |\n|---|---|---|---|---|---|---|\n",
     );

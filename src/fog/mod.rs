@@ -17,6 +17,12 @@
 //! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
 //!   distance) are [`Law::Linear`] and its siblings.
 //!
+//! # Error
+//! The shader follows [`reference`] to f32. The light of [`reference`] itself, against adding and doubling over optical depths
+//! from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th percentile 19 %, the mean
+//! over directions within 12 %, in haze and in droplets (`cargo test --test fog adding_and_doubling`). A layer's transmittance
+//! is exact.
+//!
 //! # Cost
 //! One function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`): no loop, no texture, no
 //! table; about 12 exponentials and 12 square roots a pixel, fewer where light is neutral.

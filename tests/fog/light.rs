@@ -121,7 +121,7 @@ fn errors(phase: Phase, moments: &[f64], scale: f64) -> Errors {
 fn radiance_in_haze_follows_adding_and_doubling() {
     let e = errors(Phase::HenyeyGreenstein { g: 0.85 }, &slab::henyey_greenstein(0.85), 1.0);
     println!("haze: median {:.3}, 95 % {:.3}, mean over directions {:.3}", e.at(0.5), e.at(0.95), e.mean_worst());
-    assert!(e.at(0.5) < 0.06 && e.at(0.95) < 0.3 && e.mean_worst() < 0.15);
+    assert!(e.at(0.5) < 0.04 && e.at(0.95) < 0.19 && e.mean_worst() < 0.12);
 }
 
 /// Droplets: the reference truncates the forward peak it cannot carry (delta-M), which shows only near the sun.
@@ -131,7 +131,7 @@ fn radiance_in_droplets_follows_adding_and_doubling() {
     let (cut, scale) = droplet_case(phase);
     let e = errors(phase, &cut, scale);
     println!("droplets: median {:.3}, 95 % {:.3}, mean over directions {:.3}", e.at(0.5), e.at(0.95), e.mean_worst());
-    assert!(e.at(0.5) < 0.06 && e.at(0.95) < 0.3 && e.mean_worst() < 0.15);
+    assert!(e.at(0.5) < 0.045 && e.at(0.95) < 0.19 && e.mean_worst() < 0.12);
 }
 
 /// No glow: away from the sun, the level view is never much brighter than a white surface turned to the light; no blackening: nor

@@ -18,6 +18,7 @@ mod scene;
 mod shapes;
 mod shelter;
 mod slopes;
+mod speeds;
 mod stability;
 mod stones;
 mod streaks;
