@@ -129,7 +129,9 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
         ("frame.target.color.width must be in [1,", |i| i.width = 0),
         ("frame.target.color.samples must be 1, 2, 4 or 8", |i| i.samples = 3),
         ("frame.target.color.format must be a colour format", |i| i.format = vk::Format::D32_SFLOAT.as_raw() as u32),
-        ("frame.target.color.final_layout must be", |i| i.final_layout = L::DEPTH_ATTACHMENT_OPTIMAL.as_raw() as u32),
+        ("frame.target.color.final_layout: VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL is for depth images", |i| {
+            i.final_layout = L::DEPTH_ATTACHMENT_OPTIMAL.as_raw() as u32;
+        }),
         ("frame.target.color.array_layers above 1", |i| i.array_layers = 2),
     ];
     for (wanted, change) in images {

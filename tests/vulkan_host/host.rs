@@ -25,6 +25,12 @@ impl Setup {
         Self { api_version: vk::API_VERSION_1_3, extensions: Vec::new(), core, timeline: true }
     }
 
+    /// A modern host that lets others shade its multisampled images sample by sample.
+    pub fn sampling() -> Self {
+        let core = vk::PhysicalDeviceFeatures::default().sample_rate_shading(true);
+        Self { core, ..Self::modern() }
+    }
+
     /// A host that enables nothing, on the version given.
     pub fn bare(api_version: u32) -> Self {
         let core = vk::PhysicalDeviceFeatures::default();

@@ -106,7 +106,7 @@ fn draws_over_the_hosts_picture_from_any_layout() {
 #[test]
 fn a_multisampled_target_is_drawn_sample_by_sample() {
     use vk::ImageUsageFlags as U;
-    let host = Host::new(Setup::modern());
+    let host = Host::new(Setup::sampling());
     let welkin = adopted(&host);
     let usage = U::COLOR_ATTACHMENT | U::TRANSFER_SRC | U::TRANSFER_DST;
     let many = host.image(vk::Format::R8G8B8A8_UNORM, SIZE, 4, usage);

@@ -67,9 +67,22 @@ fn a_queue_has_one_device() {
 #[test]
 fn versions_that_would_abort_are_refused() {
     let old = Host::new(Setup::bare(vk::API_VERSION_1_0));
-    assert_says(&refused(&old, |_| {}), Status::Unsupported, &["1.0", "VK_KHR_maintenance1"]);
+    let bad = Status::InvalidArgument;
+    let both =
+        ["VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class", "apiVersion", "enabled_device_extensions"];
+    let e = refused(&old, |_| {});
+    assert_says(&e, bad, &both);
+    assert_says(&e, bad, &["instance_api_version is 1.0"]);
+    // Where only the field was forgotten, it comes first.
     let e = refused(&old, |d| d.instance_api_version = 0);
-    assert_says(&e, Status::Unsupported, &["1.0", "VK_KHR_maintenance1"]);
+    assert_says(&e, bad, &both);
+    assert!(e.message.starts_with("instance_api_version 0 means Vulkan 1.0: say there what the instance's"), "{e}");
+    // What is wrong with the features comes along, and what is there already is not asked for.
+    let e = refused(&old, |d| {
+        d.enabled_features.timeline_semaphore = true;
+        d.enabled_device_extensions = &[ash::khr::maintenance1::NAME];
+    });
+    assert_says(&e, bad, &["enable VK_KHR_storage_buffer_storage_class on", "VK_KHR_timeline_semaphore"]);
     old.assert_valid();
     old.finish();
 
@@ -81,7 +94,7 @@ fn versions_that_would_abort_are_refused() {
         d.enabled_features.timeline_semaphore = true;
         d.enabled_device_extensions = &[ash::khr::timeline_semaphore::NAME];
     });
-    assert_says(&e, Status::InvalidArgument, &["vkGetSemaphoreCounterValueKHR"]);
+    assert_says(&e, Status::InvalidArgument, &["vkGetSemaphoreCounterValueKHR, vkWaitSemaphoresKHR"]);
     let e = refused(&middle, |d| {
         d.enabled_features.timeline_semaphore = true;
         d.instance_api_version = vk::API_VERSION_1_3;
@@ -139,7 +152,13 @@ fn images_that_do_not_fit_are_refused_by_name() {
     says(good, ImageRole::Depth, bad, &["colour.format", "depth"]);
     let unused = HostImage { usage: vk::ImageUsageFlags::SAMPLED, ..good };
     says(unused, colour, bad, &["colour.usage", "COLOR_ATTACHMENT"]);
-    says(HostImage { layout: L::PRESENT_SRC_KHR, ..good }, colour, bad, &["colour.layout", "PRESENT_SRC_KHR"]);
+    let shown = HostImage { final_layout: L::PRESENT_SRC_KHR, ..good };
+    says(shown, colour, bad, &["colour.final_layout", "VK_IMAGE_LAYOUT_PRESENT_SRC_KHR", "VK_KHR_swapchain"]);
+    says(shown, colour, bad, &["enabled_device_extensions of the wk_vulkan_host_desc"]);
+    // All that a windowed host forgot comes at once.
+    let forgetful = HostImage { usage: vk::ImageUsageFlags::COLOR_ATTACHMENT, samples: 4, ..shown };
+    let all = ["VK_IMAGE_USAGE_TRANSFER_SRC_BIT", "sampleRateShading", "enabled_features", "VK_KHR_swapchain"];
+    says(forgetful, colour, bad, &all);
     says(HostImage { final_layout: L::UNDEFINED, ..good }, colour, bad, &["colour.final_layout", "UNDEFINED"]);
     says(HostImage { layout: L::UNDEFINED, ..good }, ImageRole::Sampled, bad, &["colour.layout"]);
     welkin.close().unwrap();

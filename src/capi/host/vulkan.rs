@@ -113,15 +113,16 @@ pub(in crate::capi) unsafe fn record(
     stages: Stages,
 ) -> Result<()> {
     // SAFETY: the caller's promise, for this and what follows.
-    let (color, depth, mask, target) = unsafe {
+    let (imports, target) = unsafe {
         let target = target::<wk_vulkan_target>(c.target)?;
-        (
-            import(host, "frame.target.color", target.color, ImageRole::Colour)?,
-            import(host, "frame.target.depth", target.depth, ImageRole::Depth)?,
-            import(host, "frame.target.mask", target.mask, ImageRole::Sampled)?,
-            target,
-        )
+        let imports = [
+            import(host, "frame.target.color", target.color, ImageRole::Colour),
+            import(host, "frame.target.depth", target.depth, ImageRole::Depth),
+            import(host, "frame.target.mask", target.mask, ImageRole::Sampled),
+        ];
+        (imports, target)
     };
+    let [color, depth, mask] = all_of(imports)?;
     // SAFETY: as above.
     let (waits, signals) = unsafe {
         (
@@ -189,6 +190,16 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     }
     // SAFETY: as above; the queue is used by the header's contract.
     unsafe { host.submit(encoder, &HandOver { images: &lent, wait: &[], signal: &[] }) }
+}
+
+/// The images, or what is wrong with all of them in one sentence.
+fn all_of<T>(images: [Result<T>; 3]) -> Result<[T; 3]> {
+    let wrong: Vec<Error> = match images {
+        [Ok(color), Ok(depth), Ok(mask)] => return Ok([color, depth, mask]),
+        some => some.into_iter().filter_map(Result::err).collect(),
+    };
+    let text = wrong.iter().map(|e| e.message.as_str()).collect::<Vec<_>>().join("; ");
+    Err(Error::new(wrong[0].status, text))
 }
 
 /// # Safety

@@ -23,6 +23,13 @@ fn version_text(v: u32) -> String {
     format!("{}.{}", vk::api_version_major(v), vk::api_version_minor(v))
 }
 
+/// Names for a sentence: up to four of them, and how many more there are.
+fn first_of(names: &[String]) -> String {
+    let (shown, rest) = names.split_at(names.len().min(4));
+    let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+    format!("{}{more}", shown.join(", "))
+}
+
 /// Null pointers, half-given callbacks and impossible versions.
 pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
     let get = desc.get_instance_proc_addr;
@@ -77,8 +84,9 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
         }
         found
     });
-    if let Some(name) = missing.first() {
-        return Err(invalid(format!("get_instance_proc_addr must serve Vulkan 1.0, but it answers NULL for {name}")));
+    if !missing.is_empty() {
+        let names = first_of(&missing);
+        return Err(invalid(format!("get_instance_proc_addr must serve Vulkan 1.0, but it answers NULL for {names}")));
     }
     let redirected = |name: &CStr| match dispatch::instance_substitute(name) {
         Some(s) if !address(name).is_null() => s,
@@ -152,29 +160,43 @@ pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInst
     Ok(())
 }
 
-/// What the backend needs beyond Vulkan 1.0, and features that the host claims but cannot have.
-pub(super) fn extensions(api_version: u32, enabled: &[&'static CStr], features: &EnabledFeatures) -> Result<()> {
+/// What the backend needs beyond Vulkan 1.0, and features that the host claims but cannot have: all of it at once.
+pub(super) fn extensions(
+    told: u32,
+    api_version: u32,
+    enabled: &[&'static CStr],
+    features: &EnabledFeatures,
+) -> Result<()> {
     let has = |name| enabled.contains(&name);
-    if api_version < vk::API_VERSION_1_1 {
-        for name in [ash::khr::maintenance1::NAME, ash::khr::storage_buffer_storage_class::NAME] {
-            if !has(name) {
-                return Err(Error::unsupported(format!(
-                    "the host's Vulkan is {}; below 1.1 its device must enable {} (raise \
-                     VkApplicationInfo::apiVersion to 1.1, or enable it and list it in enabled_device_extensions)",
-                    version_text(api_version),
-                    name.to_string_lossy(),
-                )));
+    let mut lacks = Vec::new();
+    let needed = [ash::khr::maintenance1::NAME, ash::khr::storage_buffer_storage_class::NAME];
+    let missing: Vec<_> = needed.into_iter().filter(|name| !has(name)).map(CStr::to_string_lossy).collect();
+    if api_version < vk::API_VERSION_1_1 && !missing.is_empty() {
+        let version = match told {
+            0 => "instance_api_version 0 means Vulkan 1.0: say there what the instance's \
+                  VkApplicationInfo::apiVersion is, raise both to 1.1 or later"
+                .to_owned(),
+            v if v < vk::API_VERSION_1_1 => {
+                format!(
+                    "instance_api_version is {}: raise it and the instance's VkApplicationInfo::apiVersion to 1.1",
+                    version_text(v)
+                )
             }
-        }
+            _ => "physical_device serves Vulkan 1.0 only: take another".to_owned(),
+        };
+        lacks.push(format!(
+            "{version}, or enable {} on the device and list them in enabled_device_extensions",
+            missing.join(" and ")
+        ));
     }
     if features.timeline_semaphore && api_version < vk::API_VERSION_1_2 && !has(ash::khr::timeline_semaphore::NAME) {
-        return Err(invalid(format!(
-            "enabled_features lists timelineSemaphore, but the host's Vulkan is {} and VK_KHR_timeline_semaphore \
-             is not in enabled_device_extensions: enable one of them or leave the feature out",
+        lacks.push(format!(
+            "enabled_features lists timelineSemaphore, which Vulkan {} has by VK_KHR_timeline_semaphore only: enable \
+             and list that in enabled_device_extensions, raise both versions to 1.2, or leave the feature out",
             version_text(api_version),
-        )));
+        ));
     }
-    Ok(())
+    if lacks.is_empty() { Ok(()) } else { Err(invalid(lacks.join("; "))) }
 }
 
 /// Loads the device's functions with the queue calls redirected; fills in what the redirections call.
@@ -211,11 +233,12 @@ pub(super) unsafe fn load_device(
         };
         missing.extend(names.iter().filter(|n| address(n).is_null()).map(|n| n.to_string_lossy().into_owned()));
     }
-    if let Some(name) = missing.first() {
+    if !missing.is_empty() {
         return Err(invalid(format!(
             "device must serve Vulkan {} as instance_api_version and enabled_device_extensions say, but \
-             vkGetDeviceProcAddr answers NULL for {name}",
+             vkGetDeviceProcAddr answers NULL for {}",
             version_text(api_version),
+            first_of(&missing),
         )));
     }
     let redirected = |name: &CStr| dispatch::device_substitute(name).unwrap_or_else(|| address(name));

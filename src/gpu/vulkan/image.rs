@@ -5,7 +5,7 @@ use wgpu::hal::vulkan::Api as Vulkan;
 use wgpu::{TextureFormat, TextureUses};
 
 use super::VulkanHost;
-use super::facts::EnabledFeatures;
+use super::layouts;
 use crate::error::{Error, Result, Status};
 
 /// Features that let wgpu use the formats and sample counts that the host's images may have; none of them needs
@@ -21,7 +21,8 @@ const MAX_IMPORTS: usize = 64;
 /// What Welkin does with a host's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageRole {
-    /// Drawn into, and copied to be read: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`.
+    /// Drawn into, and copied to be read: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`, and with
+    /// several samples `sampleRateShading` enabled.
     Colour,
     /// Depth that is read: needs `VK_IMAGE_USAGE_SAMPLED_BIT`.
     Depth,
@@ -267,20 +268,36 @@ impl VulkanHost {
             return bad("samples", "1, 2, 4 or 8", &image.samples);
         }
         self.check_format(name, image, format, role)?;
+        let lacks = self.lacks(name, image, role);
+        if lacks.is_empty() { Ok(format) } else { Err(Error::new(Status::InvalidArgument, lacks.join("; "))) }
+    }
+
+    /// All that the host has to enable, list or create otherwise before it hands over an image that this device can
+    /// hold.
+    fn lacks(&self, name: &str, image: &HostImage, role: ImageRole) -> Vec<String> {
+        let mut lacks = Vec::new();
+        if role == ImageRole::Colour && image.samples > 1 && self.record.enabled.core.sample_rate_shading == vk::FALSE {
+            let feature = layouts::feature_text("VkPhysicalDeviceFeatures::sampleRateShading");
+            lacks.push(format!("{name}.samples above 1 needs {feature}, or resolve first"));
+        }
         let needed = if role == ImageRole::Colour {
             vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC
         } else {
             vk::ImageUsageFlags::SAMPLED
         };
         if !image.usage.contains(needed) {
-            return bad("usage", &format!("with {needed:?}"), &format_args!("{:?}", image.usage));
+            let bits = layouts::usage_names(needed & !image.usage, " and ");
+            lacks.push(format!("{name}.usage lacks {bits}, with which the image must be created"));
         }
-        let undefined = image.layout == vk::ImageLayout::UNDEFINED && role == ImageRole::Colour;
-        if !undefined {
-            self.check_layout(name, "layout", image, image.layout)?;
+        let presents = self.record.extensions.contains(&ash::khr::swapchain::NAME);
+        for (field, layout) in [("layout", image.layout), ("final_layout", image.final_layout)] {
+            let dropped = field == "layout" && layout == vk::ImageLayout::UNDEFINED && role == ImageRole::Colour;
+            let obstacle = layouts::obstacle(layout, image, &self.record.enabled, presents).filter(|_| !dropped);
+            if let Some(o) = obstacle {
+                lacks.push(format!("{name}.{field}: {} {o}", layouts::layout_name(layout)));
+            }
         }
-        self.check_layout(name, "final_layout", image, image.final_layout)?;
-        Ok(format)
+        lacks
     }
 
     /// Whether this device serves the format for the role and sample count.
@@ -309,49 +326,6 @@ impl VulkanHost {
             return Err(Error::unsupported(message));
         }
         Ok(())
-    }
-
-    /// Whether an image of this format and usage can be in `layout` on this device.
-    fn check_layout(&self, name: &str, field: &str, image: &HostImage, layout: vk::ImageLayout) -> Result<()> {
-        let presents = self.record.extensions.contains(&ash::khr::swapchain::NAME);
-        let fits = layout_fits(layout, image, &self.record.enabled, presents);
-        if fits {
-            return Ok(());
-        }
-        let accepted = "a layout that an image of this format and usage can be in on this device";
-        Err(Error::range(&format!("{name}.{field}"), accepted, format_args!("{layout:?}")))
-    }
-}
-
-/// The rules for image layouts in barriers (Vulkan specification, VkImageMemoryBarrier, valid usage).
-fn layout_fits(layout: vk::ImageLayout, image: &HostImage, enabled: &EnabledFeatures, presents: bool) -> bool {
-    use vk::{ImageLayout as L, ImageUsageFlags as U};
-    let aspects = image.aspects();
-    let depth = aspects.contains(vk::ImageAspectFlags::DEPTH);
-    let stencil = aspects.contains(vk::ImageAspectFlags::STENCIL);
-    let used = |any: U| image.usage.intersects(any);
-    match layout {
-        L::GENERAL => true,
-        L::TRANSFER_SRC_OPTIMAL => used(U::TRANSFER_SRC),
-        L::TRANSFER_DST_OPTIMAL => used(U::TRANSFER_DST),
-        L::SHADER_READ_ONLY_OPTIMAL => used(U::SAMPLED | U::INPUT_ATTACHMENT),
-        L::COLOR_ATTACHMENT_OPTIMAL => !depth && used(U::COLOR_ATTACHMENT),
-        L::PRESENT_SRC_KHR => !depth && presents,
-        L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL => depth && used(U::DEPTH_STENCIL_ATTACHMENT),
-        L::DEPTH_STENCIL_READ_ONLY_OPTIMAL => {
-            depth && used(U::DEPTH_STENCIL_ATTACHMENT | U::SAMPLED | U::INPUT_ATTACHMENT)
-        }
-        L::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL | L::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL => {
-            stencil && used(U::DEPTH_STENCIL_ATTACHMENT)
-        }
-        L::DEPTH_ATTACHMENT_OPTIMAL | L::DEPTH_READ_ONLY_OPTIMAL => {
-            depth && !stencil && enabled.separate_depth_stencil_layouts && used(U::DEPTH_STENCIL_ATTACHMENT)
-        }
-        L::READ_ONLY_OPTIMAL => {
-            enabled.synchronization2 && used(U::SAMPLED | U::INPUT_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT)
-        }
-        L::ATTACHMENT_OPTIMAL => enabled.synchronization2 && used(U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT),
-        _ => false,
     }
 }
 
@@ -396,27 +370,6 @@ mod tests {
             layout: vk::ImageLayout::GENERAL,
             final_layout: vk::ImageLayout::GENERAL,
         }
-    }
-
-    #[test]
-    fn layouts_fit_by_format_usage_and_features() {
-        use vk::{ImageLayout as L, ImageUsageFlags as U};
-        let none = EnabledFeatures::default();
-        let colour = image(vk::Format::R8G8B8A8_UNORM, U::COLOR_ATTACHMENT | U::TRANSFER_SRC);
-        assert!(layout_fits(L::COLOR_ATTACHMENT_OPTIMAL, &colour, &none, false));
-        assert!(layout_fits(L::TRANSFER_SRC_OPTIMAL, &colour, &none, false));
-        assert!(!layout_fits(L::TRANSFER_DST_OPTIMAL, &colour, &none, false), "no such usage");
-        assert!(!layout_fits(L::PRESENT_SRC_KHR, &colour, &none, false), "no swapchain extension");
-        assert!(layout_fits(L::PRESENT_SRC_KHR, &colour, &none, true));
-        assert!(!layout_fits(L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL, &colour, &none, false));
-        assert!(!layout_fits(L::UNDEFINED, &colour, &none, false));
-        let depth = image(vk::Format::D32_SFLOAT, U::DEPTH_STENCIL_ATTACHMENT | U::SAMPLED);
-        assert!(layout_fits(L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL, &depth, &none, false));
-        assert!(!layout_fits(L::DEPTH_ATTACHMENT_OPTIMAL, &depth, &none, false), "feature not enabled");
-        let separate = EnabledFeatures { separate_depth_stencil_layouts: true, ..none };
-        assert!(layout_fits(L::DEPTH_ATTACHMENT_OPTIMAL, &depth, &separate, false));
-        let both = image(vk::Format::D24_UNORM_S8_UINT, U::DEPTH_STENCIL_ATTACHMENT | U::SAMPLED);
-        assert!(!layout_fits(L::DEPTH_ATTACHMENT_OPTIMAL, &both, &separate, false), "stencil needs a layout too");
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod dispatch;
 mod facts;
 mod frame;
 mod image;
+mod layouts;
 
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -148,7 +149,7 @@ pub unsafe fn adopt(desc: &VulkanHostDesc<'_>) -> Result<VulkanHost> {
         let loaded = checks::load_instance(desc, &handles)?;
         let api_version = checks::api_version(desc, &handles, &loaded)?;
         checks::queue_family(desc, &loaded)?;
-        checks::extensions(api_version, &extensions, &desc.enabled_features)?;
+        checks::extensions(desc.instance_api_version, api_version, &extensions, &desc.enabled_features)?;
         let (device, real) = checks::load_device(desc, &handles, &loaded, api_version, &extensions)?;
         (loaded, api_version, device, real)
     };
