@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    frame::{ColorSpace, Frame, FrameFlags},
+    frame::{ColorSpace, Frame, FrameFlags, ImageLayers},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
 };
 
@@ -175,6 +175,8 @@ pub(super) struct Images<'a> {
     pub(super) color: Option<&'a wgpu::Texture>,
     pub(super) depth: Option<&'a wgpu::Texture>,
     pub(super) mask: Option<&'a wgpu::Texture>,
+    /// Which layer of its texture each is.
+    pub(super) layers: ImageLayers,
 }
 
 /// A checked C frame with its images, as the Rust side takes it.
@@ -210,6 +212,7 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         color: images.color,
         depth: images.depth,
         mask: images.mask,
+        layers: images.layers,
         color_space: match c.color_space {
             WK_COLOR_DISPLAY_LINEAR => ColorSpace::DisplayLinear,
             WK_COLOR_DISPLAY_SRGB => ColorSpace::DisplaySrgb,

@@ -10,8 +10,23 @@
 //! submits there afterwards. Semaphores order work with other queues.
 //!
 //! Handles are passed as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
+//!
 //! Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
-//! computes. Everything else is used if the host says that it enabled it, and else not.
+//! computes. Besides, enabled on the device and listed here:
+//!
+//! ```text
+//!     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions
+//!     colour of several samples                     VkPhysicalDeviceFeatures::sampleRateShading in enabled_features
+//!     timeline semaphores                           timelineSemaphore in enabled_features
+//!     DEPTH_ATTACHMENT and DEPTH_READ_ONLY layouts  separateDepthStencilLayouts in enabled_features
+//!     ATTACHMENT and READ_ONLY layouts              synchronization2 in enabled_features
+//! ```
+//!
+//! Everything else is used if the host says that it enabled it, and else not.
+//!
+//! Views, contexts and textures go first, then the wk_device, then the VkDevice, then the VkInstance. While anything of
+//! a wk_device is alive, wk_device_destroy answers WK_ERROR_IN_USE: the VkDevice must then stay too. Vulkan cannot be
+//! asked whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
 
 use std::{
     ffi::{c_char, c_void},
@@ -65,7 +80,7 @@ pub struct wk_vulkan_host_desc {
     pub instance_extension_count: u32,
     /// Names of the instance extensions that the host enabled. Default NULL.
     pub enabled_instance_extensions: *const *const c_char,
-    /// Names of the device extensions that the host enabled. Default NULL.
+    /// Names of the device extensions that the host enabled; among them VK_KHR_swapchain where it presents. Default NULL.
     pub enabled_device_extensions: *const *const c_char,
     /// Number of enabled_device_extensions. Default 0.
     pub device_extension_count: u32,
@@ -124,17 +139,19 @@ pub struct wk_vulkan_image {
     pub width: u32,
     /// Pixels. Default 0; must be given.
     pub height: u32,
-    /// Samples a pixel. Default 1.
+    /// Samples a pixel. Default 1. Colour of several needs sampleRateShading in enabled_features of the wk_vulkan_host_desc.
     pub samples: u32,
     /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
     pub usage: u32,
-    /// Array layers that it was created with. Default 1.
+    /// Array layers that it was created with. Default 1. Of an occluder map, 1.
     pub array_layers: u32,
-    /// Layer that is handed over. Default 0.
+    /// Layer that is handed over, as one eye of a stereo or multiview host; the others stay untouched. Default 0.
     pub layer: u32,
-    /// VkImageLayout that the host left it in. Default 0 (UNDEFINED: its content may be dropped; colour only).
+    /// VkImageLayout that the host left it in, of the layer that is handed over. Default 0 (UNDEFINED: its content may be
+    /// dropped; colour only).
     pub layout: u32,
-    /// VkImageLayout that the host wants it back in. Default 0; must be given.
+    /// VkImageLayout that the host wants it back in. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`, needs
+    /// VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
     pub final_layout: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -210,9 +227,10 @@ pub struct wk_vulkan_target {
     pub next: *const c_void,
     /// What is drawn into. Default NULL.
     pub color: *const wk_vulkan_image,
-    /// The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel.
+    /// The host's depth, as large as `color` and with as many samples. Where `color` has one sample (a resolved picture)
+    /// depth may have more: the first of each pixel counts. NULL (the default) shows the sky in every pixel.
     pub depth: *const wk_vulkan_image,
-    /// Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample. Default NULL.
+    /// Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample, another image. Default NULL.
     pub mask: *const wk_vulkan_image,
     /// Waited for before anything is drawn; a binary one must have its signal submitted. At most 16.
     pub waits: *const wk_vulkan_semaphore,
@@ -248,8 +266,8 @@ impl wk_vulkan_target {
 /// Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`, to be called before
 /// the host destroys its device; nothing of the host's is ever destroyed.
 /// Thread: any that may use the queue.
-/// Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong; WK_ERROR_UNSUPPORTED what the host's
-/// Vulkan lacks; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+/// Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong, or all extensions, features and fields
+/// that are missing; WK_ERROR_UNSUPPORTED what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_vulkan(
     desc: *const wk_vulkan_host_desc,
@@ -269,8 +287,11 @@ pub unsafe extern "C" fn wk_device_create_vulkan(
     })
 }
 
-/// Waits until the GPU no longer uses a VkImage and forgets it. Call it before destroying an image that was handed over:
-/// Vulkan may give a new image the old one's number. Not for every frame.
+/// Waits until the GPU no longer uses a VkImage and forgets it. An image that was handed over is forgotten before or after
+/// it is destroyed (an engine may rebuild its swapchain inside a call), but before a new one is handed over: Vulkan may give
+/// that the old one's number, and Welkin would draw into the dead image. Destroyed it is only when the GPU has done with it, as ever:
+/// after the signals of its last wk_view_record, or vkDeviceWaitIdle. A number that Welkin does not know is no error. Not
+/// for every frame.
 /// Thread: exclusive on the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_forget_vulkan_image(device: *mut wk_device, image: u64) -> wk_status {

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::Shared;
+use super::{Shared, target::Sampling};
 use crate::{
     context::Scene,
     error::Result,
     gpu::{
-        Device,
+        Device, KeptLayer, Layer, is_kept,
         pass::{self, QuadsDesc},
     },
     rain::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS, WAVES},
@@ -73,7 +73,7 @@ pub(super) struct AreaPass {
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
     pipelines: Vec<(Kind, Vec<Constant>, wgpu::RenderPipeline)>,
-    bound: Option<(Option<wgpu::Texture>, wgpu::BindGroup)>,
+    bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -210,10 +210,11 @@ impl AreaPass {
         device: &Device,
         columns: &Columns<'_>,
         buffers: [&wgpu::Buffer; 2],
-        (depth, multi): (Option<&wgpu::Texture>, bool),
+        depth: Option<Layer<'_>>,
     ) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
         let (blocks, _) = columns.blocks();
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
+        let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, buffers, depth, multi);
         self.bound.as_ref().map(|(_, group)| (&self.layouts[usize::from(multi)], group))
     }
@@ -228,13 +229,13 @@ impl AreaPass {
         encoder: &mut wgpu::CommandEncoder,
         columns: &Columns<'_>,
         [frame, fog]: [&wgpu::Buffer; 2],
-        (sky, depth): (&SkyVolume, Option<&wgpu::Texture>),
+        (sky, depth): (&SkyVolume, Option<Layer<'_>>),
         target: &wgpu::TextureView,
     ) -> Result<()> {
         let (blocks, count) = columns.blocks();
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
         let kind = Kind {
-            multi: depth.is_some_and(|d| d.sample_count() > 1),
+            multi: depth.is_some_and(Layer::is_multisampled),
             has_depth: depth.is_some(),
             overlaps: columns.field.columns.iter().any(|c| c.later != 0),
             polygons: blocks.columns.list.iter().any(|c| c.corners > 0),
@@ -264,15 +265,11 @@ impl AreaPass {
         Ok(())
     }
 
-    fn bind(&mut self, device: &Device, [frame, fog]: [&wgpu::Buffer; 2], depth: Option<&wgpu::Texture>, multi: bool) {
-        if self.bound.as_ref().is_some_and(|(d, _)| d.as_ref() == depth) {
+    fn bind(&mut self, device: &Device, [frame, fog]: [&wgpu::Buffer; 2], depth: Option<Layer<'_>>, multi: bool) {
+        if self.bound.as_ref().is_some_and(|(d, _)| is_kept(depth, d.as_ref())) {
             return;
         }
-        let view = depth.map(|t| {
-            let aspect =
-                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
-            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
-        });
+        let view = depth.map(Layer::view);
         let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
             binding,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -295,7 +292,7 @@ impl AreaPass {
                 block(8, SHAFT_AT, size_of::<ShaftUniform>()),
             ],
         });
-        self.bound = Some((depth.cloned(), group));
+        self.bound = Some((depth.map(Layer::kept), group));
     }
 
     /// The place of the pipeline for what is drawn, compiled at its first use.
@@ -305,7 +302,7 @@ impl AreaPass {
         }
         let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
         let composite = shared.composite()?;
-        let [_, sky, _] = composite.layouts(kind.multi);
+        let [_, sky, _] = composite.layouts(Sampling::Single);
         let yes = |b: bool| f64::from(u8::from(b));
         let mut all = constants.to_vec();
         all.extend([

@@ -5,12 +5,16 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-use super::{Frame, target::Stages, uniform::FrameUniform};
+use super::{
+    Frame,
+    target::{Sampling, Stages},
+    uniform::FrameUniform,
+};
 use crate::{
     error::Result,
     fog::{FogUniform, FogVariant},
     gpu::{
-        Device,
+        Device, Layer,
         pass::{self, FullscreenDesc},
     },
     ground::GroundUniform,
@@ -24,6 +28,7 @@ pub(super) struct Variant {
     pub stages: Stages,
     pub format: wgpu::TextureFormat,
     pub samples: u32,
+    pub sampling: Sampling,
     pub has_depth: bool,
     pub has_mask: bool,
     /// What the fog must be able to draw, if there is any.
@@ -86,8 +91,8 @@ impl Variant {
 
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
-    layout_single: wgpu::BindGroupLayout,
-    layout_multi: wgpu::BindGroupLayout,
+    /// Of group 0, by [`Sampling`].
+    layouts: [wgpu::BindGroupLayout; 3],
     layout_sky: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
@@ -110,7 +115,8 @@ fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry
     }
 }
 
-fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
+    let [color, depth] = sampling.multisampled();
     let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -125,8 +131,8 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
         label: Some("frame"),
         entries: &[
             uniform(0, size_of::<FrameUniform>()),
-            texture_entry(1, multisampled),
-            texture_entry(2, multisampled),
+            texture_entry(1, color),
+            texture_entry(2, depth),
             texture_entry(3, false),
             uniform(4, size_of::<FogUniform>()),
             texture_entry(5, false),
@@ -162,8 +168,7 @@ impl Composite {
         let multi =
             device.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
         Self {
-            layout_single: layout(&device.device, false),
-            layout_multi: layout(&device.device, true),
+            layouts: Sampling::ALL.map(|sampling| layout(&device.device, sampling)),
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: HashMap::new(),
@@ -178,14 +183,9 @@ impl Composite {
         self.reads_samples
     }
 
-    /// Layout of group 0 for targets with one or several samples.
-    fn layout(&self, multi: bool) -> &wgpu::BindGroupLayout {
-        if multi { &self.layout_multi } else { &self.layout_single }
-    }
-
     /// Layouts of the groups of every shader that composes: the frame's, the sky's, that of what is around.
-    pub fn layouts(&self, multi: bool) -> [&wgpu::BindGroupLayout; 3] {
-        [self.layout(multi), &self.layout_sky, &self.layout_around]
+    pub fn layouts(&self, sampling: Sampling) -> [&wgpu::BindGroupLayout; 3] {
+        [&self.layouts[sampling as usize], &self.layout_sky, &self.layout_around]
     }
 
     /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, the drops before them and
@@ -198,20 +198,20 @@ impl Composite {
         host: &Frame<'_>,
         [drops, cells, heights]: [Option<&wgpu::TextureView>; 3],
     ) -> wgpu::BindGroup {
-        let multi = copy.sample_count() > 1;
+        let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
-        let depth_view = host.depth.map(|t| {
-            let aspect =
-                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
-            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
-        });
-        let mask_view = host.mask.map(|t| t.create_view(&Default::default()));
-        let no_depth = if multi { self.none_multi.get_or_init(|| none(&device.device, 4)) } else { &self.none };
+        let depth_view = host.depth_layer().map(Layer::view);
+        let mask_view = host.mask_layer().map(Layer::view);
+        let no_depth = if sampling == Sampling::Multi {
+            self.none_multi.get_or_init(|| none(&device.device, 4))
+        } else {
+            &self.none
+        };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
-            layout: self.layout(multi),
+            layout: &self.layouts[sampling as usize],
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
@@ -232,12 +232,15 @@ impl Composite {
     /// A missing shader file.
     pub fn pipeline(&mut self, device: &Arc<Device>, variant: Variant) -> Result<&wgpu::RenderPipeline> {
         if !self.pipelines.contains_key(&variant) {
-            let multi = variant.samples > 1;
-            let layouts = self.layouts(multi);
+            let layouts = self.layouts(variant.sampling);
             let pipeline = pass::fullscreen(
                 device,
                 &FullscreenDesc {
-                    shader: if multi { "frame/composite_multi.wgsl" } else { "frame/composite_single.wgsl" },
+                    shader: variant.sampling.shader([
+                        "frame/composite_single.wgsl",
+                        "frame/composite_multi.wgsl",
+                        "frame/composite_resolved.wgsl",
+                    ]),
                     entry: "composite",
                     layouts: &layouts,
                     targets: &[wgpu::ColorTargetState {

@@ -5,7 +5,10 @@
 
 use std::sync::Arc;
 
-use super::{Shared, target::Stages};
+use super::{
+    Shared,
+    target::{Sampling, Stages},
+};
 use crate::{
     error::Result,
     gpu::{
@@ -40,7 +43,7 @@ pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
     views: [wgpu::TextureView; 2],
-    pipelines: [Option<wgpu::RenderPipeline>; 16],
+    pipelines: [Option<wgpu::RenderPipeline>; 24],
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -63,7 +66,7 @@ impl Froxels {
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
-        Self { light, through, views, pipelines: [const { None }; 16] }
+        Self { light, through, views, pipelines: [const { None }; 24] }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -76,15 +79,16 @@ impl Froxels {
         device: &Arc<Device>,
         shared: &Shared,
         encoder: &mut wgpu::CommandEncoder,
-        (multi, fog, march): (bool, bool, bool),
+        (sampling, fog, march): (Sampling, bool, bool),
         (areas, groups): (Option<&wgpu::BindGroupLayout>, &[&wgpu::BindGroup]),
     ) -> Result<()> {
-        let bits = [march, fog, multi, areas.is_some()];
-        let slot = &mut self.pipelines[bits.iter().rev().fold(0, |at, bit| 2 * at + usize::from(*bit))];
+        let bits = [areas.is_some(), fog, march];
+        let at = bits.into_iter().fold(sampling as usize, |at, bit| 2 * at + usize::from(bit));
+        let slot = &mut self.pipelines[at];
         if slot.is_none() {
             let composite = shared.composite()?;
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
-            let [frame, sky, around] = composite.layouts(multi);
+            let [frame, sky, around] = composite.layouts(sampling);
             let (shader, layouts) = match areas {
                 Some(layout) => ("frame/froxels_areas.wgsl", &[layout, sky][..]),
                 None => ("frame/froxels.wgsl", &[frame, sky, around][..]),

@@ -146,17 +146,18 @@ impl View {
 
     /// Draws the glass over what the target holds; `toned` says that TONE has been over it in this call.
     pub(super) fn draw_lens(&mut self, frame: &Frame<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
-        let Some(color) = frame.color else { return Ok(()) };
+        let Some(layer) = frame.color_layer() else { return Ok(()) };
+        let color = layer.texture;
         self.hold_copy(color);
         let (Some(glass), Some(copy)) = (&mut self.glass, &self.copy) else { return Ok(()) };
-        to.encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
+        layer.copy(to.encoder, copy);
         let plain = !is_float(color.format()) && !color.format().is_srgb();
         let toned = toned && frame.color_space == ColorSpace::SceneLinear;
         let lens = LensFrame {
             camera: &frame.camera,
             picture: copy,
-            mask: frame.mask,
-            target: color,
+            mask: frame.mask_layer(),
+            target: layer,
             encoded: plain && (toned || frame.color_space == ColorSpace::DisplaySrgb),
             bottom_left: frame.origin_bottom_left,
         };

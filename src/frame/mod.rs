@@ -29,6 +29,7 @@ use glam::DVec3;
 
 use crate::{
     error::{Error, Result},
+    gpu::Layer,
     scene::{Camera, DepthMapping},
 };
 
@@ -51,6 +52,17 @@ impl FrameFlags {
     }
 }
 
+/// The layer that each image of a frame is in its texture, from 0. The other layers stay untouched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct ImageLayers {
+    /// Of [`Frame::color`].
+    pub color: u32,
+    /// Of [`Frame::depth`].
+    pub depth: u32,
+    /// Of [`Frame::mask`].
+    pub mask: u32,
+}
+
 /// One frame of a host: where it looks from, what it drew, and what its numbers mean.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
@@ -62,10 +74,13 @@ pub struct Frame<'a> {
     pub depth_mapping: DepthMapping,
     /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
-    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING.
+    /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as `color`, or
+    /// any number where `color` has one (resolved): then the first sample counts.
     pub depth: Option<&'a wgpu::Texture>,
     /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
     pub mask: Option<&'a wgpu::Texture>,
+    /// Which layers of array textures the images are, as for the eyes of a stereo pair. Default: the first of each.
+    pub layers: ImageLayers,
     /// What the numbers in `color` mean.
     pub color_space: ColorSpace,
     /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, (0, 1e9], default 1.
@@ -90,6 +105,7 @@ impl<'a> Frame<'a> {
             color: Some(color),
             depth,
             mask: None,
+            layers: ImageLayers::default(),
             color_space: ColorSpace::SceneLinear,
             cd_m2_per_unit: 1.0,
             exposure: None,
@@ -99,7 +115,26 @@ impl<'a> Frame<'a> {
         }
     }
 
+    fn color_layer(&self) -> Option<Layer<'a>> {
+        self.color.map(|texture| Layer { texture, index: self.layers.color })
+    }
+
+    fn depth_layer(&self) -> Option<Layer<'a>> {
+        self.depth.map(|texture| Layer { texture, index: self.layers.depth })
+    }
+
+    fn mask_layer(&self) -> Option<Layer<'a>> {
+        self.mask.map(|texture| Layer { texture, index: self.layers.mask })
+    }
+
     fn validate(&self) -> Result<()> {
+        for (name, layer) in [("color", self.color_layer()), ("depth", self.depth_layer()), ("mask", self.mask_layer())]
+        {
+            if let Some(l) = layer.filter(|l| l.index >= l.texture.depth_or_array_layers()) {
+                let accepted = format!("below its texture's {} layers", l.texture.depth_or_array_layers());
+                return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));
+            }
+        }
         if !(self.cd_m2_per_unit.is_finite() && self.cd_m2_per_unit > 0.0 && self.cd_m2_per_unit <= 1e9) {
             return Err(Error::range("cd_m2_per_unit", "in (0, 1e9] cd/m^2", self.cd_m2_per_unit));
         }

@@ -255,8 +255,7 @@ impl Rain {
         self.set_near(device, context, scene);
         let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: true, constants: &[] };
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
-        let multi = frame.depth.is_some_and(|d| d.sample_count() > 1);
-        pass.bound(device, &columns, blocks, (frame.depth, multi))
+        pass.bound(device, &columns, blocks, frame.depth_layer())
     }
 
     /// Draws the columns of rain areas into the layer; whether there are any.
@@ -275,7 +274,7 @@ impl Rain {
         let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: self.veiled, constants };
         let target = self.layer.view(device, color.size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
-        pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth), target)?;
+        pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth_layer()), target)?;
         Ok(true)
     }
 
@@ -427,7 +426,7 @@ impl Rain {
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        self.layer.draw(device, encoder, &drawn, color, frame.depth)?;
+        self.layer.draw(device, encoder, &drawn, color, frame.depth_layer())?;
         let drops = block.shells > 0;
         Ok(RainReport {
             drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),

@@ -124,10 +124,10 @@ pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
             format!("{} x {}", texture.width(), texture.height()),
         ));
     }
-    if texture.sample_count() != color.sample_count() {
+    if texture.sample_count() != color.sample_count() && color.sample_count() > 1 {
         return Err(Error::range(
             "depth.samples",
-            &format!("those of color, {}", color.sample_count()),
+            &format!("those of color, {}, or color resolved to one sample", color.sample_count()),
             texture.sample_count(),
         ));
     }
@@ -164,7 +164,7 @@ pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::
     }
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("color copy"),
-        size: color.size(),
+        size: wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() },
         mip_level_count: 1,
         sample_count: color.sample_count(),
         dimension: wgpu::TextureDimension::D2,
@@ -179,6 +179,41 @@ fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages)
         return Ok(());
     }
     Err(Error::range(&format!("{name}.usage"), &format!("one with {needed:?}"), format!("{:?}", texture.usage())))
+}
+
+/// How many samples a pixel colour and depth have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Sampling {
+    /// One each.
+    Single,
+    /// Several: each is drawn with its own depth.
+    Multi,
+    /// Colour one, as after a resolve, and depth several, of which the first counts.
+    Resolved,
+}
+
+impl Sampling {
+    /// All of them; their values as numbers are their places here.
+    pub const ALL: [Self; 3] = [Self::Single, Self::Multi, Self::Resolved];
+
+    /// Of a frame's images.
+    pub fn of(color: &wgpu::Texture, depth: Option<&wgpu::Texture>) -> Self {
+        match (color.sample_count() > 1, depth.is_some_and(|d| d.sample_count() > 1)) {
+            (true, _) => Self::Multi,
+            (false, true) => Self::Resolved,
+            (false, false) => Self::Single,
+        }
+    }
+
+    /// Whether colour, and whether depth has several.
+    pub fn multisampled(self) -> [bool; 2] {
+        [self == Self::Multi, self != Self::Single]
+    }
+
+    /// The shader of this kind among `[single, multi, resolved]`.
+    pub fn shader(self, names: [&'static str; 3]) -> &'static str {
+        names[self as usize]
+    }
 }
 
 /// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a

@@ -16,7 +16,7 @@ use super::{
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
+    target::{ColorSpace, Sampling, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
     uniform::{FrameUniform, uniform},
 };
 use crate::{
@@ -24,7 +24,7 @@ use crate::{
     error::{Error, Result, Status},
     fog::{FogKind, FogUniform, FogVariant},
     glass::Glass,
-    gpu::Device,
+    gpu::{Device, KeptLayer, Layer, is_kept},
     ground::GroundUniform,
     plan::{Planner, Present},
     rain::{Around, RainSettings},
@@ -35,9 +35,9 @@ use crate::{
 /// The textures of one bind group: it is made anew only when the host hands over others.
 #[derive(PartialEq)]
 struct Bound {
-    color: wgpu::Texture,
-    depth: Option<wgpu::Texture>,
-    mask: Option<wgpu::Texture>,
+    color: KeptLayer,
+    depth: Option<KeptLayer>,
+    mask: Option<KeptLayer>,
     own: OwnViews,
 }
 
@@ -323,7 +323,8 @@ impl View {
         rays: &ViewRays,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let Some(color) = frame.color else { return Ok(()) };
+        let Some(layer) = frame.color_layer() else { return Ok(()) };
+        let color = layer.texture;
         let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
         let stages = if tone { stages } else { stages.without(Stages::TONE) };
         let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
@@ -331,6 +332,7 @@ impl View {
             stages: stages.without(Stages::PREPARE.with(Stages::LENS)),
             format: color.format(),
             samples: color.sample_count(),
+            sampling: Sampling::of(color, frame.depth),
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
             // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
@@ -375,7 +377,7 @@ impl View {
             variant.stages = variant.stages.without(Stages::PARTICLES);
         }
         let [water, heights] = context.terrain_views(variant.stages.has(Stages::SURFACE));
-        self.bind(frame, color, [drops, water, heights])?;
+        self.bind(frame, layer, [drops, water, heights])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
             (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
@@ -410,7 +412,7 @@ impl View {
         }
         let Some((_, group, target)) = &self.bound else { return Ok(()) };
         if let Some(copy) = &self.copy {
-            to.encoder.copy_texture_to_texture(color.as_image_copy(), copy.as_image_copy(), color.size());
+            layer.copy(to.encoder, copy);
         }
         let mut composite = self.shared.composite()?;
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
@@ -424,8 +426,13 @@ impl View {
                 self.rain.streaks(&self.device, (frame, color.height(), exposure), (context, scene, rays))
             })
         {
-            let (multi, constants) = (variant.samples > 1, variant.constants());
-            gauge.record(&self.device, to.encoder, (multi, &constants), &composite.layouts(multi), &groups)?;
+            let shader = variant.sampling.shader([
+                "plan/gauge_single.wgsl",
+                "plan/gauge_multi.wgsl",
+                "plan/gauge_resolved.wgsl",
+            ]);
+            let (constants, layouts) = (variant.constants(), composite.layouts(variant.sampling));
+            gauge.record(&self.device, to.encoder, (shader, &constants), &layouts, &groups)?;
             self.report.passes += 1;
         }
         drop(composite);
@@ -437,8 +444,14 @@ impl View {
         if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
             let areas = self.rain.veiling_areas(&self.device, frame, (context, scene), [&self.uniform, &self.fog]);
             let own = areas.map(|(_, group)| [group, self.sky.bind_group()]);
-            let samples = if areas.is_some() { frame.depth.map_or(1, |d| d.sample_count()) } else { variant.samples };
-            let variant = (samples > 1, variant.fog.is_some(), variant.march);
+            // That of areas has no colour in it.
+            let several = frame.depth_layer().is_some_and(Layer::is_multisampled);
+            let sampling = match areas {
+                Some(_) if several => Sampling::Multi,
+                Some(_) => Sampling::Single,
+                None => variant.sampling,
+            };
+            let variant = (sampling, variant.fog.is_some(), variant.march);
             let groups = (areas.map(|(layout, _)| layout), own.as_ref().map_or(&groups[..], |g| &g[..]));
             froxels.draw(&self.device, &self.shared, to.encoder, variant, groups)?;
             self.report.passes += 1;
@@ -461,7 +474,9 @@ impl View {
     /// Makes the colour copy anew if it is not like the host's colour.
     pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) {
         let fits = self.copy.as_ref().is_some_and(|c| {
-            c.size() == color.size() && c.format() == color.format() && c.sample_count() == color.sample_count()
+            (c.width(), c.height()) == (color.width(), color.height())
+                && c.format() == color.format()
+                && c.sample_count() == color.sample_count()
         });
         if !fits {
             // The old one is bound there.
@@ -472,20 +487,24 @@ impl View {
     }
 
     /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
-    fn bind(&mut self, frame: &Frame<'_>, color: &wgpu::Texture, own: OwnViews) -> Result<()> {
+    fn bind(&mut self, frame: &Frame<'_>, color: Layer<'_>, own: OwnViews) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
-            b.color == *color && b.depth.as_ref() == frame.depth && b.mask.as_ref() == frame.mask && b.own == own
+            color == b.color
+                && is_kept(frame.depth_layer(), b.depth.as_ref())
+                && is_kept(frame.mask_layer(), b.mask.as_ref())
+                && b.own == own
         });
         if same {
             return Ok(());
         }
-        self.hold_copy(color);
+        self.hold_copy(color.texture);
         let Some(copy) = &self.copy else { return Ok(()) };
         let blocks = [&self.uniform, &self.fog, &self.ground];
         let group =
             self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
-        let target = color.create_view(&Default::default());
-        let bound = Bound { color: color.clone(), depth: frame.depth.cloned(), mask: frame.mask.cloned(), own };
+        let target = color.view();
+        let [depth, mask] = [frame.depth_layer(), frame.mask_layer()].map(|l| l.map(Layer::kept));
+        let bound = Bound { color: color.kept(), depth, mask, own };
         self.bound = Some((bound, group, target));
         Ok(())
     }

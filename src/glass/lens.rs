@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{MAX_ARMS, Plane, Windscreen, geometry::Rays, laws, step::VOLUME_UNIT_M3};
-use crate::{error::Result, scene::Camera};
+use crate::{error::Result, gpu::Layer, scene::Camera};
 
 /// What the frame knows of its target.
 #[derive(Clone, Copy)]
@@ -12,8 +12,8 @@ pub(crate) struct LensFrame<'a> {
     pub camera: &'a Camera,
     /// The finished picture, to read; as large as the target.
     pub picture: &'a wgpu::Texture,
-    pub mask: Option<&'a wgpu::Texture>,
-    pub target: &'a wgpu::Texture,
+    pub mask: Option<Layer<'a>>,
+    pub target: Layer<'a>,
     /// Its values follow the sRGB curve.
     pub encoded: bool,
     pub bottom_left: bool,

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, KeptLayer, Layer, is_kept,
         pass::{self, FullscreenDesc},
     },
 };
@@ -359,8 +359,8 @@ fn draw(
 /// The lens over one picture: its smaller copies and bind groups, made anew when the host hands over other textures.
 pub(super) struct LensPass {
     picture: wgpu::Texture,
-    target: (wgpu::Texture, wgpu::TextureView),
-    mask: Option<wgpu::Texture>,
+    target: (KeptLayer, wgpu::TextureView),
+    mask: Option<KeptLayer>,
     smaller: [wgpu::TextureView; 2],
     shrinks: [wgpu::BindGroup; 2],
     uniform: wgpu::Buffer,
@@ -373,7 +373,7 @@ pub(super) struct LensPass {
 impl LensPass {
     pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> Self {
         let (picture, mask) = (frame.picture, frame.mask);
-        let target = (frame.target.clone(), view(frame.target));
+        let target = (frame.target.kept(), frame.target.view());
         let size = [picture.width().div_ceil(SMALLER), picture.height().div_ceil(SMALLER)];
         let smallest = size.map(|n| n.div_ceil(SMALLEST));
         let smaller =
@@ -381,7 +381,7 @@ impl LensPass {
         let source = view(picture);
         let shrinks = [&source, &smaller[0]].map(|v| bind(device, &kit.shrink_layout, &[tex(v)]));
         let uniform = buffer(device, "lens", size_of::<LensUniform>() as u64);
-        let mask_view = mask.map_or_else(|| kit.no_mask.clone(), view);
+        let mask_view = mask.map_or_else(|| kit.no_mask.clone(), Layer::view);
         let groups = [0, 1].map(|i| {
             let resources = [
                 uniform.as_entire_binding(),
@@ -399,7 +399,7 @@ impl LensPass {
         Self {
             picture: picture.clone(),
             target,
-            mask: mask.cloned(),
+            mask: mask.map(Layer::kept),
             smaller,
             shrinks,
             uniform,
@@ -412,8 +412,8 @@ impl LensPass {
     /// Whether it was made for these.
     pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&Lattice>) -> bool {
         self.picture == *frame.picture
-            && self.target.0 == *frame.target
-            && self.mask.as_ref() == frame.mask
+            && frame.target == self.target.0
+            && is_kept(frame.mask, self.mask.as_ref())
             && self.lattice == lattice.map(|l| l.size)
     }
 

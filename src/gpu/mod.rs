@@ -16,6 +16,8 @@ pub mod surface;
 pub mod vulkan;
 
 mod device;
+mod layer;
 mod stand_in;
 mod x11;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};
+pub(crate) use layer::{KeptLayer, Layer, is_kept};

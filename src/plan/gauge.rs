@@ -42,7 +42,7 @@ pub(crate) struct Gauge {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU32>,
     /// Made for a number of samples (one or several) and `override` constants.
-    pipeline: Option<(bool, Constants, wgpu::RenderPipeline)>,
+    pipeline: Option<(&'static str, Constants, wgpu::RenderPipeline)>,
     samples: Vec<Sample>,
 }
 
@@ -81,27 +81,20 @@ impl Gauge {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `multi` says whether the host's
-    /// picture has several samples a pixel.
+    /// Records the pass; `groups`, `layouts` and `constants` are those of the composition, `shader` is for the samples that
+    /// the host's colour and depth have.
     pub fn record(
         &mut self,
         device: &Arc<Device>,
         encoder: &mut wgpu::CommandEncoder,
-        (multi, constants): (bool, &[(&'static str, f64)]),
+        (shader, constants): (&'static str, &[(&'static str, f64)]),
         layouts: &[&wgpu::BindGroupLayout],
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        if self.pipeline.as_ref().is_none_or(|(m, made, _)| *m != multi || made != constants) {
+        if self.pipeline.as_ref().is_none_or(|(s, made, _)| *s != shader || made != constants) {
             let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
-            let desc = FullscreenDesc {
-                shader: if multi { "plan/gauge_multi.wgsl" } else { "plan/gauge_single.wgsl" },
-                entry: "gauge",
-                layouts,
-                targets: &[target],
-                constants,
-                samples: 1,
-            };
-            self.pipeline = Some((multi, constants.to_vec(), pass::fullscreen(device, &desc)?));
+            let desc = FullscreenDesc { shader, entry: "gauge", layouts, targets: &[target], constants, samples: 1 };
+            self.pipeline = Some((shader, constants.to_vec(), pass::fullscreen(device, &desc)?));
         }
         let Some((.., pipeline)) = &self.pipeline else { return Ok(()) };
         pass::draw(encoder, "gauge", pipeline, groups, &self.view);

@@ -6,7 +6,7 @@ use super::occluder::{MAX_OCCLUDER_MAPS, OCCLUDER_MAP_TEXELS, Occluder, Occluder
 use crate::{
     error::{Error, Result},
     gpu::{
-        Device,
+        Device, Layer,
         pass::{self, FullscreenDesc},
     },
     scene::DepthUniform,
@@ -270,9 +270,7 @@ impl OccluderMaps {
             };
             let at = i as u64 * BLOCK;
             device.queue.write_buffer(&self.blocks, at, bytemuck::bytes_of(&block));
-            let whole = map.depth.format().has_depth_aspect();
-            let aspect = if whole { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
-            let depth = map.depth.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() });
+            let depth = Layer { texture: map.depth, index: 0 }.view();
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("occluder map"),
                 layout: &self.layouts[0],

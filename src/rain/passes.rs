@@ -17,7 +17,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, KeptLayer, Layer, is_kept,
         pass::{self, QuadsDesc},
     },
 };
@@ -43,7 +43,7 @@ pub(crate) struct RainLayer {
     stones: Option<StonePass>,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
-    bound: Option<(Option<wgpu::Texture>, bool, wgpu::BindGroup)>,
+    bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
 /// What one frame draws.
@@ -177,10 +177,10 @@ impl RainLayer {
         encoder: &mut wgpu::CommandEncoder,
         drawn: &Drawn<'_>,
         color: &wgpu::Texture,
-        depth: Option<&wgpu::Texture>,
+        depth: Option<Layer<'_>>,
     ) -> Result<()> {
         self.write(device, drawn);
-        let multi = depth.is_some_and(|d| d.sample_count() > 1);
+        let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, depth, multi);
         self.view(device, color.size());
         let kind = (multi, depth.is_some(), drawn.maps);
@@ -330,15 +330,11 @@ impl RainLayer {
         device.queue.write_buffer(&self.blocks, 0, &self.staged[..end]);
     }
 
-    fn bind(&mut self, device: &Device, depth: Option<&wgpu::Texture>, multi: bool) {
-        if self.bound.as_ref().is_some_and(|(d, m, _)| d.as_ref() == depth && *m == multi) {
+    fn bind(&mut self, device: &Device, depth: Option<Layer<'_>>, multi: bool) {
+        if self.bound.as_ref().is_some_and(|(d, _)| is_kept(depth, d.as_ref())) {
             return;
         }
-        let view = depth.map(|t| {
-            let aspect =
-                if t.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
-            t.create_view(&wgpu::TextureViewDescriptor { aspect, ..Default::default() })
-        });
+        let view = depth.map(Layer::view);
         let none = self.none.get_or_insert_with(|| nothing(&device.device));
         let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
             binding,
@@ -362,7 +358,7 @@ impl RainLayer {
                 block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
             ],
         });
-        self.bound = Some((depth.cloned(), multi, group));
+        self.bound = Some((depth.map(Layer::kept), group));
     }
 }
 

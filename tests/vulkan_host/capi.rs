@@ -29,10 +29,11 @@ fn desc(host: &Host) -> wk_vulkan_host_desc {
 
 pub fn device(host: &Host) -> *mut wk_device {
     // What the host gave to vkCreateDevice, as far as Welkin reads it.
-    let timeline = vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(host.setup.timeline);
+    let mut timeline = vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(host.setup.timeline);
+    let features = vk::PhysicalDeviceFeatures2::default().features(host.setup.core).push_next(&mut timeline);
     let names = [ash::khr::get_physical_device_properties2::NAME.as_ptr()];
     let desc = wk_vulkan_host_desc {
-        enabled_features: (&raw const timeline).cast(),
+        enabled_features: (&raw const features).cast(),
         enabled_instance_extensions: names.as_ptr(),
         instance_extension_count: 1,
         ..desc(host)
@@ -132,7 +133,7 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
         ("frame.target.color.final_layout: VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL is for depth images", |i| {
             i.final_layout = L::DEPTH_ATTACHMENT_OPTIMAL.as_raw() as u32;
         }),
-        ("frame.target.color.array_layers above 1", |i| i.array_layers = 2),
+        ("frame.target.color.layer must be below array_layers (2)", |i| (i.array_layers, i.layer) = (2, 2)),
     ];
     for (wanted, change) in images {
         let mut color = good;

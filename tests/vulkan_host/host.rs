@@ -16,13 +16,15 @@ pub struct Setup {
     pub extensions: Vec<&'static CStr>,
     pub core: vk::PhysicalDeviceFeatures,
     pub timeline: bool,
+    /// Whether the validation layer gives each object a number of its own, never used again; a driver does not.
+    pub unique_handles: bool,
 }
 
 impl Setup {
     /// A modern host: Vulkan 1.3 with timeline semaphores.
     pub fn modern() -> Self {
         let core = vk::PhysicalDeviceFeatures::default();
-        Self { api_version: vk::API_VERSION_1_3, extensions: Vec::new(), core, timeline: true }
+        Self { api_version: vk::API_VERSION_1_3, extensions: Vec::new(), core, timeline: true, unique_handles: true }
     }
 
     /// A modern host that lets others shade its multisampled images sample by sample.
@@ -34,7 +36,7 @@ impl Setup {
     /// A host that enables nothing, on the version given.
     pub fn bare(api_version: u32) -> Self {
         let core = vk::PhysicalDeviceFeatures::default();
-        Self { api_version, extensions: Vec::new(), core, timeline: false }
+        Self { api_version, extensions: Vec::new(), core, timeline: false, unique_handles: true }
     }
 }
 
@@ -97,7 +99,11 @@ impl Host {
                 instance_extensions.push(ash::ext::debug_utils::NAME.as_ptr());
             }
             let checks = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+            let plain = [vk::ValidationFeatureDisableEXT::UNIQUE_HANDLES];
             let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&checks);
+            if !setup.unique_handles {
+                features = features.disabled_validation_features(&plain);
+            }
             let info = vk::InstanceCreateInfo::default()
                 .application_info(&app)
                 .enabled_layer_names(&layer_names)
@@ -169,12 +175,23 @@ impl Host {
     }
 
     pub fn image(&self, format: vk::Format, size: (u32, u32), samples: u32, usage: vk::ImageUsageFlags) -> Owned {
+        self.layered_image(format, size, (samples, 1), usage)
+    }
+
+    /// With so many samples and array layers.
+    pub fn layered_image(
+        &self,
+        format: vk::Format,
+        size: (u32, u32),
+        (samples, layers): (u32, u32),
+        usage: vk::ImageUsageFlags,
+    ) -> Owned {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
             .extent(vk::Extent3D { width: size.0, height: size.1, depth: 1 })
             .mip_levels(1)
-            .array_layers(1)
+            .array_layers(layers)
             .samples(vk::SampleCountFlags::from_raw(samples))
             .usage(usage);
         // SAFETY: plain Vulkan by its rules.
@@ -191,7 +208,7 @@ impl Host {
                 height: size.1,
                 samples,
                 usage,
-                array_layers: 1,
+                array_layers: layers,
                 layer: 0,
                 layout: undefined,
                 final_layout: undefined,
@@ -272,7 +289,7 @@ impl Host {
             .new_layout(to)
             .src_access_mask(access)
             .dst_access_mask(access)
-            .subresource_range(vk::ImageSubresourceRange { aspect_mask: aspects(image.format), ..RANGE });
+            .subresource_range(range(image));
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
         // SAFETY: plain Vulkan by its rules.
         unsafe {
@@ -292,14 +309,14 @@ impl Host {
     pub fn fill(&self, c: vk::CommandBuffer, image: &HostImage, layout: vk::ImageLayout, rgba: [f32; 4]) {
         let value = vk::ClearColorValue { float32: rgba };
         // SAFETY: plain Vulkan by its rules.
-        unsafe { self.device.cmd_clear_color_image(c, image.image, layout, &value, &[RANGE]) };
+        unsafe { self.device.cmd_clear_color_image(c, image.image, layout, &value, &[range(image)]) };
     }
 
     /// Clears a depth image and leaves it in `layout`.
     pub fn clear_depth(&self, c: vk::CommandBuffer, image: &HostImage, depth: f32, layout: vk::ImageLayout) {
         self.transition(c, image, vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
         let value = vk::ClearDepthStencilValue { depth, stencil: 0 };
-        let range = vk::ImageSubresourceRange { aspect_mask: aspects(image.format), ..RANGE };
+        let range = range(image);
         // SAFETY: plain Vulkan by its rules.
         unsafe {
             let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
@@ -310,16 +327,16 @@ impl Host {
 
     /// Resolves a multisampled image in `TRANSFER_SRC_OPTIMAL` into a plain one in `TRANSFER_DST_OPTIMAL`.
     pub fn resolve(&self, c: vk::CommandBuffer, from: &HostImage, to: &HostImage) {
-        let layers = vk::ImageSubresourceLayers {
+        let layer = |image: &HostImage| vk::ImageSubresourceLayers {
             aspect_mask: vk::ImageAspectFlags::COLOR,
+            base_array_layer: image.layer,
             layer_count: 1,
             ..Default::default()
         };
-        let region = vk::ImageResolve::default().src_subresource(layers).dst_subresource(layers).extent(vk::Extent3D {
-            width: from.width,
-            height: from.height,
-            depth: 1,
-        });
+        let region = vk::ImageResolve::default()
+            .src_subresource(layer(from))
+            .dst_subresource(layer(to))
+            .extent(vk::Extent3D { width: from.width, height: from.height, depth: 1 });
         let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
         // SAFETY: plain Vulkan by its rules.
         unsafe { self.device.cmd_resolve_image(c, from.image, source, to.image, target, &[region]) };
@@ -338,6 +355,7 @@ impl Host {
             let region = vk::BufferImageCopy::default()
                 .image_subresource(vk::ImageSubresourceLayers {
                     aspect_mask: vk::ImageAspectFlags::COLOR,
+                    base_array_layer: image.layer,
                     layer_count: 1,
                     ..Default::default()
                 })
@@ -393,13 +411,16 @@ impl Host {
     }
 }
 
-const RANGE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
+/// The layer that a description hands over.
+fn range(image: &HostImage) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: aspects(image.format),
+        base_mip_level: 0,
+        level_count: 1,
+        base_array_layer: image.layer,
+        layer_count: 1,
+    }
+}
 
 fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     match format {

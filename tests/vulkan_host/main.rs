@@ -8,6 +8,7 @@ mod capi;
 mod draw;
 mod ground;
 mod host;
+mod images;
 mod refusals;
 mod sharing;
 mod weather;

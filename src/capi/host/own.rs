@@ -37,7 +37,7 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     let window = surface.map(|s| s.lock().acquire()).transpose()?;
     let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
     let (color, depth, mask) = (window.or_else(|| get(&color)), get(&depth), get(&mask));
-    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref() };
+    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref(), ..Images::default() };
     let frame = frame::from_c(c, images, false)?;
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
 }

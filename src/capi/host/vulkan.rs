@@ -17,7 +17,7 @@ use crate::{
         vulkan::*,
     },
     error::{Error, Result, Status},
-    frame::Stages,
+    frame::{ImageLayers, Stages},
     gpu::vulkan::{EnabledFeatures, HandOver, HostImage, HostSemaphore, ImageRole, VulkanHost, VulkanHostDesc, adopt},
     rain::OccluderMap,
 };
@@ -123,6 +123,7 @@ pub(in crate::capi) unsafe fn record(
         (imports, target)
     };
     let [color, depth, mask] = all_of(imports)?;
+    check_distinct([("depth", &depth), ("mask", &mask)], &color)?;
     // SAFETY: as above.
     let (waits, signals) = unsafe {
         (
@@ -130,7 +131,9 @@ pub(in crate::capi) unsafe fn record(
             semaphores("frame.target.signals", target.signals, target.signal_count, target.signal_stride)?,
         )
     };
+    let layer = |i: &Option<Imported>| i.as_ref().map_or(0, |i| i.image.layer);
     let images = Images {
+        layers: ImageLayers { color: layer(&color), depth: layer(&depth), mask: layer(&mask) },
         color: color.as_ref().map(|i| &i.texture),
         depth: depth.as_ref().map(|i| &i.texture),
         mask: mask.as_ref().map(|i| &i.texture),
@@ -173,7 +176,12 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
         let found = unsafe { import(host, &param, map.vulkan, ImageRole::Depth)? };
         let none =
             || Error::new(Status::InvalidArgument, format!("{param} must not be NULL on a Vulkan host's device"));
-        images.push(found.ok_or_else(none)?);
+        let found = found.ok_or_else(none)?;
+        if found.image.array_layers > 1 {
+            let text = format!("{param}.array_layers above 1: hand over an image of one layer");
+            return Err(Error::unsupported(text));
+        }
+        images.push(found);
     }
     let list: Vec<_> =
         maps.zip(&images).map(|(c, i)| OccluderMap { depth: &i.texture, taken: c.taken(false) }).collect();
@@ -190,6 +198,19 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     }
     // SAFETY: as above; the queue is used by the header's contract.
     unsafe { host.submit(encoder, &HandOver { images: &lent, wait: &[], signal: &[] }) }
+}
+
+/// Refuses what is read and drawn into at the same time.
+fn check_distinct(read: [(&str, &Option<Imported>); 2], color: &Option<Imported>) -> Result<()> {
+    let place = |i: &Imported| (i.image.image, i.image.layer);
+    let is_color = |i: &Imported| color.as_ref().is_some_and(|c| place(c) == place(i));
+    match read.into_iter().find(|(_, image)| image.as_ref().is_some_and(is_color)) {
+        Some((name, _)) => {
+            let text = format!("frame.target.{name}.image must be another image or layer than frame.target.color");
+            Err(Error::new(Status::InvalidArgument, text))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The images, or what is wrong with all of them in one sentence.
@@ -229,9 +250,6 @@ unsafe fn import(
         layout: vk::ImageLayout::from_raw(c.layout as i32),
         final_layout: vk::ImageLayout::from_raw(c.final_layout as i32),
     };
-    if image.array_layers > 1 {
-        return Err(Error::unsupported(format!("{param}.array_layers above 1: hand over an image of one layer")));
-    }
     // SAFETY: as above.
     let texture = unsafe { host.import(param, &image, role)? };
     Ok(Some(Imported { image, role, texture }))

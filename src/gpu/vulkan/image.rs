@@ -150,8 +150,8 @@ impl VulkanHost {
     /// The texture over a host's image. Asking again for the same image gives the same texture.
     ///
     /// `name` is the parameter's name in messages. The texture may be drawn to or read only between this call
-    /// and [`VulkanHost::submit`] of the same image. Before the host destroys the image it calls
-    /// [`VulkanHost::forget_image`].
+    /// and [`VulkanHost::submit`] of the same image. When the host has destroyed the image, or
+    /// before, it calls [`VulkanHost::forget_image`].
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] names the field of `image` that does not fit; [`Status::Unsupported`] names a
@@ -175,8 +175,9 @@ impl VulkanHost {
         Ok(texture)
     }
 
-    /// Waits until the GPU no longer uses `image` and forgets it. To be called before the host destroys an image
-    /// that it handed over: Vulkan may give a new image the old one's handle. Not a frame's call.
+    /// Waits until the GPU no longer uses `image` and forgets it. To be called before or after the host destroys an
+    /// image that it handed over, but before it hands over another: Vulkan may give a new image the old one's handle. What
+    /// is left to do is destroying views, for which the image need not live. Not a frame's call.
     ///
     /// # Errors
     /// [`Status::DeviceLost`].

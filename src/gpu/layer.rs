@@ -1,0 +1,60 @@
+//! One layer of a host's image: what a frame draws into and reads.
+
+/// One layer of a texture; a plain texture has layer 0 alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layer<'a> {
+    /// The texture.
+    pub texture: &'a wgpu::Texture,
+    /// Which of its layers.
+    pub index: u32,
+}
+
+/// A layer kept beyond the frame, to compare the next one with.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct KeptLayer(wgpu::Texture, u32);
+
+impl Layer<'_> {
+    /// A view of the layer alone, and of depth alone where the format has stencil too.
+    pub fn view(self) -> wgpu::TextureView {
+        let depth = self.texture.format().has_depth_aspect();
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            aspect: if depth { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All },
+            base_array_layer: self.index,
+            array_layer_count: Some(1),
+            ..Default::default()
+        })
+    }
+
+    /// Whether it has several samples a pixel.
+    pub fn is_multisampled(self) -> bool {
+        self.texture.sample_count() > 1
+    }
+
+    /// Copies it to `to`, a plain texture of its size.
+    pub fn copy(self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Texture) {
+        let mut from = self.texture.as_image_copy();
+        from.origin.z = self.index;
+        encoder.copy_texture_to_texture(from, to.as_image_copy(), to.size());
+    }
+
+    /// To compare a later frame's with.
+    pub fn kept(self) -> KeptLayer {
+        KeptLayer(self.texture.clone(), self.index)
+    }
+}
+
+impl PartialEq<KeptLayer> for Layer<'_> {
+    fn eq(&self, kept: &KeptLayer) -> bool {
+        *self.texture == kept.0 && self.index == kept.1
+    }
+}
+
+/// Whether an image of this frame, or none, is the one kept.
+pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> bool {
+    match (layer, kept) {
+        (Some(layer), Some(kept)) => layer == *kept,
+        (None, None) => true,
+        _ => false,
+    }
+}
