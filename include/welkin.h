@@ -941,8 +941,21 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  * submits there afterwards. Semaphores order work with other queues.
  *
  * Handles are passed as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
+ *
  * Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
- * computes. Everything else is used if the host says that it enabled it, and else not.
+ * computes. Besides, enabled on the device and listed here:
+ *
+ *     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions
+ *     colour of several samples                     VkPhysicalDeviceFeatures::sampleRateShading in enabled_features
+ *     timeline semaphores                           timelineSemaphore in enabled_features
+ *     DEPTH_ATTACHMENT and DEPTH_READ_ONLY layouts  separateDepthStencilLayouts in enabled_features
+ *     ATTACHMENT and READ_ONLY layouts              synchronization2 in enabled_features
+ *
+ * Everything else is used if the host says that it enabled it, and else not.
+ *
+ * Views, contexts and textures go first, then the wk_device, then the VkDevice, then the VkInstance. While anything of
+ * a wk_device is alive, wk_device_destroy answers WK_ERROR_IN_USE: the VkDevice must then stay too. Vulkan cannot be
+ * asked whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
  * ====================================================================================================
  */
 
@@ -978,7 +991,9 @@ typedef struct wk_vulkan_host_desc {
     uint32_t instance_extension_count;
     /** Names of the instance extensions that the host enabled. Default NULL. */
     const char *const *enabled_instance_extensions;
-    /** Names of the device extensions that the host enabled. Default NULL. */
+    /**
+     * Names of the device extensions that the host enabled; among them VK_KHR_swapchain where it presents. Default NULL.
+     */
     const char *const *enabled_device_extensions;
     /** Number of enabled_device_extensions. Default 0. */
     uint32_t device_extension_count;
@@ -1036,19 +1051,27 @@ typedef struct wk_vulkan_image {
     uint32_t width;
     /** Pixels. Default 0; must be given. */
     uint32_t height;
-    /** Samples a pixel. Default 1. */
+    /**
+     * Samples a pixel. Default 1. Colour of several needs sampleRateShading in enabled_features of the wk_vulkan_host_desc.
+     */
     uint32_t samples;
     /**
      * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
      */
     uint32_t usage;
-    /** Array layers that it was created with. Default 1. */
+    /** Array layers that it was created with. Default 1. Of an occluder map, 1. */
     uint32_t array_layers;
-    /** Layer that is handed over. Default 0. */
+    /** Layer that is handed over, as one eye of a stereo or multiview host; the others stay untouched. Default 0. */
     uint32_t layer;
-    /** VkImageLayout that the host left it in. Default 0 (UNDEFINED: its content may be dropped; colour only). */
+    /**
+     * VkImageLayout that the host left it in, of the layer that is handed over. Default 0 (UNDEFINED: its content may be
+     * dropped; colour only).
+     */
     uint32_t layout;
-    /** VkImageLayout that the host wants it back in. Default 0; must be given. */
+    /**
+     * VkImageLayout that the host wants it back in. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`, needs
+     * VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
+     */
     uint32_t final_layout;
     /** Must be 0. */
     uint32_t reserved0;
@@ -1119,9 +1142,14 @@ typedef struct wk_vulkan_target {
     const void *next;
     /** What is drawn into. Default NULL. */
     const wk_vulkan_image *color;
-    /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
+    /**
+     * The host's depth, as large as `color` and with as many samples. Where `color` has one sample (a resolved picture)
+     * depth may have more: the first of each pixel counts. NULL (the default) shows the sky in every pixel.
+     */
     const wk_vulkan_image *depth;
-    /** Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample. Default NULL. */
+    /**
+     * Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample, another image. Default NULL.
+     */
     const wk_vulkan_image *mask;
     /** Waited for before anything is drawn; a binary one must have its signal submitted. At most 16. */
     const wk_vulkan_semaphore *waits;
@@ -1157,16 +1185,19 @@ typedef struct wk_vulkan_target {
  * Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`, to be called before
  * the host destroys its device; nothing of the host's is ever destroyed.
  * Thread: any that may use the queue.
- * Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong; WK_ERROR_UNSUPPORTED what the host's
- * Vulkan lacks; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+ * Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong, or all extensions, features and fields
+ * that are missing; WK_ERROR_UNSUPPORTED what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
  */
 WK_API
 wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc,
                                   wk_device **out_device);
 
 /**
- * Waits until the GPU no longer uses a VkImage and forgets it. Call it before destroying an image that was handed over:
- * Vulkan may give a new image the old one's number. Not for every frame.
+ * Waits until the GPU no longer uses a VkImage and forgets it. An image that was handed over is forgotten before or after
+ * it is destroyed (an engine may rebuild its swapchain inside a call), but before a new one is handed over: Vulkan may give
+ * that the old one's number, and Welkin would draw into the dead image. Destroyed it is only when the GPU has done with it, as ever:
+ * after the signals of its last wk_view_record, or vkDeviceWaitIdle. A number that Welkin does not know is no error. Not
+ * for every frame.
  * Thread: exclusive on the device.
  */
 WK_API

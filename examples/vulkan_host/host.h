@@ -1,52 +1,75 @@
-/* The host's own Vulkan: instance, device, images, a render pass. Nothing here knows of Welkin. */
+/* The host's own Vulkan: instance, device, queue, images. Nothing here knows of Welkin. */
 #ifndef VULKAN_HOST_H
 #define VULKAN_HOST_H
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <threads.h>
 #include <vulkan/vulkan.h>
 
 /* Ends the program with a sentence if a Vulkan call fails. */
 #define VK_CHECK(call) vk_check((call), #call, __FILE__, __LINE__)
 void vk_check(VkResult result, const char *call, const char *file, int line);
 
+#define EXPECT(condition, ...)                                              \
+    do {                                                                    \
+        if (!(condition)) {                                                 \
+            fprintf(stderr, "%s:%d: %s: ", __FILE__, __LINE__, #condition); \
+            fprintf(stderr, __VA_ARGS__);                                   \
+            fputc('\n', stderr);                                            \
+            exit(1);                                                        \
+        }                                                                   \
+    } while (0)
+
 typedef struct image {
     VkImage handle;
-    VkDeviceMemory memory;
+    VkDeviceMemory memory; /* VK_NULL_HANDLE for a swapchain's image */
     VkImageView view;
     VkFormat format;
     VkImageUsageFlags usage;
+    uint32_t width, height, samples;
 } image;
 
+enum { MAX_NAMES = 4 };
+
 typedef struct host {
-    uint32_t width, height;
+    /* What instance and device were created with. Welkin is told the very same. */
+    VkApplicationInfo app;
+    const char *instance_extensions[MAX_NAMES], *device_extensions[MAX_NAMES];
+    uint32_t instance_extension_count;
+    VkPhysicalDeviceFeatures features;
+    VkDeviceQueueCreateInfo queue_info;
+    VkDeviceCreateInfo device_info;
+
     VkInstance instance;
-    VkDebugUtilsMessengerEXT messenger; /* VK_NULL_HANDLE where the validation layer is not installed */
+    VkDebugUtilsMessengerEXT messenger; /* VK_NULL_HANDLE without the validation layer */
     int complaints;                     /* of the validation layer */
     VkPhysicalDevice physical_device;
     uint32_t queue_family;
     VkDevice device;
     VkQueue queue;
+    mtx_t queue_lock; /* held round each use of the queue, vkQueuePresentKHR and vkDeviceWaitIdle included */
     VkCommandPool pool;
-    VkRenderPass render_pass;
-    VkFramebuffer framebuffer;
-    VkSemaphore drawn, weather; /* host to Welkin, Welkin to host */
-    image color, depth, mask;
 } host;
 
-/* The version that the instance is created with; Welkin is told the same. */
-#define HOST_API_VERSION VK_API_VERSION_1_1
+/* A window's host needs a surface between the two; others pass `windowed` false and VK_NULL_HANDLE. */
+void host_open_instance(host *h, bool windowed);
+void host_open_device(host *h, VkSurfaceKHR surface);
+void host_close_device(host *h);
+void host_close_instance(host *h);
 
-/* Fills in everything. */
-void host_open(host *h, uint32_t width, uint32_t height);
-/* What the device is created with: extensions and features, of which this host needs none. */
-void host_device_info(VkDeviceCreateInfo *info, VkDeviceQueueCreateInfo *queue, uint32_t family);
-void host_close(host *h);
+image host_image(host *h, VkFormat format, uint32_t width, uint32_t height, uint32_t samples, VkImageUsageFlags usage);
+VkImageView host_view(host *h, const image *i);
+void host_close_image(host *h, const image *i);
 
 /* One command buffer, begun for one submission. */
 VkCommandBuffer host_begin(host *h);
 /* Submits it; waits for `wait` and signals `signal` where they are not VK_NULL_HANDLE; waits for its end if asked. */
 void host_submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaphore signal, bool finish);
+/* vkDeviceWaitIdle uses every queue of the device, so it wants the lock too. */
+void host_wait(host *h);
 /* Changes an image's layout, ordered against everything before and after. */
 void host_transition(VkCommandBuffer commands, const image *i, VkImageLayout from, VkImageLayout to);
 /* Copies an image in TRANSFER_SRC_OPTIMAL to memory after `wait`: width * height * texel_bytes bytes, to be freed. */

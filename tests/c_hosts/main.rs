@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::{fs, io::BufRead, io::BufReader};
 
 fn root() -> &'static Path {
@@ -38,7 +39,10 @@ struct Program {
 
 impl Program {
     fn build(name: &str, libraries: &[&str]) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+        // Tests build the same example at the same time.
+        static BUILT: AtomicU32 = AtomicU32::new(0);
+        let own = format!("{name}-{}-{}", std::process::id(), BUILT.fetch_add(1, Ordering::Relaxed));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(own);
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).expect("the target directory is writable");
         let library = library();
@@ -100,12 +104,31 @@ fn picture(path: &Path) -> (usize, usize, Vec<u8>) {
 
 #[test]
 fn the_vulkan_host_draws_and_checks_its_picture() {
-    let program = Program::build("vulkan_host", &["-lvulkan"]);
+    let program = Program::build("vulkan_host", &["-lvulkan", "-lX11"]);
     let out = program.folder.join("picture.ppm");
     let said = run(Command::new(&program.path).arg(&out));
     assert!(said.ends_with("ok\n"), "{said}");
     let (width, height, pixels) = picture(&out);
     assert_eq!((width, height, pixels.len()), (640, 360, 640 * 360 * 3));
+}
+
+#[test]
+fn the_vulkan_host_presents_resizes_and_resolves() {
+    let program = Program::build("vulkan_host", &["-lvulkan", "-lX11"]);
+    let server = Server::start();
+    let out = program.folder.join("picture.ppm");
+    let shown = ["1", "4"].map(|samples| {
+        let mut host = Command::new(&program.path);
+        host.args(["--window", "--samples", samples, "--check"]).arg(&out).env("DISPLAY", &server.display);
+        let said = run(&mut host);
+        assert!(said.ends_with("ok\n"), "{said}");
+        picture(&out)
+    });
+    let [(width, height, one), (.., four)] = shown;
+    assert_eq!((width, height, one.len(), four.len()), (640, 360, 640 * 360 * 3, 640 * 360 * 3));
+    // The host's edges lie between pixels, so sample by sample the picture is the same, to rounding.
+    let worst = one.iter().zip(&four).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(worst <= Some(1), "{worst:?} of 255 between one sample a pixel and four");
 }
 
 #[test]
