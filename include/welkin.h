@@ -257,6 +257,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_GROUND_GRID 46
 /** wk_ground_texture */
 #define WK_STRUCT_TYPE_GROUND_TEXTURE 47
+/** wk_frame_light */
+#define WK_STRUCT_TYPE_FRAME_LIGHT 60
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -731,6 +733,9 @@ wk_status wk_surface_config_init(wk_surface_config *out,
  * HOST_CONTEXT: Welkin draws in the host's own context; every piece of state it touches is saved, set, and put back.
  * Any framebuffer can be a target, the window's (0) too, by copies in and out.
  *
+ * One device serves all windows whose contexts share objects in SHARED mode, with a view each; in HOST_CONTEXT mode a device
+ * belongs to one context.
+ *
  * When a call begins the host's context is current on the calling thread, and so it is when it returns. Needed: OpenGL
  * 3.3 or OpenGL ES 3.0, core or compatibility; compute shaders are used from 4.3 (ES 3.1) on.
  * ====================================================================================================
@@ -858,18 +863,19 @@ typedef struct wk_opengl_target {
     /** What is drawn into. Default none. */
     wk_opengl_image color;
     /**
-     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+     * The host's depth, with as many samples as `color`; none (the default) shows the sky in every pixel. Where `color` is a
+     * framebuffer, the same one; else another image.
      */
     wk_opengl_image depth;
     /**
      * A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
      */
     wk_opengl_image mask;
-    /** Pixels; must be the images' own. Default 0; must be given. */
+    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
     uint32_t width;
-    /** Pixels; must be the images' own. Default 0; must be given. */
+    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
     uint32_t height;
-    /** A number that the host raises when it makes an object anew under an old name. Default 0. */
+    /** A number that the host raises when it makes an object anew under an old name; it never falls. Default 0. */
     uint64_t generation;
     /** Default WK_OPENGL_MULTISAMPLE_EACH. */
     wk_opengl_multisample multisample;
@@ -895,7 +901,9 @@ typedef struct wk_opengl_target {
 /** Which context is asked for. */
 typedef uint32_t wk_opengl_context;
 
-/** The one the host draws in. */
+/**
+ * The one the host draws in: with several windows, the one that was current when the call came (keep it for each thread).
+ */
 #define WK_OPENGL_CONTEXT_HOST 0
 /** The one the host made for Welkin, sharing objects with its own. */
 #define WK_OPENGL_CONTEXT_WELKIN 1
@@ -3070,7 +3078,7 @@ typedef uint32_t wk_frame_flags;
 typedef uint32_t wk_color_space;
 
 /**
- * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which TONE may tone-map the picture.
+ * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
  */
 #define WK_COLOR_SCENE_LINEAR 0
 /** Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
@@ -3149,6 +3157,48 @@ typedef struct wk_frame {
     /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
 }
 
+/**
+ * Light for the host's own shading of a frame, in the numbers of its colour_space: a surface of colour c whose normal is n
+ * shows c * (ambient + direct * max(dot(n, direction), 0)).
+ *
+ * Scene-linear: exact for matt surfaces. Display spaces: the tone curve at the frame's exposure is in it, so that one pair of
+ * lights cannot be right for every surface; it is for a grey card of 18 %, in shade and facing the sun. For
+ * WK_COLOR_DISPLAY_LINEAR c is linear and the host (or its sRGB framebuffer) encodes what comes out; for
+ * WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
+ */
+typedef struct wk_frame_light {
+    /** sizeof(wk_frame_light) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FRAME_LIGHT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Unit vector in the host's world towards the sun, or towards the moon where that is brighter. */
+    double direction[3];
+    /** Its direct light on a surface that faces it, after air, clouds and fog; 0 below the horizon. */
+    double direct[3];
+    /** Light of sky, clouds and fog on level ground. */
+    double ambient[3];
+    /**
+     * Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+     */
+    double ambient_below[3];
+    /** Display units per cd/m^2 with which Welkin draws the frame. */
+    double exposure;
+} wk_frame_light;
+
+/** Every field of `wk_frame_light` at its default. */
+#define WK_FRAME_LIGHT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_frame_light), \
+    /* struct_type */ WK_STRUCT_TYPE_FRAME_LIGHT, \
+    /* next */ NULL, \
+    /* direction */ { 0.0, 0.0, 0.0 }, \
+    /* direct */ { 0.0, 0.0, 0.0 }, \
+    /* ambient */ { 0.0, 0.0, 0.0 }, \
+    /* ambient_below */ { 0.0, 0.0, 0.0 }, \
+    /* exposure */ 0.0 \
+}
+
 /** The images of a frame on an own device. */
 typedef struct wk_own_target {
     /** sizeof(wk_own_target) of your header. */
@@ -3179,6 +3229,17 @@ typedef struct wk_own_target {
 }
 
 /**
+ * Says how the host should light its own objects in a frame, before it draws them: of `frame` the camera's position, the
+ * colour_space with cd_m2_per_unit, and the exposure count; its target is not looked at.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name.
+ */
+WK_API
+wk_status wk_context_get_frame_light(const wk_context *context,
+                                     const wk_frame *frame,
+                                     wk_frame_light *out_light);
+
+/**
  * Writes the default of every field: the same bytes as `WK_FRAME_INIT`. `struct_size` is `sizeof(wk_frame)`
  * as the caller was compiled, and is stored in the struct.
  */
@@ -3189,6 +3250,14 @@ WK_API wk_status wk_frame_init(wk_frame *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FRAME_LIGHT_INIT`. `struct_size` is `sizeof(wk_frame_light)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_frame_light_init(wk_frame_light *out,
+                              uint32_t struct_size);
 
 /*
  * ====================================================================================================
@@ -3203,7 +3272,7 @@ WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
  *   MEDIUM      fog and aerial perspective on all that was drawn so far
  *   PARTICLES   what falls and flies
  *   LENS        water on the windscreen
- *   TONE        exposure, tone curve, encoding and dither of the whole picture
+ *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
  *
  * The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
  * in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
@@ -3247,8 +3316,9 @@ typedef uint32_t wk_stage_flags;
 /** Water on the windscreen. */
 #define WK_STAGE_LENS 32
 /**
- * Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
- * others are encoded as sRGB here.
+ * Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
+ * values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
+ * that: TONE does nothing then, alone or among other stages.
  */
 #define WK_STAGE_TONE 64
 /** Everything in one call. */
@@ -3401,7 +3471,7 @@ WK_API wk_status wk_view_destroy(wk_view *view);
 
 /**
  * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
- * After an error nothing was drawn by this call.
+ * What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
  * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
  * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
  * the field's name; WK_ERROR_DEVICE_LOST.

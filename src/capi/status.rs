@@ -142,6 +142,8 @@ pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 /// wk_ground_texture
 pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
+/// wk_frame_light
+pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -9,7 +9,7 @@
 //!   MEDIUM      fog and aerial perspective on all that was drawn so far
 //!   PARTICLES   what falls and flies
 //!   LENS        water on the windscreen
-//!   TONE        exposure, tone curve, encoding and dither of the whole picture
+//!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
 //!
 //! The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
 //! in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
@@ -62,8 +62,9 @@ pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 /// Water on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
-/// Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
-/// others are encoded as sRGB here.
+/// Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
+/// values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
+/// that: TONE does nothing then, alone or among other stages.
 pub const WK_STAGE_TONE: wk_stage_flags = 64;
 /// Everything in one call.
 pub const WK_STAGE_ALL: wk_stage_flags = 127;
@@ -289,7 +290,7 @@ pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
 }
 
 /// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
-/// After an error nothing was drawn by this call.
+/// What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
 /// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
 /// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
 /// the field's name; WK_ERROR_DEVICE_LOST.

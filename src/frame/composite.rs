@@ -1,9 +1,6 @@
 //! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
 
-use std::{
-    collections::HashMap,
-    sync::{Arc, OnceLock},
-};
+use std::{collections::HashMap, sync::Arc};
 
 use super::{
     Frame,
@@ -98,8 +95,6 @@ pub(super) struct Composite {
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     none: wgpu::TextureView,
     reads_samples: bool,
-    /// Made when first needed: wgpu's OpenGL backend can adopt multisampled textures but not make them.
-    none_multi: OnceLock<wgpu::TextureView>,
 }
 
 fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry {
@@ -144,20 +139,15 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
 }
 
 /// A 1 x 1 texture that stands for a depth or mask the host does not give.
-fn none(device: &wgpu::Device, samples: u32) -> wgpu::TextureView {
-    let usage = if samples > 1 {
-        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT
-    } else {
-        wgpu::TextureUsages::TEXTURE_BINDING
-    };
+fn none(device: &wgpu::Device) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("none"),
         size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
         mip_level_count: 1,
-        sample_count: samples,
+        sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Rgba8Unorm,
-        usage,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
     texture.create_view(&Default::default())
@@ -172,9 +162,8 @@ impl Composite {
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: HashMap::new(),
-            none: none(&device.device, 1),
+            none: none(&device.device),
             reads_samples: multi,
-            none_multi: OnceLock::new(),
         }
     }
 
@@ -202,11 +191,8 @@ impl Composite {
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);
         let mask_view = host.mask_layer().map(Layer::view);
-        let no_depth = if sampling == Sampling::Multi {
-            self.none_multi.get_or_init(|| none(&device.device, 4))
-        } else {
-            &self.none
-        };
+        // Not read where there is no depth. wgpu's OpenGL backend can adopt multisampled textures but not make them.
+        let no_depth = if sampling == Sampling::Multi { &color_view } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {

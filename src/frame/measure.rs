@@ -178,6 +178,12 @@ impl<'a> Recording<'a> {
         self.watch.is_some()
     }
 
+    /// Submits what was recorded so far.
+    pub fn flush(&mut self) {
+        let next = self.device.device.create_command_encoder(&Default::default());
+        self.device.submit(std::mem::replace(self.encoder, next));
+    }
+
     /// What was recorded since the last effect is `effect`'s: where it is measured, it is submitted and waited for. If
     /// it did not run, the time goes to nobody.
     pub fn ends(&mut self, effect: Effect, ran: bool) -> Result<()> {

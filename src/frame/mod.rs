@@ -4,9 +4,11 @@
 //! that neighbour each other in one call are fused into one full-screen draw.
 
 mod areas;
+mod check;
 mod composite;
 mod froxels;
 mod lens;
+mod light;
 mod measure;
 mod planned;
 mod rain;
@@ -16,9 +18,11 @@ mod surface;
 mod target;
 pub mod tone;
 mod uniform;
+mod unit;
 mod view;
 
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
+pub use light::FrameLight;
 pub use measure::{Costs, Effect, RainReport, Report};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};

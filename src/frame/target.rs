@@ -33,7 +33,8 @@ impl Stages {
     pub const PARTICLES: Self = Self(16);
     /// Water on the windscreen.
     pub const LENS: Self = Self(32);
-    /// Exposure, tone curve, display encoding and dither of the whole picture.
+    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Nothing in the other colour spaces, where the
+    /// host has done that.
     pub const TONE: Self = Self(64);
     /// Everything at once.
     pub const ALL: Self = Self(127);
@@ -41,6 +42,11 @@ impl Stages {
     /// Whether any stage of `other` is in the set.
     pub fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
+    }
+
+    /// Whether any of them may draw into the target.
+    pub(super) fn draw(self) -> bool {
+        self.without(Self::PREPARE) != Self(0)
     }
 
     /// This set without `other`.
@@ -93,8 +99,12 @@ pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
              Rg11b10Ufloat, Rgba16Float, Rgba32Float"
         )));
     }
-    let needed = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-    check_usage("color", texture, needed)
+    check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)
+}
+
+/// Whether wgpu can copy `color`; else its host copies it between submissions.
+pub(super) fn can_copy(color: &wgpu::Texture) -> bool {
+    color.usage().contains(wgpu::TextureUsages::COPY_SRC)
 }
 
 /// Checks that a depth texture can be read and matches the colour target.
@@ -172,6 +182,14 @@ pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::
         usage,
         view_formats: &[],
     })
+}
+
+/// Whether `copy` serves as [`color_copy`] of `color`.
+pub(super) fn is_copy_of(copy: &wgpu::Texture, color: &wgpu::Texture) -> bool {
+    copy.usage().contains(wgpu::TextureUsages::COPY_DST)
+        && (copy.width(), copy.height()) == (color.width(), color.height())
+        && copy.format() == color.format()
+        && copy.sample_count() == color.sample_count()
 }
 
 fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages) -> Result<()> {

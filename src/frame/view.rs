@@ -5,10 +5,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use glam::{DMat4, DVec3};
-
 use super::{
     Frame, FrameFlags,
+    check::rays,
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
@@ -16,19 +15,20 @@ use super::{
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Sampling, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
+    target::{ColorSpace, Sampling, Stages, can_be_apart, can_copy, color_copy, is_copy_of},
     uniform::{FrameUniform, uniform},
+    unit::UnitWatch,
 };
 use crate::{
     context::{Context, Scene},
-    error::{Error, Result, Status},
+    error::{Error, Result},
     fog::{FogKind, FogUniform, FogVariant},
     glass::Glass,
     gpu::{Device, KeptLayer, Layer, is_kept},
     ground::GroundUniform,
     plan::{Planner, Present},
     rain::{Around, RainSettings},
-    scene::{Camera, ViewRays},
+    scene::ViewRays,
     sky::SkyVolume,
 };
 
@@ -61,7 +61,8 @@ pub struct View {
     pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
-    recorded: Stages,
+    unit: UnitWatch,
+    pub(super) recorded: Stages,
     pub(super) report: Report,
     /// What the last measured call took, its wait for earlier work included.
     last_call: Option<Duration>,
@@ -108,6 +109,7 @@ impl View {
             planner,
             planned_for: None,
             light_scale: 0.0,
+            unit: UnitWatch::default(),
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
             last_call: None,
@@ -152,6 +154,8 @@ impl View {
     /// twice or late, [`Status::DeviceLost`]. After an error nothing was drawn by this call.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
+        self.check_call(frame, stages)?;
+        self.check_images(frame, stages)?;
         let _entered = device.enter()?;
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
@@ -196,6 +200,13 @@ impl View {
                  timestamps",
             ));
         }
+        if frame.color.is_some_and(|c| !can_copy(c)) {
+            return Err(Error::unsupported(
+                "color without COPY_SRC where the host submits: the picture is read between submissions; use record",
+            ));
+        }
+        self.check_call(frame, stages)?;
+        self.check_images(frame, stages)?;
         let device = self.device.clone();
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
     }
@@ -207,19 +218,15 @@ impl View {
         stages: Stages,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        Stages::from_bits(stages.0)?;
-        self.check_order(frame.frame_id, stages)?;
-        frame.camera.validate()?;
         let scene = context.scene_at(frame.camera.position, context.time_s())?;
+        let rays = stages.draw().then(|| rays(frame, &scene)).transpose()?;
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
         self.rain.look(context, &scene, frame.camera.position)?;
         let stages = if self.rain.shows() { stages } else { stages.without(Stages::PARTICLES) };
         let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
         let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
-        let drawn = stages.without(Stages::PREPARE) != Stages(0);
-        let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };
-        self.check_lens(frame, stages)?;
+        let rays = rays.filter(|_| stages.draw());
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
@@ -265,53 +272,6 @@ impl View {
         to.ends(Effect::SkyView, drawn)?;
         self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
         Ok(())
-    }
-
-    fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
-        if frame_id != self.report.frame_id || self.recorded == Stages(0) {
-            return Ok(());
-        }
-        let last = 31 - self.recorded.0.leading_zeros();
-        let first = stages.0.trailing_zeros();
-        if first <= last {
-            return Err(Error::new(
-                Status::WrongOrder,
-                format!(
-                    "stages {:#x} of frame_id {frame_id} come after {:#x}: each stage once, in rising order of its bit",
-                    stages.0, self.recorded.0
-                ),
-            ));
-        }
-        Ok(())
-    }
-
-    /// Checks everything a draw needs before anything is recorded.
-    fn check_targets(&self, frame: &Frame<'_>, stages: Stages, scene: &Scene) -> Result<ViewRays> {
-        let color = frame.color.ok_or_else(|| Error::range("color", "a texture for stages that draw", "none"))?;
-        check_color(color)?;
-        if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
-            return Err(Error::unsupported(
-                "color.samples above 1: this device cannot shade per sample; resolve first",
-            ));
-        }
-        if let Some(depth) = frame.depth {
-            check_depth(depth, color)?;
-        }
-        if let Some(mask) = frame.mask {
-            check_mask(mask, color)?;
-        }
-        frame.validate()?;
-        if stages.has(Stages::TONE) && stages != Stages::ALL && frame.color_space != ColorSpace::SceneLinear {
-            return Err(Error::range(
-                "stages",
-                "without TONE for a host whose colour is tone-mapped already (color_space is not scene-linear)",
-                format!("{:#x}", stages.0),
-            ));
-        }
-        // The camera's axes are turned to the local east-north-up, in which the shaders work.
-        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
-        let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
-        ViewRays::new(&local, &frame.depth_mapping)
     }
 
     fn draw(
@@ -377,6 +337,7 @@ impl View {
             variant.stages = variant.stages.without(Stages::PARTICLES);
         }
         let [water, heights] = context.terrain_views(variant.stages.has(Stages::SURFACE));
+        self.hold_copy(color)?;
         self.bind(frame, layer, [drops, water, heights])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
@@ -410,10 +371,12 @@ impl View {
             let block = surface::uniform(frame, color, context, scene, &fog)?;
             self.device.queue.write_buffer(&self.ground, 0, bytemuck::bytes_of(&block));
         }
-        let Some((_, group, target)) = &self.bound else { return Ok(()) };
-        if let Some(copy) = &self.copy {
-            layer.copy(to.encoder, copy);
+        self.take_picture(layer, to)?;
+        if variant.stages.has(Stages::MEDIUM) {
+            let white = scene.ground.total_lux / std::f64::consts::PI;
+            self.unit.watch(&self.device, to.encoder, frame, (white, self.recorded.has(Stages::BACKGROUND)));
         }
+        let Some((_, group, target)) = &self.bound else { return Ok(()) };
         let mut composite = self.shared.composite()?;
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
@@ -471,22 +434,36 @@ impl View {
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
-    /// Makes the colour copy anew if it is not like the host's colour.
-    pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) {
-        let fits = self.copy.as_ref().is_some_and(|c| {
-            (c.width(), c.height()) == (color.width(), color.height())
-                && c.format() == color.format()
-                && c.sample_count() == color.sample_count()
+    /// Makes the colour copy anew if it does not serve the host's colour.
+    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<()> {
+        let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
+        let fits = self.copy.as_ref().is_some_and(|c| match &reading {
+            Some(reading) => c == reading,
+            None => is_copy_of(c, color),
         });
         if !fits {
             // The old one is bound there.
             self.bound = None;
-            self.copy = Some(color_copy(&self.device.device, color));
+            self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
             self.report.bytes = self.bytes();
         }
+        Ok(())
     }
 
-    /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
+    /// Brings the colour copy up to date with all that was recorded.
+    pub(super) fn take_picture(&mut self, color: Layer<'_>, to: &mut Recording<'_>) -> Result<()> {
+        self.hold_copy(color.texture)?;
+        if !can_copy(color.texture) {
+            to.flush();
+            return self.device.refresh(color.texture);
+        }
+        if let Some(copy) = &self.copy {
+            color.copy(to.encoder, copy);
+        }
+        Ok(())
+    }
+
+    /// Makes the bind group anew if the host's textures are others than last time.
     fn bind(&mut self, frame: &Frame<'_>, color: Layer<'_>, own: OwnViews) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
             color == b.color
@@ -497,7 +474,6 @@ impl View {
         if same {
             return Ok(());
         }
-        self.hold_copy(color.texture);
         let Some(copy) = &self.copy else { return Ok(()) };
         let blocks = [&self.uniform, &self.fog, &self.ground];
         let group =

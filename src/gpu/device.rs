@@ -2,7 +2,7 @@
 
 use std::sync::{
     Arc, Mutex, MutexGuard, PoisonError,
-    atomic::{AtomicBool, Ordering},
+    atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
 use crate::error::{Error, Result, Status};
@@ -51,6 +51,17 @@ pub trait HostBinding: Send + Sync {
     fn enter(&self) -> Result<()>;
     /// Called after the last one; must not fail.
     fn leave(&self);
+    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself; [`HostBinding::refresh`] fills it.
+    fn reading(&self, _color: &wgpu::Texture) -> Option<wgpu::Texture> {
+        None
+    }
+    /// Brings [`HostBinding::reading`] of `color` up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// A copy that the host's context refuses.
+    fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
+        Ok(())
+    }
     /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
     fn closing(&self);
     /// Called once, still entered, when the device's own objects are gone.
@@ -128,6 +139,7 @@ pub struct Device {
     caps: Caps,
     faults: Arc<Faults>,
     submission: Mutex<()>,
+    submissions: AtomicU64,
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
@@ -216,6 +228,7 @@ impl Device {
             caps,
             faults,
             submission,
+            submissions: AtomicU64::new(0),
             binding,
             _exit: exit,
         };
@@ -239,6 +252,19 @@ impl Device {
             binding.enter()?;
         }
         Ok(Entered(self.binding.as_deref()))
+    }
+
+    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself.
+    pub(crate) fn reading(&self, color: &wgpu::Texture) -> Option<wgpu::Texture> {
+        self.binding.as_ref().and_then(|b| b.reading(color))
+    }
+
+    /// Brings [`Device::reading`] of `color` up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// A copy that the host's context refuses.
+    pub(crate) fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
+        self.binding.as_ref().map_or(Ok(()), |b| b.refresh(color))
     }
 
     /// Whether the native device is gone.
@@ -281,7 +307,13 @@ impl Device {
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();
+        self.submissions.fetch_add(1, Ordering::Relaxed);
         self.queue.submit([commands]);
+    }
+
+    /// How often work was submitted here so far.
+    pub fn submissions(&self) -> u64 {
+        self.submissions.load(Ordering::Relaxed)
     }
 
     /// The right to submit, until the answer is dropped.

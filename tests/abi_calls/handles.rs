@@ -125,6 +125,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_ambient", "context", false, |h| unsafe {
             wk_context_get_ambient(h.cast(), null(), null_mut())
         }),
+        case("wk_context_get_frame_light", "context", false, |h| unsafe {
+            wk_context_get_frame_light(h.cast(), null(), null_mut())
+        }),
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),

@@ -232,6 +232,61 @@ fn ambient_light_is_asked_for_with_a_place() {
 }
 
 #[test]
+fn a_host_asks_how_to_light_a_frame_in_its_own_numbers() {
+    let world = World::new();
+    let noon = wk_given_direction { azimuth_deg: 90.0, elevation_deg: 30.0, ..init("wk_given_direction") };
+    let night = wk_given_direction { elevation_deg: -40.0, ..noon };
+    let light = |color_space, unit| {
+        let mut light = init::<wk_frame_light>("wk_frame_light");
+        let frame = wk_frame { color_space, cd_m2_per_unit: unit, position_m: EYE, ..init("wk_frame") };
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_context_get_frame_light(world.context, &frame, &mut light) }, WK_OK, "{}", message());
+        light
+    };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_context_set_sun(world.context, &noon) }, WK_OK);
+    let mut arriving = [wk_ground_light { sun_lux: [0.0; 3], moon_lux: [0.0; 3], sky_lux: [0.0; 3], total_lux: 0.0 }];
+    let size = size_of::<wk_ground_light>() as u32;
+    // SAFETY: live pointers with the sizes given.
+    unsafe { assert_eq!(wk_context_get_light(world.context, &EYE, 1, 24, arriving.as_mut_ptr(), size), WK_OK) };
+    let scene = light(WK_COLOR_SCENE_LINEAR, 50.0);
+    for i in 0..3 {
+        let close = |a: f64, lux: f64| (a * std::f64::consts::PI * 50.0 / lux - 1.0).abs() < 1e-9;
+        assert!(close(scene.direct[i], arriving[0].sun_lux[i]) && close(scene.ambient[i], arriving[0].sky_lux[i]));
+    }
+    // East is x, up is z.
+    let [x, y, z] = scene.direction;
+    assert!((x - 0.75_f64.sqrt()).abs() < 1e-6 && y.abs() < 1e-6 && (z - 0.5).abs() < 1e-6, "{:?}", scene.direction);
+    let linear = light(WK_COLOR_DISPLAY_LINEAR, 1.0);
+    let encoded = light(WK_COLOR_DISPLAY_SRGB, 1.0);
+    for i in 0..3 {
+        // A grey card in shade and in the sun, by the exponential curve that a context begins with.
+        let grey = |lux: f64| 1.0 - (-linear.exposure * 0.18 * lux / std::f64::consts::PI).exp();
+        let (sky, sun) = (arriving[0].sky_lux[i], arriving[0].sun_lux[i]);
+        assert!((0.18 * linear.ambient[i] - grey(sky)).abs() < 1e-9);
+        assert!((0.18 * (linear.ambient[i] + linear.direct[i]) - grey(sky + sun)).abs() < 1e-9);
+        let srgb = |v: f64| 1.055 * v.powf(1.0 / 2.4) - 0.055;
+        assert!((srgb(0.18) * encoded.ambient[i] - srgb(grey(sky))).abs() < 1e-9);
+        assert!((srgb(0.18) * (encoded.ambient[i] + encoded.direct[i]) - srgb(grey(sky + sun))).abs() < 1e-9);
+        // Neither black nor burnt out: a legacy host can use it as it is.
+        let shown = srgb(0.18) * (encoded.ambient[i] + encoded.direct[i]);
+        assert!((0.25..=0.9).contains(&shown), "{shown}");
+        assert!(linear.ambient_below[i] > 0.0 && linear.ambient_below[i] < linear.ambient[i] + linear.direct[i]);
+    }
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_set_sun(world.context, &night), WK_OK);
+        let mut light = init::<wk_frame_light>("wk_frame_light");
+        let wrong = wk_frame { cd_m2_per_unit: 0.0, ..init("wk_frame") };
+        refused(
+            wk_context_get_frame_light(world.context, &wrong, &mut light),
+            "frame.cd_m2_per_unit must be in (0, 1e9]",
+        );
+    }
+    assert_eq!(light(WK_COLOR_SCENE_LINEAR, 1.0).direct[1].max(0.1), 0.1, "no sun below the horizon");
+}
+
+#[test]
 fn fog_laws_of_older_systems_are_checked_and_say_how_far_they_reach() {
     let world = World::new();
     let linear = wk_fog_law { curve: WK_FOG_CURVE_LINEAR, start_m: 100.0, end_m: 900.0, ..init("wk_fog_law") };

@@ -99,7 +99,7 @@ fn depth_formats() {
 }
 
 /// The host's multisampled image, averaged by the host into one it can read.
-fn resolved(gl: &glow::Context, from: glow::Framebuffer) -> Vec<[u8; 4]> {
+pub fn resolved(gl: &glow::Context, from: glow::Framebuffer) -> Vec<[u8; 4]> {
     let to = framebuffer(gl, image_of(texture(gl, glow::RGBA8)), None);
     let (w, h) = (WIDTH as i32, HEIGHT as i32);
     // SAFETY: the host's context is current.

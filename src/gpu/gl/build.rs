@@ -25,7 +25,7 @@ pub(super) struct Workshop<'a> {
 
 /// An OpenGL object that a wgpu texture stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Object {
+pub(super) enum Object {
     /// Name and target.
     Texture(u32, u32),
     Renderbuffer(u32),
@@ -37,6 +37,15 @@ impl Object {
     fn name(self) -> u32 {
         let (Self::Texture(name, _) | Self::Renderbuffer(name) | Self::Framebuffer(name)) = self;
         name
+    }
+
+    /// Attaches it to the bound framebuffer.
+    pub(super) fn attach(self, api: &Api, attachment: u32) {
+        match self {
+            Self::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
+            Self::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
+            Self::Framebuffer(_) => {}
+        }
     }
 
     fn is_multisampled_texture(self) -> bool {
@@ -104,6 +113,7 @@ impl Workshop<'_> {
             return Err(Error::range("target.depth", &accepted, other.facts.samples));
         }
         let resolve = self.resolves(desc.multisample, samples)?;
+        let mask_part = desc.mask.map(|image| self.mask_part(desc, image)).transpose()?;
         let samples = if resolve { 1 } else { samples };
         for part in &mut parts {
             self.provide_copy(part, resolve, samples, made)?;
@@ -120,9 +130,8 @@ impl Workshop<'_> {
             Some(part) => self.depth(part, samples, through)?,
             None => (None, None),
         };
-        let mask = match desc.mask {
-            Some(image) => {
-                let part = self.mask_part(desc, image)?;
+        let mask = match mask_part {
+            Some(part) => {
                 let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
                 parts.push(part);
                 Some(texture)
@@ -276,11 +285,8 @@ impl Workshop<'_> {
                 Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
                 Side::Depth => DEPTH_ATTACHMENT,
             };
-            match *image {
-                Object::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
-                Object::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
-                Object::Framebuffer(_) => {}
-            }
+            image.attach(api, attachment);
+            made.attached.push((framebuffer, attachment, *image));
         }
         if images.iter().all(|(side, ..)| *side == Side::Depth) {
             let none = NONE;
