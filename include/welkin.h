@@ -858,7 +858,9 @@ typedef struct wk_opengl_target {
     /** What is drawn into. Default none. */
     wk_opengl_image color;
     /**
-     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one. It has
+     * as many samples as `color`. Where that has one (a resolved picture) depth may have more, not on OpenGL ES: one sample of
+     * each pixel counts.
      */
     wk_opengl_image depth;
     /**

@@ -149,7 +149,9 @@ pub struct wk_opengl_target {
     pub next: *const c_void,
     /// What is drawn into. Default none.
     pub color: wk_opengl_image,
-    /// The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+    /// The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one. It has
+    /// as many samples as `color`. Where that has one (a resolved picture) depth may have more, not on OpenGL ES: one sample of
+    /// each pixel counts.
     pub depth: wk_opengl_image,
     /// A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
     pub mask: wk_opengl_image,

@@ -99,14 +99,16 @@ impl Workshop<'_> {
             parts.push(self.part(desc, image, Side::Depth)?);
         }
         let samples = parts[0].facts.samples;
-        if let Some(other) = parts.iter().find(|p| p.facts.samples != samples) {
+        // Depth of several samples beside a resolved picture is copied to depth of one; OpenGL ES cannot do that.
+        let resolved = samples == 1 && !self.ask.info.is_es();
+        if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
             let accepted = format!("an image with as many samples as target.color, {samples}");
             return Err(Error::range("target.depth", &accepted, other.facts.samples));
         }
         let resolve = self.resolves(desc.multisample, samples)?;
         let samples = if resolve { 1 } else { samples };
         for part in &mut parts {
-            self.provide_copy(part, resolve, samples, made)?;
+            self.provide_copy(part, part.facts.samples > samples, samples, made)?;
         }
         // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
         let attached = || parts.iter().map(|p| (p.side, p.attached(samples), p.facts.internal));
