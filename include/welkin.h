@@ -1537,7 +1537,10 @@ typedef struct wk_weather {
     double aerosol_single_scattering_albedo;
     /** Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity. */
     double aerosol_asymmetry;
-    /** Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. */
+    /**
+     * Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. Held to the station's altitude over
+     * 4.6 at least (435 m at 2000 m): the sky counts densities from the sea.
+     */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
     double fog_top_m;
@@ -2157,7 +2160,7 @@ typedef struct wk_given_direction {
 }
 
 /**
- * Changes the weather, beginning at `start_time_s` and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
+ * Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
  * have a wk_weather_overrides in its chain. Copied during the call.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
@@ -2186,7 +2189,8 @@ WK_API wk_status wk_context_update(wk_context *context, double time_s);
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
 
 /**
- * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. Years -2000 to 6000.
+ * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
+ * last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
  * Thread: any.
  */
 WK_API
@@ -2371,7 +2375,11 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * Queries: conditions
  *
  * What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
- * come: closed form, no device is asked. Heights are above the station unless they say otherwise.
+ * come: closed form, no device is asked. Heights are above the station unless they say otherwise. Every number is continuous in
+ * time while the weather changes, and of a layer that comes or goes the geometry too.
+ *
+ * A position, here and in every other function, is a place if it lies within 1e12 m of the world's origin and at an altitude in
+ * [-1e4, 1e9] m above the sea. At other positions nothing is answered.
  * ====================================================================================================
  */
 
@@ -2423,7 +2431,9 @@ typedef struct wk_conditions {
     double fog_softness_m;
     /** Part of the ground that it covers, fraction. */
     double fog_coverage;
-    /** Part of the sky hidden by all layers together, fraction. */
+    /**
+     * Part of the sky hidden by all layers together, fraction. During a change never less and never more than at both its ends.
+     */
     double cloud_cover;
     /** Rain, mm/h. */
     double rain_mm_h;
@@ -2973,7 +2983,8 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * What falls at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+ * What falls at a place of the host's world and a simulation time. Above the clouds that it falls from there is none: above
+ * their bases, on the mean over what covers the sky.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -4050,7 +4061,7 @@ typedef struct wk_rain_area {
     double velocity_m_s[2];
     /**
      * Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
-     * timeline knows. Default 0.
+     * timeline knows, but for 0, from which the wind's way is counted. Default 0.
      */
     double at_s;
     /** Default WK_AREA_MOTION_WITH_WIND. */

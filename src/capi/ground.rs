@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    conditions::position,
+    conditions::{of_position, position},
     context::{ContextObject, wk_context},
     layout::{self, init_struct, struct_size},
     status::*,
@@ -129,7 +129,8 @@ pub unsafe extern "C" fn wk_context_get_ground(
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ground", out_ground)?) };
-        place.set(&wk_ground::of(&object.read().ground_at(DVec3::from_array(at))?));
+        let ground = object.read().ground_at(DVec3::from_array(at)).map_err(|e| of_position("position_m", e))?;
+        place.set(&wk_ground::of(&ground));
         Ok(Status::Ok)
     })
 }

@@ -52,7 +52,7 @@ impl wk_given_direction {
     };
 }
 
-/// Changes the weather, beginning at `start_time_s` and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
+/// Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
 /// have a wk_weather_overrides in its chain. Copied during the call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
@@ -99,7 +99,8 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
     })
 }
 
-/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. Years -2000 to 6000.
+/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
+/// last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(

@@ -27,7 +27,7 @@ use std::{
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     device_cell::DeviceCell,
     frame::{WK_FRAME_MEASURE, wk_frame},
     handles::{self, Object},
@@ -310,7 +310,8 @@ pub unsafe extern "C" fn wk_view_record(
         object.cell.drain();
         let measured = (c.flags & WK_FRAME_MEASURE != 0).then(Instant::now);
         // SAFETY: as above.
-        unsafe { host::record(call, &object, &c, stages)? };
+        unsafe { host::record(call, &object, &c, stages) }
+            .map_err(|e| renamed("frame.camera.position ", "frame.position_m ", e))?;
         if let Some(start) = measured {
             object.lock().add_hand_over(start);
         }

@@ -175,8 +175,7 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place.
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
-        let frame = self.desc.world.frame_at(position);
-        frame.place.validate()?;
+        let frame = self.desc.world.place_at("position", position)?;
         if let Some((cell, puddles)) = self.terrain_at(position) {
             return Ok(GroundAt {
                 water_mm: cell.depth_mm(),

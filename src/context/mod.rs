@@ -47,7 +47,7 @@ use crate::{
         ephemeris::Ephemeris,
         sun::{Utc, direction},
     },
-    weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
+    weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid},
 };
 
@@ -110,9 +110,6 @@ impl GivenDirection {
         direction(self.azimuth_deg, self.elevation_deg)
     }
 }
-
-/// Largest distance of simulation time from 0, s.
-const MAX_TIME_S: f64 = 1e10;
 
 /// The weather, the time and the place that all views of a simulator share.
 ///
@@ -442,7 +439,7 @@ impl Context {
     /// [`Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
     /// the timeline still knows ([`Timeline::known_from_s`]).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
-        self.desc.world.frame_at(position).place.validate()?;
+        self.desc.world.place_at("position", position)?;
         self.weather_at(time_s)
     }
 

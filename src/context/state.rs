@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Context, GivenDirection, GroundModel, areas::KeptArea, ground::GroundState, terrain_saved::SavedGround};
 use crate::{
-    error::{Error, Result, Status, check_range},
+    error::{Error, Result, Status, check_range, toml_fault},
     rain::MAX_AREAS,
     sky::sun::Utc,
     weather::Timeline,
@@ -88,7 +88,7 @@ impl Context {
     pub fn load(&mut self, bytes: &[u8]) -> Result<()> {
         let parse = |e: &dyn std::fmt::Display| Error::new(Status::Parse, format!("saved state: {e}"));
         let text = std::str::from_utf8(bytes).map_err(|e| parse(&e))?;
-        let saved: Saved = toml::from_str(text).map_err(|e| parse(&e))?;
+        let saved: Saved = toml::from_str(text).map_err(|e| parse(&toml_fault(text, &e)))?;
         if saved.version != VERSION {
             return Err(parse(&format!("version must be {VERSION}, got {}", saved.version)));
         }

@@ -330,7 +330,7 @@ impl Context {
             return Ok(());
         };
         grid.validate()?;
-        self.desc.world.frame_at(grid.origin).place.validate()?;
+        self.desc.world.place_at("ground_grid.origin_m", grid.origin)?;
         if self.host_ground.as_ref().is_some_and(|held| held.terrain.grid == grid) {
             return Ok(());
         }

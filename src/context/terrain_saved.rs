@@ -72,7 +72,7 @@ impl SavedGround {
         let (origin, cell_m) = (DVec3::from(self.origin_m), self.cell_m);
         let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m: heights_m.collect::<Option<_>>()? };
         grid.validate().ok()?;
-        world.frame_at(origin).place.validate().ok()?;
+        world.place_at("origin", origin).ok()?;
         let mut held = HostGround::new(grid, world);
         if let Some([film, soaked, hollows]) = &self.water {
             let floats = |text: &str, count| Some(values(text, count)?.into_iter().map(f64::from_bits));

@@ -24,8 +24,7 @@ impl Context {
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn wind_at(&self, position: DVec3, time_s: f64) -> Result<WindAt> {
-        let place = self.desc.world.frame_at(position).place;
-        place.validate()?;
+        let place = self.desc.world.place_at("position", position)?.place;
         let conditions = self.weather_at(time_s)?;
         let height_m = place.altitude_m - conditions.air.station_altitude_m;
         let wind = self.blowing(time_s)?.at_height(&conditions.wind, height_m);

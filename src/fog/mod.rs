@@ -127,9 +127,9 @@ pub enum Profile {
         base_m: f64,
         /// Where the upper flank is half-way, m.
         top_m: f64,
-        /// Height of the lower flank, m, \[0, 1e4\].
+        /// Height of the lower flank, m, \[0, 1e5\].
         base_softness_m: f64,
-        /// Height of the upper flank, m, \[0, 1e4\].
+        /// Height of the upper flank, m, \[0, 1e5\]: dust thins out to twice its scale height, 40 km at most.
         top_softness_m: f64,
     },
     /// Falls as exp(-(h - reference)/scale); not cut off above or below.
@@ -153,6 +153,15 @@ pub enum Phase {
     HenyeyGreenstein {
         /// Mean cosine of the scattering angle.
         g: f64,
+    },
+    /// Lobes so far between those of droplets and of Henyey and Greenstein's function: what a change of weather passes through.
+    Between {
+        /// Mean diameter of the droplets, micrometres, \[5, 50\].
+        diameter_um: f64,
+        /// Asymmetry of the other, \[-0.95, 0.95\].
+        g: f64,
+        /// 0 droplets, 1 the other.
+        share: f64,
     },
 }
 
@@ -214,8 +223,8 @@ impl FogLayer {
             Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
                 check_range("fog.base_m", base_m, -1e5, 1e6, "m")?;
                 check_range("fog.top_m", top_m, base_m, 1e6, "m")?;
-                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e4, "m")?;
-                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e4, "m")?;
+                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e5, "m")?;
+                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e5, "m")?;
             }
             Profile::Exponential { reference_m, scale_height_m } => {
                 check_range("fog.reference_m", reference_m, -1e5, 1e6, "m")?;
@@ -225,6 +234,11 @@ impl FogLayer {
         match self.phase {
             Phase::Droplets { diameter_um } => check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?,
             Phase::HenyeyGreenstein { g } => check_range("fog.g", g, -0.95, 0.95, "")?,
+            Phase::Between { diameter_um, g, share } => {
+                check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?;
+                check_range("fog.g", g, -0.95, 0.95, "")?;
+                check_range("fog.share", share, 0.0, 1.0, "")?;
+            }
         }
         if let Some(p) = &self.patches {
             check_range("fog.patches.amount", p.amount, 0.0, 1.0, "")?;
@@ -299,7 +313,7 @@ impl Viewpoint {
             return Err(Error::range("planet_radius_m", "above 1000 m, or infinite", self.planet_radius_m));
         }
         for v in self.map_m {
-            check_range("map_m", v, -1e12, 1e12, "m")?;
+            check_range("map_m", v, -2e12, 2e12, "m")?;
         }
         Ok(())
     }

@@ -210,7 +210,7 @@ impl View {
         Stages::from_bits(stages.0)?;
         self.check_order(frame.frame_id, stages)?;
         frame.camera.validate()?;
-        let scene = context.scene_at(frame.camera.position, context.time_s())?;
+        let scene = context.scene_named("frame.camera.position", frame.camera.position, context.time_s())?;
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
         self.rain.look(context, &scene, frame.camera.position)?;

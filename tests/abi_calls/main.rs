@@ -7,6 +7,7 @@
 mod areas;
 mod ground;
 mod handles;
+mod limits;
 mod plan;
 mod queries;
 mod shelters;

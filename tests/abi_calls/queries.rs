@@ -151,7 +151,10 @@ fn every_query_answers_for_other_times_too() {
     // SAFETY: live pointers.
     unsafe {
         refused(wk_context_get_conditions(context, &EYE, 99.0, &mut here), "time_s must be at least 100");
-        refused(wk_context_get_conditions(context, &[0.0, 0.0, 2e9], 200.0, &mut here), "altitude_m must be in");
+        refused(
+            wk_context_get_conditions(context, &[0.0, 0.0, 2e9], 200.0, &mut here),
+            "position_m must be at an altitude in",
+        );
         assert_eq!(here.visibility_m, 0.0, "nothing is written");
         // One weather for all the world: another place, the same answer.
         assert_eq!(wk_context_get_conditions(context, &EYE, 200.0, &mut here), WK_OK);
@@ -213,7 +216,7 @@ fn visibility_between_points_is_that_of_the_weather() {
         assert!((between[0].transmittance[1] - 0.05).abs() < 1e-3, "{:?}", between[0].transmittance);
         assert!((between[2].visibility_m / 400.0 - 1.0).abs() < 0.01, "{}", between[2].visibility_m);
         assert!(between[0].transmittance[1] < between[1].transmittance[1]);
-        refused(get(&[segment(0.0)], &mut between), "segments[0]: to must be at least a millimetre");
+        refused(get(&[segment(0.0)], &mut between), "segments[0].to_m must be at least a millimetre");
         refused(get(&[segment(f64::NAN)], &mut between), "segments[0].to_m[1] must be finite");
     }
 }

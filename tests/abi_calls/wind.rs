@@ -190,7 +190,10 @@ fn surfaces_are_rained_on_by_their_slope_size_and_speed() {
         (of(up, [0.0, 0.0, 2000.0], 1.0), "surfaces[0].velocity_m_s[2] must be in"),
         (of(up, still, -1.0), "surfaces[0].area_m2 must be in"),
         (of(up, still, f64::INFINITY), "surfaces[0].area_m2 must be finite"),
-        (wk_rain_surface { position_m: [0.0, 0.0, 1e10], ..list[0] }, "surfaces[0].altitude_m must be in"),
+        (
+            wk_rain_surface { position_m: [0.0, 0.0, 1e10], ..list[0] },
+            "surfaces[0].position_m must be at an altitude in",
+        ),
     ] {
         refused(get(&[bad], 7.0, &mut kept), wanted);
     }
