@@ -1,9 +1,6 @@
 //! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
 
-use std::{
-    collections::HashMap,
-    sync::{Arc, OnceLock},
-};
+use std::sync::{Arc, OnceLock};
 
 use super::{
     Frame,
@@ -16,6 +13,7 @@ use crate::{
     gpu::{
         Device, Layer,
         pass::{self, FullscreenDesc},
+        recent::Recent,
     },
     ground::GroundUniform,
     rain::{Present, around_layout},
@@ -23,7 +21,7 @@ use crate::{
 };
 
 /// What distinguishes one compiled variant from another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Variant {
     pub stages: Stages,
     pub format: wgpu::TextureFormat,
@@ -89,13 +87,17 @@ impl Variant {
     }
 }
 
+/// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and weathers. On
+/// a software driver one may take more than 10 MB.
+const MOST_PIPELINES: usize = 32;
+
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
     /// Of group 0, by [`Sampling`].
     layouts: [wgpu::BindGroupLayout; 3],
     layout_sky: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
-    pipelines: HashMap<Variant, wgpu::RenderPipeline>,
+    pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
     none: wgpu::TextureView,
     reads_samples: bool,
     /// Made when first needed: wgpu's OpenGL backend can adopt multisampled textures but not make them.
@@ -171,7 +173,7 @@ impl Composite {
             layouts: Sampling::ALL.map(|sampling| layout(&device.device, sampling)),
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
-            pipelines: HashMap::new(),
+            pipelines: Recent::new(),
             none: none(&device.device, 1),
             reads_samples: multi,
             none_multi: OnceLock::new(),
@@ -231,11 +233,11 @@ impl Composite {
     /// # Errors
     /// A missing shader file.
     pub fn pipeline(&mut self, device: &Arc<Device>, variant: Variant) -> Result<&wgpu::RenderPipeline> {
-        if !self.pipelines.contains_key(&variant) {
-            let layouts = self.layouts(variant.sampling);
-            let pipeline = pass::fullscreen(
-                device,
-                &FullscreenDesc {
+        let layouts = [&self.layouts[variant.sampling as usize], &self.layout_sky, &self.layout_around];
+        self.pipelines.get_or_make(
+            |made| *made == variant,
+            || {
+                let desc = FullscreenDesc {
                     shader: variant.sampling.shader([
                         "frame/composite_single.wgsl",
                         "frame/composite_multi.wgsl",
@@ -250,10 +252,9 @@ impl Composite {
                     }],
                     constants: &variant.constants(),
                     samples: variant.samples,
-                },
-            )?;
-            self.pipelines.insert(variant, pipeline);
-        }
-        Ok(&self.pipelines[&variant])
+                };
+                Ok((variant, pass::fullscreen(device, &desc)?))
+            },
+        )
     }
 }

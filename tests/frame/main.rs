@@ -9,3 +9,4 @@ mod stability;
 mod stages;
 mod threads;
 mod tiers;
+mod variants;
