@@ -1884,7 +1884,10 @@ typedef uint32_t wk_world_kind;
 #define WK_WORLD_FLAT 0
 /** East-north-up at the origin's place, the curved planet below. */
 #define WK_WORLD_TANGENT 1
-/** Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter. */
+/**
+ * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
+ * simulated ground (WK_GROUND_SIMULATED).
+ */
 #define WK_WORLD_ECEF 2
 
 /** Which of the host's axes point where, in flat and tangent worlds. */
@@ -2172,11 +2175,28 @@ wk_status wk_context_set_weather(wk_context *context,
 /**
  * Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
  * the views record.
+ * Weather and light are functions of time and follow at once. A simulated ground (WK_GROUND_SIMULATED) is stepped, one step for
+ * every 10 s: in one call for 50 ms at most, but one step at least. Where that is not enough, after a leap of hours, the call
+ * answers WK_PENDING: call it again with the same time, in a loop or once a frame, until it answers WK_OK. Until then water on
+ * the ground is drawn and answered as of wk_context_get_state_time, what is set acts only after the steps that remain, and a time
+ * later than the one under way is taken when these are done. So the state is the same however many calls it takes.
+ * A leap of more than a day begins the ground anew a day before its end, as the weather reports the ground then.
  * Thread: exclusive.
- * Answers WK_PENDING if simulation steps remain to be done: call again with the same time.
+ * Answers WK_PENDING, which is no error, if steps remain.
  * Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
  */
-WK_API wk_status wk_context_update(wk_context *context, double time_s);
+WK_API
+wk_status wk_context_update(wk_context *context,
+                            double time_s);
+
+/**
+ * Simulation time of all that has state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING; how far
+ * the state lags behind is the difference. It never goes back, but for wk_context_load.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_state_time(const wk_context *context,
+                                    double *out_state_time_s);
 
 /**
  * Ties universal time to simulation time: it is `utc_s` (Unix time, seconds without leap seconds) at simulation time
@@ -2217,10 +2237,14 @@ WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_directi
 WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
 
 /**
- * Writes everything that decides what the context shows from now on: UTF-8 text, the same on every machine.
+ * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine: weather, time,
+ * clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain with its water, and of which
+ * world, place, planet, seed, tone curve and ground model it is. Not in it: how it is drawn (sky settings, views, plans), and the
+ * images of wk_context_set_occluder_maps, which may be other ones on each channel.
  * `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
  * or `buffer` is NULL with `capacity` 0 (then it succeeds).
  * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
 WK_API
 wk_status wk_context_save(const wk_context *context,
@@ -2229,10 +2253,13 @@ wk_status wk_context_save(const wk_context *context,
                           size_t *out_size);
 
 /**
- * Takes up a state that wk_context_save wrote, on a context of the same planet and seed.
+ * Loads a state that wk_context_save wrote, in place of all that it holds, on a context that was created alike: with the same
+ * world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for WK_WORLD_ECEF), seed,
+ * planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
  * Thread: exclusive.
- * Errors: WK_ERROR_PARSE for bytes that are no such state or of another version; WK_ERROR_INVALID_ARGUMENT if planet or
- * seed differ. The context stays as it was then.
+ * Errors: WK_ERROR_PARSE for bytes that are no such state, cut short, changed by as little as a byte, or of another format, which
+ * the message names (this version reads format 2; format 1, which did not say of which place it was, must be saved anew);
+ * WK_ERROR_INVALID_ARGUMENT naming all that was created otherwise. The context stays as it was then.
  */
 WK_API
 wk_status wk_context_load(wk_context *context,
@@ -2240,10 +2267,13 @@ wk_status wk_context_load(wk_context *context,
                           size_t size);
 
 /**
- * A number that is equal on two channels whose contexts show the same world from now on.
+ * A number that is equal on two channels whose contexts show the same world from now on: a hash of what wk_context_save writes.
  * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
-WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_hash);
+WK_API
+wk_status wk_context_state_hash(const wk_context *context,
+                                uint64_t *out_hash);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`
@@ -4161,8 +4191,7 @@ typedef struct wk_wind_grid {
 }
 
 /**
- * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Not part of a saved state.
- * Unchanged after an error.
+ * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -4257,7 +4286,7 @@ typedef struct wk_occluder_map {
 
 /**
  * Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
- * after an error.
+ * after an error. They are no part of a saved state: each channel may have its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
  * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
@@ -4607,7 +4636,8 @@ typedef uint32_t wk_ground_model;
 #define WK_GROUND_REPORTED 0
 /**
  * A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
- * (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
+ * (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
+ * ground then. See wk_context_update for leaps that take more than one call.
  */
 #define WK_GROUND_SIMULATED 1
 
@@ -4635,7 +4665,7 @@ typedef struct wk_simulation_desc {
 }
 
 /**
- * Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+ * Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
  * it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
  * the context's seed.
  * Thread: concurrent.
@@ -4744,7 +4774,7 @@ wk_status wk_context_set_ground_grid(wk_context *context,
                                      const wk_ground_grid *ground_grid);
 
 /**
- * Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+ * Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
  * `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
  * upload anew what has changed, every 10 s of simulation time at most.
  * Thread: concurrent.

@@ -61,6 +61,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     wk_ambient sky = WK_AMBIENT_INIT;
     wk_ground_light arriving;
     w->time_s = time_s;
+    /* WK_PENDING passes: a simulated ground that lags after a leap goes on in the next frame. */
     if (!check(wk_context_update(w->context, time_s)) || !check(wk_context_get_sun(w->context, &at, &sun)) ||
         !check(wk_context_get_moon(w->context, &at, &moon)) || !check(wk_context_get_ambient(w->context, &at, &sky)) ||
         !check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))

@@ -50,7 +50,8 @@ pub type wk_world_kind = u32;
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter.
+/// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
+/// simulated ground (WK_GROUND_SIMULATED).
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Which of the host's axes point where, in flat and tangent worlds.

@@ -30,7 +30,8 @@ pub type wk_ground_model = u32;
 /// The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
-/// (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
+/// (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
+/// ground then. See wk_context_update for leaps that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
 /// What has state, and how. An extension: put it into wk_context_desc.next.
@@ -113,7 +114,7 @@ impl wk_ground {
     }
 }
 
-/// Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+/// Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
 /// it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
 /// the context's seed.
 /// Thread: concurrent.

@@ -122,7 +122,7 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
     })
 }
 
-/// Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+/// Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
 /// `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
 /// upload anew what has changed, every 10 s of simulation time at most.
 /// Thread: concurrent.

@@ -7,7 +7,7 @@ use super::{Context, fog::falling_top_m};
 use crate::{
     error::{Error, Result, check_range},
     rain::{AreaMotion, MAX_AREAS, RainArea, Shaft, drops::factor_in, sizes::DropSizes},
-    weather::{Conditions, Falling, hydrometeors},
+    weather::{Conditions, Falling, Timeline, hydrometeors},
 };
 
 /// An area and what is known of it.
@@ -18,13 +18,6 @@ pub(super) struct KeptArea {
     /// timeline forgets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     carried_m: Option<[f64; 2]>,
-}
-
-impl KeptArea {
-    /// Whether a saved one can be one of ours.
-    pub fn is_valid(&self) -> bool {
-        self.area.validate().is_ok() && self.carried_m.is_none_or(|d| d.iter().all(|v| v.is_finite()))
-    }
 }
 
 /// Height above the station for which the wind of a cloud stands, m: the highest that the profile knows.
@@ -59,6 +52,24 @@ impl Context {
             AreaMotion::Own(_) => -super::MAX_TIME_S,
         };
         check_range("rain_area.at_s", area.at_s, from, super::MAX_TIME_S, "s")
+    }
+
+    /// Whether saved ones can be some of ours over `timeline`.
+    pub(super) fn are_valid(&self, areas: &[KeptArea], timeline: &Timeline) -> bool {
+        let is_place = |center_m: [f64; 3]| self.desc.world.frame_at(DVec3::from(center_m)).place.validate().is_ok();
+        let is_timed = |kept: &KeptArea| match (kept.area.motion, kept.carried_m) {
+            (AreaMotion::Own(_), carried) => carried.is_none(),
+            (AreaMotion::WithWind, Some(carried)) => carried.iter().all(|v| v.is_finite()),
+            (AreaMotion::WithWind, None) => kept.area.at_s >= timeline.known_from_s(),
+        };
+        areas.len() <= MAX_AREAS
+            && areas.iter().all(|kept| {
+                let area = &kept.area;
+                area.validate().is_ok()
+                    && is_place(area.center_m)
+                    && area.at_s.abs() <= super::MAX_TIME_S
+                    && is_timed(kept)
+            })
     }
 
     /// The regions with rain of their own, as they were set.

@@ -21,7 +21,7 @@ pub(super) struct SavedGround {
     water: Option<[String; 3]>,
 }
 
-fn words(values: impl Iterator<Item = u64>) -> String {
+pub(super) fn words(values: impl Iterator<Item = u64>) -> String {
     use std::fmt::Write;
     let mut text = String::new();
     let mut values = values.peekable();
@@ -38,7 +38,7 @@ fn words(values: impl Iterator<Item = u64>) -> String {
 }
 
 /// The values that [`words`] wrote, if there are `count`.
-fn values(text: &str, count: usize) -> Option<Vec<u64>> {
+pub(super) fn values(text: &str, count: usize) -> Option<Vec<u64>> {
     let mut values = Vec::new();
     for word in text.split_whitespace() {
         let (value, times) = word.split_once('*').unwrap_or((word, "1"));

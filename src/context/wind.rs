@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Context;
 use crate::{
     error::Result,
-    wind::{Blowing, Drift, WindAt, WindGrid, WindGridKind},
+    wind::{Blowing, WindAt, WindGrid, WindGridKind},
 };
 
 impl Context {
@@ -44,7 +44,7 @@ impl Context {
 
     /// Sets a wind that varies in space; `None` leaves the weather's. It blows in [`Context::wind_at`] and on drops of
     /// [`RainModel::Integrated`](crate::rain::RainModel::Integrated); [`Context::wind_displacement`], and what goes with
-    /// it, know nothing of it. It is not saved with the context.
+    /// it, know nothing of it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -87,9 +87,5 @@ impl Context {
         let first = at(known_s);
         let since = at(to_s).drift.displacement_m - first.drift.displacement_m;
         (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
-    }
-
-    pub(super) fn drifted(&self) -> Drift {
-        self.drifted
     }
 }

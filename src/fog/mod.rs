@@ -45,6 +45,7 @@ pub mod reference;
 mod uniforms;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
@@ -119,7 +120,7 @@ impl ExtinctionBudget {
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
 /// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Profile {
     /// Constant between base and top with linear flanks, so that the optical depth has no kink.
     Slab {
@@ -142,7 +143,7 @@ pub enum Profile {
 }
 
 /// How the layer's particles scatter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Phase {
     /// Water droplets of this mean diameter, micrometres, \[5, 50\] (Jendersie and d'Eon 2023); fog has 10 to 25.
     Droplets {
@@ -158,20 +159,21 @@ pub enum Phase {
 
 /// Horizontal patches (METAR BCFG): the extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern of
 /// mean 1, fixed to the world, that reaches 0 between the patches.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patches {
     /// 0 = even layer, 1 = clear gaps between patches.
     pub amount: f64,
     /// Typical distance between patches, m, \[5, 1e5\].
     pub size_m: f64,
     /// Chooses the pattern.
+    #[serde(with = "seed_text")]
     pub seed: u64,
     /// How far the wind has carried the pattern (east, north), m.
     pub drift_m: [f64; 2],
 }
 
 /// A low layer of fog or mist.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FogLayer {
     /// Extinction at 550 nm inside the slab, or at the reference altitude, 1/m, \[0, 10\].
     pub extinction_per_m: f64,
@@ -306,7 +308,7 @@ impl Viewpoint {
 }
 
 /// Which fog is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// None.
     Clear,
@@ -314,4 +316,31 @@ pub enum Law {
     Layer(FogLayer),
     /// One of the older simulators' laws.
     Compatibility(CompatibilityLaw),
+}
+
+impl Law {
+    /// Refuses what is not a law, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match self {
+            Self::Clear => Ok(()),
+            Self::Layer(layer) => layer.validate(),
+            Self::Compatibility(law) => law.validate(),
+        }
+    }
+}
+
+/// A number of 64 bits as text: TOML's end at 63.
+mod seed_text {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(seed: &u64, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(seed)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
+    }
 }

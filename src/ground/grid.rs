@@ -73,14 +73,6 @@ impl GroundGrid {
         self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
     }
 
-    /// Half of its diagonal, m, and its middle in the host's world.
-    pub(crate) fn reach(&self, to_enu: &DMat3) -> (f64, DVec3) {
-        let half = 0.5 * self.cell_m * DVec2::new(f64::from(self.nodes[0] - 1), f64::from(self.nodes[1] - 1));
-        let (low, high) = self.range();
-        let middle = half.extend(0.5 * (low + high));
-        (middle.with_z(0.5 * (high - low)).length(), self.origin + to_enu.transpose() * middle)
-    }
-
     /// Lowest and highest node, m.
     pub(crate) fn range(&self) -> (f64, f64) {
         let ends = self.heights_m.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));

@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use super::world::{World, init, message};
+use super::world::{World, init, message, update};
 use welkin::capi::{
     context::*, ground::*, ground_grid::*, ground_texture::*, rain::*, status::*, timeline::*, weather::*,
     weather_kinds::*, wind::*,
@@ -50,7 +50,7 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     };
     assert_eq!(get(&mut cells, CELL, &mut revision), WK_ERROR_WRONG_ORDER, "{}", message());
     assert_eq!(set(&grid), WK_OK, "{}", message());
-    assert_eq!(unsafe { wk_context_update(context, 1800.0) }, WK_OK, "{}", message());
+    update(context, 1800.0);
     refused(get(&mut cells[..24], CELL, &mut revision), "capacity must be at least 25");
     refused(get(&mut cells, 12, &mut revision), "cell_size must be");
     refused(get(&mut cells, CELL, null_mut()), "out_revision must not be NULL");
@@ -66,7 +66,7 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     let mut again = 0u64;
     assert_eq!(get(&mut [], CELL, &mut again), WK_OK, "{}", message());
     assert_eq!(again, revision);
-    assert_eq!(unsafe { wk_context_update(context, 1810.0) }, WK_OK);
+    update(context, 1810.0);
     assert_eq!(get(&mut [], CELL, &mut again), WK_OK);
     assert!(again != revision, "rain goes on");
     for (bad, wanted) in [

@@ -8,7 +8,7 @@ use welkin::capi::{
     weather_kinds::*,
 };
 
-use super::world::{World, init, message};
+use super::world::{World, init, message, update};
 
 const EYE: [f64; 3] = [0.0, 0.0, 2.0];
 
@@ -322,7 +322,7 @@ fn simulated_ground_is_asked_for_its_water() {
             ..init("wk_weather")
         };
         assert_eq!(wk_context_set_weather(context, &weather, 0.0, 0.0), WK_OK, "{}", message());
-        assert_eq!(wk_context_update(context, 600.0), WK_OK, "{}", message());
+        update(context, 600.0);
         assert_eq!(wk_context_get_ground(context, &[1.0, 2.0, 0.0], &mut ground), WK_OK, "{}", message());
         assert!(ground.film_mm > 0.2 && ground.water_mm >= ground.film_mm && ground.wetness > 0.8);
         assert_eq!(ground.in_puddle == 1, ground.water_mm > ground.film_mm);

@@ -331,6 +331,12 @@ pub const CALLS: &[(&str, Call)] = &[
         }
         status.into()
     }),
+    ("wk_context_get_state_time", |d, w| {
+        let mut state_time_s = 0.0;
+        let status = unsafe { wk_context_get_state_time(handle(d, &w.contexts), &mut state_time_s) };
+        assert!(state_time_s.is_finite());
+        status.into()
+    }),
     ("wk_context_set_clock", |d, w| {
         let utc = if d.one_in(2) { d.float() } else { 1.7e9 * d.unit() };
         unsafe { wk_context_set_clock(handle(d, &w.contexts), utc, w.time(d)) }.into()

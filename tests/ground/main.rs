@@ -2,6 +2,7 @@
 
 mod drawn;
 mod host;
+mod leaps;
 mod mirrors;
 mod rings;
 mod state;
