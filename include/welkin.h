@@ -3318,6 +3318,8 @@ typedef struct wk_report {
     double splashes_left_out_per_m2_s;
     /** Likewise the smallest stones that did not hop. */
     double stones_left_out_per_m2_s;
+    /** The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn. */
+    double contrast_gain;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3343,7 +3345,8 @@ typedef struct wk_report {
     /* reserved1 */ 0, \
     /* drop_weight */ 0.0, \
     /* splashes_left_out_per_m2_s */ 0.0, \
-    /* stones_left_out_per_m2_s */ 0.0 \
+    /* stones_left_out_per_m2_s */ 0.0, \
+    /* contrast_gain */ 0.0 \
 }
 
 /** What a frame spends time on. */
@@ -3821,6 +3824,18 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
+/** wk_rain.shutter_s of an eye: it adds up light over about so long by day. Streaks are long and faint. */
+#define WK_RAIN_SHUTTER_EYE_S 0.05
+
+/** wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default. */
+#define WK_RAIN_SHUTTER_CAMERA_60_S 0.016666666666666666
+
+/** wk_rain.shutter_s of a camera in good light. Streaks are short. */
+#define WK_RAIN_SHUTTER_CAMERA_500_S 0.002
+
+/** wk_rain.contrast_gain for trainers: rain by day shows on a display of eight bits as it does in a film. */
+#define WK_RAIN_GAIN_TRAINER 4.0
+
 /** With what a view draws rain; what falls is the same. */
 typedef uint32_t wk_rain_model;
 
@@ -3844,7 +3859,7 @@ typedef uint32_t wk_rain_model;
  */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
-/** How a view draws rain; what falls does not depend on it. */
+/** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
 typedef struct wk_rain {
     /** sizeof(wk_rain) of your header. */
     uint32_t struct_size;
@@ -3852,7 +3867,10 @@ typedef struct wk_rain {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Time for which a picture is exposed, s: it makes streaks of drops. Range [1e-4, 0.1], default 1/60. */
+    /**
+     * Time for which a picture is exposed, s: it makes streaks of drops, the longer and the fainter the longer it is
+     * (WK_RAIN_SHUTTER_ constants). Range [1e-4, 0.1], default 1/60.
+     */
     double shutter_s;
     /**
      * Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
@@ -3861,6 +3879,13 @@ typedef struct wk_rain {
     uint32_t most_drops;
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
+    /**
+     * By how much what falls stands out of the picture more than it does in nature. Range [1, 16], or 0, the default: 1, as in
+     * nature. Beyond 1 streaks, stones and splashes hide as much as so many of them one before the other, a departure from
+     * physics for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water
+     * and queries do not depend on it. Set it alike on all channels of a simulator.
+     */
+    double contrast_gain;
 } wk_rain;
 
 /** Every field of `wk_rain` at its default. */
@@ -3870,7 +3895,8 @@ typedef struct wk_rain {
     /* next */ NULL, \
     /* shutter_s */ 0.016666666666666666, \
     /* most_drops */ 0, \
-    /* model */ WK_RAIN_MODEL_AUTOMATIC \
+    /* model */ WK_RAIN_MODEL_AUTOMATIC, \
+    /* contrast_gain */ 0.0 \
 }
 
 /** A box that rain does not pass, in the host's world. */

@@ -25,10 +25,15 @@ bool weather_open(weather_link *w, const platform *p)
     place.latitude_deg = SITE_LATITUDE_DEG;
     place.longitude_deg = SITE_LONGITUDE_DEG;
 
+    /* Rain as trainees should see it: at the default's contrast, as in nature, hardly any shows by day. */
+    wk_rain rain = WK_RAIN_INIT;
+    rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
+
     *w = (weather_link){.caps = WK_CAPS_INIT};
     return check(wk_device_create_opengl(&host, &w->device)) &&
            check(wk_context_create(w->device, &place, &w->context)) &&
-           check(wk_view_create(w->context, NULL, &w->view));
+           check(wk_view_create(w->context, NULL, &w->view)) &&
+           check(wk_view_set_rain(w->view, &rain));
 }
 
 void weather_close(weather_link *w)

@@ -12,6 +12,7 @@ use welkin::{
     context::{Context, ContextDesc, Scene},
     frame::{Frame, Shared, Stages, View, tone},
     gpu::{Device, readback},
+    rain::RainSettings,
     scene::{Camera, HostLight},
 };
 
@@ -217,6 +218,7 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let forward = DVec3::new(sa * ce, ca * ce, se);
     let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
     let mut view = View::new(&context)?;
+    view.set_rain(RainSettings::TRAINER)?;
     if let Some(windscreen) = shot.windscreen {
         // Rain has fallen on it for 50 s.
         for i in 0..=1000u32 {

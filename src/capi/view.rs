@@ -146,6 +146,8 @@ pub struct wk_report {
     pub splashes_left_out_per_m2_s: f64,
     /// Likewise the smallest stones that did not hop.
     pub stones_left_out_per_m2_s: f64,
+    /// The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn.
+    pub contrast_gain: f64,
 }
 
 impl wk_report {
@@ -172,6 +174,7 @@ impl wk_report {
         drop_weight: 0.0,
         splashes_left_out_per_m2_s: 0.0,
         stones_left_out_per_m2_s: 0.0,
+        contrast_gain: 0.0,
     };
 }
 
@@ -347,6 +350,7 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
             drop_weight: report.rain.drop_weight,
             splashes_left_out_per_m2_s: report.rain.splashes_left_out_per_m2_s,
             stones_left_out_per_m2_s: report.rain.stones_left_out_per_m2_s,
+            contrast_gain: report.rain.contrast_gain,
             has: has.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
             ms: report.costs.map_or(0.0, |c| c.whole_ms),
             predicted_ms: expected.milliseconds.unwrap_or(0.0),

@@ -133,6 +133,8 @@ pub struct RainReport {
     pub drops: u32,
     /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without any.
     pub drop_weight: f64,
+    /// The contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of what was drawn; 0 where nothing fell.
+    pub contrast_gain: f64,
     /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
     pub splashes_left_out_per_m2_s: f64,
     /// Likewise the smallest stones that did not hop.
