@@ -875,6 +875,17 @@ typedef struct wk_opengl_target {
     wk_opengl_multisample multisample;
     /** Must be 0. */
     uint32_t reserved0;
+    /**
+     * A texture of one sample that says what each pixel shows is made of: the byte of red is a wk_surface_class, 0 where
+     * wk_ground_grid or the context's default says it. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+     */
+    wk_opengl_image surface_classes;
+    /**
+     * A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in
+     * GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. What is no unit vector, as a cleared pixel,
+     * leaves it to the host's terrain and depth. Default none.
+     */
+    wk_opengl_image normals;
 } wk_opengl_target;
 
 /** Every field of `wk_opengl_target` at its default. */
@@ -889,7 +900,9 @@ typedef struct wk_opengl_target {
     /* height */ 0, \
     /* generation */ UINT64_C(0), \
     /* multisample */ WK_OPENGL_MULTISAMPLE_EACH, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_classes */ WK_OPENGL_IMAGE_INIT, \
+    /* normals */ WK_OPENGL_IMAGE_INIT \
 }
 
 /** Which context is asked for. */
@@ -1163,6 +1176,17 @@ typedef struct wk_vulkan_target {
     uint32_t signal_count;
     /** Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
     uint32_t signal_stride;
+    /**
+     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+     * it. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+     */
+    const wk_vulkan_image *surface_classes;
+    /**
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`, one
+     * sample. Default NULL.
+     */
+    const wk_vulkan_image *normals;
 } wk_vulkan_target;
 
 /** Every field of `wk_vulkan_target` at its default. */
@@ -1178,7 +1202,9 @@ typedef struct wk_vulkan_target {
     /* wait_count */ 0, \
     /* wait_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
     /* signal_count */ 0, \
-    /* signal_stride */ (uint32_t)sizeof(wk_vulkan_semaphore) \
+    /* signal_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
+    /* surface_classes */ NULL, \
+    /* normals */ NULL \
 }
 
 /**
@@ -3065,6 +3091,11 @@ typedef uint32_t wk_frame_flags;
  * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
  */
 #define WK_FRAME_MEASURE 16
+/**
+ * The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
+ * those of the host's world.
+ */
+#define WK_FRAME_NORMALS_IN_EYE_SPACE 32
 
 /** What the numbers in the host's colour mean. */
 typedef uint32_t wk_color_space;
@@ -3165,6 +3196,17 @@ typedef struct wk_own_target {
     const wk_texture *depth;
     /** Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL. */
     const wk_texture *mask;
+    /**
+     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+     * it. R8_UNORM or the like, as large as `color`. Default NULL.
+     */
+    const wk_texture *surface_classes;
+    /**
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
+     * Default NULL.
+     */
+    const wk_texture *normals;
 } wk_own_target;
 
 /** Every field of `wk_own_target` at its default. */
@@ -3175,7 +3217,9 @@ typedef struct wk_own_target {
     /* color */ NULL, \
     /* surface */ NULL, \
     /* depth */ NULL, \
-    /* mask */ NULL \
+    /* mask */ NULL, \
+    /* surface_classes */ NULL, \
+    /* normals */ NULL \
 }
 
 /**
@@ -4554,14 +4598,39 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * ====================================================================================================
  * Wet ground
  *
- * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky, level
- * ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
- * colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, and of objects only that what keeps rain off is dark.
+ * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky,
+ * paved ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
+ * colour is taken for the ground's own. What is not marked by a wk_surface_class is natural ground, which hardly mirrors: mark
+ * roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky, and of objects only that what keeps rain off is dark.
  *
  * How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
  * in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
  * ====================================================================================================
  */
+
+/**
+ * What the ground is made of, in a wk_ground_grid, in an image of the target (the byte of red), and where neither says it, for
+ * all of a context. The image counts first, then the grid, then the context's default.
+ */
+typedef uint32_t wk_surface_class;
+
+/**
+ * In a grid or an image: as the context's default. As that default: natural ground, soil where the host's colour is not green and
+ * vegetation where it is.
+ */
+#define WK_SURFACE_CLASS_UNSPECIFIED 0
+/** Earth, sand, gravel: darkens, and mirrors hardly. */
+#define WK_SURFACE_CLASS_SOIL 1
+/** Bare rock: darkens, and shines in parts. */
+#define WK_SURFACE_CLASS_ROCK 2
+/** Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles. */
+#define WK_SURFACE_CLASS_PAVED 3
+/** Grass, crops, shrubs, trees: hardly changes. */
+#define WK_SURFACE_CLASS_VEGETATION 4
+/** Water that the host draws: rain leaves it as it is. */
+#define WK_SURFACE_CLASS_WATER 5
+/** Roofs and walls: darken and shine, without puddles. */
+#define WK_SURFACE_CLASS_BUILDING 6
 
 /** Water at a place of the ground. */
 typedef struct wk_ground {
@@ -4579,10 +4648,14 @@ typedef struct wk_ground {
     double wetness;
     /** Share of all the ground, or of the host's terrain, under standing water. */
     double puddles;
-    /** 1 where standing water covers the place, else 0. */
+    /** 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles. */
     uint32_t in_puddle;
     /** 0. */
     uint32_t reserved0;
+    /** What the ground is made of there, by the host's terrain, else by the context's default. */
+    wk_surface_class surface_class;
+    /** 0. */
+    uint32_t reserved1;
 } wk_ground;
 
 /** Every field of `wk_ground` at its default. */
@@ -4595,7 +4668,9 @@ typedef struct wk_ground {
     /* wetness */ 0.0, \
     /* puddles */ 0.0, \
     /* in_puddle */ 0, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_class */ WK_SURFACE_CLASS_UNSPECIFIED, \
+    /* reserved1 */ 0 \
 }
 
 /** Where the wetness of the ground comes from. */
@@ -4645,6 +4720,14 @@ WK_API
 wk_status wk_context_get_ground(const wk_context *context,
                                 const double (*position_m)[3],
                                 wk_ground *out_ground);
+
+/**
+ * What the ground is made of where neither the target's image nor the host's terrain says it. Default
+ * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
+ */
+WK_API wk_status wk_context_set_default_surface_class(wk_context *context, wk_surface_class surface_class);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SIMULATION_DESC_INIT`. `struct_size` is `sizeof(wk_simulation_desc)`
@@ -4701,6 +4784,15 @@ typedef struct wk_ground_grid {
     uint32_t height_count;
     /** Must be 0. */
     uint32_t reserved0;
+    /**
+     * What each cell is made of, in the order of the heights: numbers of wk_surface_class, 0 where the context's default holds.
+     * Copied by the call. Default NULL: nothing is said of any cell.
+     */
+    const uint8_t *surface_classes;
+    /** Numbers in surface_classes: 0 (the default), or height_count. */
+    uint32_t surface_class_count;
+    /** Must be 0. */
+    uint32_t reserved1;
 } wk_ground_grid;
 
 /** Every field of `wk_ground_grid` at its default. */
@@ -4713,7 +4805,10 @@ typedef struct wk_ground_grid {
     /* nodes */ { 2, 2 }, \
     /* heights_m */ NULL, \
     /* height_count */ 0, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_classes */ NULL, \
+    /* surface_class_count */ 0, \
+    /* reserved1 */ 0 \
 }
 
 /**
@@ -4734,7 +4829,7 @@ typedef struct wk_ground_cell {
 
 /**
  * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
- * keeps its water, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
+ * keeps its water, whatever it is made of, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
  * error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.

@@ -60,6 +60,24 @@ fn with_drops(veil: Veil, pixel: vec2u) -> Veil {
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 
+// What the host says of the surface that a pixel shows, where it does: its class in red, and its normal.
+@group(0) @binding(9) var host_classes: texture_2d<f32>;
+@group(0) @binding(10) var host_normals: texture_2d<f32>;
+
+override HAS_CLASSES: bool = false;
+override HAS_NORMALS: bool = false;
+
+fn host_surface(facing: Facing, pixel: vec2u) -> HostSurface {
+    var surface = HostSurface(facing, 0u, vec4f(0.0));
+    if HAS_CLASSES {
+        surface.number = u32(textureLoad(host_classes, vec2i(pixel), 0).r * 255.0 + 0.5);
+    }
+    if HAS_NORMALS {
+        surface.normal = given_normal(ground, textureLoad(host_normals, vec2i(pixel), 0).rgb);
+    }
+    return surface;
+}
+
 // The host's colour as luminance, or linear in the display's space.
 fn linear_host(host: vec3f) -> vec3f {
     if frame.color_space == SCENE_LINEAR {
@@ -73,7 +91,7 @@ fn compose(host: vec4f, range: f32, plane: f32, facing: Facing, mask: f32, ndc: 
     let ray = view_ray(frame.depth, ndc);
     var veil = weather_over(ray, range, plane);
     if SURFACE && range < RANGE_SKY {
-        let wet = wet_surface(linear_host(host.rgb), frame.color_space != SCENE_LINEAR, ray, range, facing);
+        let wet = wet_surface(linear_host(host.rgb), frame.color_space != SCENE_LINEAR, ray, range, host_surface(facing, pixel));
         veil.light += veil.transmittance * wet.light;
         veil.transmittance *= wet.transmittance;
     }

@@ -68,6 +68,9 @@ pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
 /// such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
 /// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
+/// The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
+/// those of the host's world.
+pub const WK_FRAME_NORMALS_IN_EYE_SPACE: wk_frame_flags = 32;
 
 /// One frame of one view.
 #[repr(C)]
@@ -155,6 +158,13 @@ pub struct wk_own_target {
     pub depth: *const wk_texture,
     /// Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL.
     pub mask: *const wk_texture,
+    /// What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+    /// it. R8_UNORM or the like, as large as `color`. Default NULL.
+    pub surface_classes: *const wk_texture,
+    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+    /// float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
+    /// Default NULL.
+    pub normals: *const wk_texture,
 }
 
 impl wk_own_target {
@@ -166,6 +176,8 @@ impl wk_own_target {
         surface: null(),
         depth: null(),
         mask: null(),
+        surface_classes: null(),
+        normals: null(),
     };
 }
 
@@ -177,6 +189,8 @@ pub(super) struct Images<'a> {
     pub(super) mask: Option<&'a wgpu::Texture>,
     /// Which layer of its texture each is.
     pub(super) layers: ImageLayers,
+    pub(super) surface_classes: Option<&'a wgpu::Texture>,
+    pub(super) normals: Option<&'a wgpu::Texture>,
 }
 
 /// A checked C frame with its images, as the Rust side takes it.
@@ -213,6 +227,8 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         depth: images.depth,
         mask: images.mask,
         layers: images.layers,
+        surface_classes: images.surface_classes,
+        normals: images.normals,
         color_space: match c.color_space {
             WK_COLOR_DISPLAY_LINEAR => ColorSpace::DisplayLinear,
             WK_COLOR_DISPLAY_SRGB => ColorSpace::DisplaySrgb,
@@ -221,7 +237,9 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         cd_m2_per_unit: c.cd_m2_per_unit,
         exposure,
         origin_bottom_left: bottom_left || c.flags & WK_FRAME_FIRST_ROW_AT_MINUS_Y != 0,
-        flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE)),
+        flags: FrameFlags(
+            c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE | WK_FRAME_NORMALS_IN_EYE_SPACE),
+        ),
         camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),
     })
 }

@@ -163,6 +163,13 @@ pub struct wk_opengl_target {
     pub multisample: wk_opengl_multisample,
     /// Must be 0.
     pub reserved0: u32,
+    /// A texture of one sample that says what each pixel shows is made of: the byte of red is a wk_surface_class, 0 where
+    /// wk_ground_grid or the context's default says it. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+    pub surface_classes: wk_opengl_image,
+    /// A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in
+    /// GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. What is no unit vector, as a cleared pixel,
+    /// leaves it to the host's terrain and depth. Default none.
+    pub normals: wk_opengl_image,
 }
 
 impl wk_opengl_target {
@@ -178,6 +185,8 @@ impl wk_opengl_target {
         generation: 0,
         multisample: WK_OPENGL_MULTISAMPLE_EACH,
         reserved0: 0,
+        surface_classes: wk_opengl_image::INIT,
+        normals: wk_opengl_image::INIT,
     };
 }
 

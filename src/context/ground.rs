@@ -7,7 +7,7 @@ use super::Context;
 use crate::{
     error::Result,
     ground::{
-        GroundWater,
+        GroundWater, SurfaceClass,
         water::{Forcing, STEP_S, depth_at_mm},
     },
     scene::WorldKind,
@@ -37,8 +37,10 @@ pub struct GroundAt {
     pub wetness: f64,
     /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
-    /// Whether standing water covers the place.
+    /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
+    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    pub surface_class: SurfaceClass,
 }
 
 /// Sunlight for evaporation is looked up this often, s: a multiple of the step.
@@ -177,6 +179,7 @@ impl Context {
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
         let frame = self.desc.world.frame_at(position);
         frame.place.validate()?;
+        let surface_class = self.surface_class_at(position);
         if let Some((cell, puddles)) = self.terrain_at(position) {
             return Ok(GroundAt {
                 water_mm: cell.depth_mm(),
@@ -184,6 +187,7 @@ impl Context {
                 wetness: cell.wetness(),
                 puddles,
                 in_puddle: cell.standing_mm > 0.0,
+                surface_class,
             });
         }
         let reported = self.timeline.at(self.time_s).surface;
@@ -195,13 +199,15 @@ impl Context {
             None => kept,
         };
         let at = DVec2::from(crate::ground::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
-        let water_mm = depth_at_mm(&water, self.hollows.depth(at));
+        let hollow_mm = depth_at_mm(&water, self.hollows.depth(at));
+        let water_mm = if surface_class.has_hollows() { hollow_mm } else { water.film_mm };
         Ok(GroundAt {
             water_mm,
             film_mm: water.film_mm,
             wetness: cover.wetness,
             puddles: cover.puddles,
             in_puddle: water_mm > water.film_mm,
+            surface_class,
         })
     }
 }

@@ -39,7 +39,7 @@ use crate::{
     fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
-    ground::{Hollows, texture::TerrainTextures},
+    ground::{Hollows, SurfaceClass, texture::TerrainTextures},
     rain::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
@@ -144,6 +144,10 @@ pub struct Context {
     ground_revision: u64,
     /// Another number for each grid.
     ground_generation: u64,
+    /// Incremented whenever the host says anew what its terrain is made of.
+    classes_revision: u64,
+    /// Of ground of which nothing else is said.
+    surface_class: SurfaceClass,
     terrain_textures: Mutex<TerrainTextures>,
     /// Counts what the host has told of areas and of standing shelter.
     told: u64,
@@ -187,6 +191,8 @@ impl Context {
             host_ground: None,
             ground_revision: 0,
             ground_generation: 0,
+            classes_revision: 0,
+            surface_class: SurfaceClass::Unspecified,
             terrain_textures: Mutex::default(),
             told: 0,
         })

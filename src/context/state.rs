@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Context, GivenDirection, GroundModel, areas::KeptArea, ground::GroundState, terrain_saved::SavedGround};
 use crate::{
     error::{Error, Result, Status, check_range},
+    ground::SurfaceClass,
     rain::MAX_AREAS,
     sky::sun::Utc,
     weather::Timeline,
@@ -34,6 +35,14 @@ struct Saved {
     areas: Vec<KeptArea>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     terrain: Option<SavedGround>,
+    /// Number of the class of ground of which nothing else is said.
+    #[serde(default, skip_serializing_if = "is_unspecified")]
+    surface_class: u8,
+}
+
+/// Whether a number is that of no class.
+fn is_unspecified(class: &u8) -> bool {
+    *class == SurfaceClass::Unspecified as u8
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten. States written before there was a drift begin there
@@ -68,6 +77,7 @@ impl Context {
             ground: self.ground,
             areas: self.areas.clone(),
             terrain: self.host_ground.as_deref().map(SavedGround::of),
+            surface_class: self.surface_class as u8,
         };
         toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("the state cannot be written: {e}")))
     }
@@ -127,11 +137,14 @@ impl Context {
             loaded.ok_or_else(|| parse(&"terrain must be a grid of heights and the water that it can hold"))
         });
         let terrain = terrain.transpose()?;
+        let surface_class = SurfaceClass::from_number("saved state: surface_class", saved.surface_class);
+        let surface_class = surface_class.map_err(|e| Error::new(Status::Parse, e.message))?;
         let timeline = Timeline::load(&saved.timeline)?;
         let drifted = drifted_from(saved.drifted, &timeline).map_err(|e| parse(&e))?;
         (self.timeline, self.drifted) = (timeline, drifted);
         self.ground = saved.ground;
         self.areas = saved.areas;
+        self.surface_class = surface_class;
         (self.given_sun, self.given_moon) = (sun, moon);
         self.time_s = saved.time_s;
         self.desc.utc_at_zero = Utc(saved.utc_at_zero);

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{Context, GroundModel};
+use crate::ground::SurfaceClass;
 use crate::{
     error::Result,
     ground::{
@@ -317,7 +318,7 @@ impl HostGround {
 
 impl Context {
     /// The host's terrain, over which wetness and puddles are found cell by cell; `None` leaves level ground everywhere. The grid
-    /// that is set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
+    /// whose heights are set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
     /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
     /// terrain's hollows. Takes some tenths of a second for the largest grids.
     ///
@@ -331,11 +332,15 @@ impl Context {
         };
         grid.validate()?;
         self.desc.world.frame_at(grid.origin).place.validate()?;
-        if self.host_ground.as_ref().is_some_and(|held| held.terrain.grid == grid) {
+        if let Some(held) = self.host_ground.as_mut().filter(|held| held.terrain.grid.has_heights_of(&grid)) {
+            if held.terrain.grid.classes != grid.classes {
+                held.terrain.grid.classes = grid.classes;
+                self.classes_revision += 1;
+            }
             return Ok(());
         }
         self.host_ground = Some(Box::new(HostGround::new(grid, &self.desc.world)));
-        self.ground_generation += 1;
+        (self.ground_generation, self.classes_revision) = (self.ground_generation + 1, self.classes_revision + 1);
         self.show_terrain()
     }
 
@@ -361,6 +366,27 @@ impl Context {
     /// A number that is another whenever the water of the cells has changed.
     pub fn ground_revision(&self) -> u64 {
         self.ground_revision
+    }
+
+    /// What the ground is made of where neither the host's grid nor its image says so: [`SurfaceClass::Unspecified`], the
+    /// default, is natural ground. Part of the saved state.
+    pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
+        self.surface_class = class;
+    }
+
+    /// What ground is made of of which nothing else is said.
+    pub fn default_surface_class(&self) -> SurfaceClass {
+        self.surface_class
+    }
+
+    /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
+    pub(super) fn surface_class_at(&self, position: DVec3) -> SurfaceClass {
+        let cell = self.host_ground.as_ref().and_then(|held| {
+            let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
+            let nearest = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(held.terrain.grid.class(nearest.0))
+        });
+        cell.unwrap_or_default().or(self.surface_class)
     }
 
     /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
@@ -478,10 +504,10 @@ impl Context {
 
     /// Takes up what a saved state had of the terrain; where it had none, the terrain that is set begins anew.
     pub(super) fn take_up_terrain(&mut self, loaded: Option<HostGround>) -> Result<()> {
-        self.ground_revision += 1;
+        (self.ground_revision, self.classes_revision) = (self.ground_revision + 1, self.classes_revision + 1);
         match (loaded, &mut self.host_ground) {
             (Some(loaded), held) => {
-                let same = held.as_ref().is_some_and(|held| held.terrain.grid == loaded.terrain.grid);
+                let same = held.as_ref().is_some_and(|held| held.terrain.grid.has_heights_of(&loaded.terrain.grid));
                 self.ground_generation += u64::from(!same);
                 *held = Some(Box::new(loaded));
             }

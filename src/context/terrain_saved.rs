@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::terrain::HostGround;
 use crate::{
-    ground::{GroundGrid, MAX_GRID_NODES, terrain::TerrainWater},
+    ground::{GroundGrid, MAX_GRID_NODES, SurfaceClass, terrain::TerrainWater},
     scene::WorldFrame,
 };
 
@@ -17,6 +17,9 @@ pub(super) struct SavedGround {
     cell_m: f64,
     nodes: [u32; 2],
     heights_m: String,
+    /// Numbers of the cells' classes; left out where nothing is said of any.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    classes: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<[String; 3]>,
 }
@@ -58,6 +61,7 @@ impl SavedGround {
             cell_m: grid.cell_m,
             nodes: grid.nodes,
             heights_m: words(grid.heights_m.iter().map(|h| u64::from(h.to_bits()))),
+            classes: words(grid.classes.iter().map(|c| *c as u64)),
             water: held.begun.then(|| [column(0), column(1), held_by()]),
         }
     }
@@ -69,8 +73,12 @@ impl SavedGround {
         }
         let count = self.nodes[0] as usize * self.nodes[1] as usize;
         let heights_m = values(&self.heights_m, count)?.into_iter().map(|b| Some(f32::from_bits(b.try_into().ok()?)));
+        let classes = values(&self.classes, if self.classes.is_empty() { 0 } else { count })?.into_iter();
+        let classes = classes.map(|n| SurfaceClass::from_number("classes", n.try_into().ok()?).ok());
+        let classes = classes.collect::<Option<Vec<_>>>()?;
         let (origin, cell_m) = (DVec3::from(self.origin_m), self.cell_m);
-        let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m: heights_m.collect::<Option<_>>()? };
+        let heights_m = heights_m.collect::<Option<_>>()?;
+        let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m, classes };
         grid.validate().ok()?;
         world.frame_at(origin).place.validate().ok()?;
         let mut held = HostGround::new(grid, world);

@@ -31,6 +31,8 @@ pub(super) struct Variant {
     pub sampling: Sampling,
     pub has_depth: bool,
     pub has_mask: bool,
+    pub has_classes: bool,
+    pub has_normals: bool,
     /// What the fog must be able to draw, if there is any.
     pub fog: Option<FogVariant>,
     /// Kinds of depth that are read ([`ViewRays::depth_kinds`](crate::scene::ViewRays::depth_kinds)).
@@ -46,6 +48,11 @@ pub(super) struct Variant {
     pub sky: bool,
 }
 
+/// As an `override` constant.
+fn yes(b: bool) -> f64 {
+    f64::from(u8::from(b))
+}
+
 impl Variant {
     /// Without the parts of which nothing is drawn: cheaper than a branch on a software driver, which takes both ways.
     pub fn reduced(self, [air, fog, sky, _]: [f32; 4]) -> Self {
@@ -54,13 +61,23 @@ impl Variant {
 
     /// Those of [`Variant::constants`] that shaders of the veil alone have.
     pub fn veil_constants(&self) -> [(&'static str, f64); 10] {
-        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, _, f0, f1, f2, f3, f4, f5] = self.constants();
-        [march, fog, kinds, air, f0, f1, f2, f3, f4, f5]
+        let [f0, f1, f2, f3, f4, f5] = self.fog.unwrap_or(FogVariant::ALL).constants();
+        [
+            ("SKY_MARCH", yes(self.march)),
+            ("FOG", yes(self.fog.is_some())),
+            ("DEPTH_KINDS", f64::from(self.depth_kinds)),
+            ("AIR", yes(self.air)),
+            f0,
+            f1,
+            f2,
+            f3,
+            f4,
+            f5,
+        ]
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 22] {
-        let yes = |b: bool| f64::from(u8::from(b));
+    pub fn constants(&self) -> [(&'static str, f64); 24] {
         let [f0, f1, f2, f3, f4, f5] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
             ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
@@ -79,6 +96,8 @@ impl Variant {
             ("MAPS", yes(self.around.maps)),
             ("LAMPS", yes(self.around.lamps)),
             ("TERRAIN", yes(self.terrain)),
+            ("HAS_CLASSES", yes(self.has_classes)),
+            ("HAS_NORMALS", yes(self.has_normals)),
             f0,
             f1,
             f2,
@@ -139,6 +158,8 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
             uniform(6, size_of::<GroundUniform>()),
             texture_entry(7, false),
             texture_entry(8, false),
+            texture_entry(9, false),
+            texture_entry(10, false),
         ],
     })
 }
@@ -189,19 +210,20 @@ impl Composite {
     }
 
     /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, the drops before them and
-    /// water and heights of the host's terrain.
+    /// water and surface of the host's terrain.
     pub fn bind(
         &self,
         device: &Device,
         [frame, fog, ground]: [&wgpu::Buffer; 3],
         copy: &wgpu::Texture,
         host: &Frame<'_>,
-        [drops, cells, heights]: [Option<&wgpu::TextureView>; 3],
+        [drops, cells, surface]: [Option<&wgpu::TextureView>; 3],
     ) -> wgpu::BindGroup {
         let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);
         let mask_view = host.mask_layer().map(Layer::view);
+        let [classes, normals] = host.surface_layers().map(|l| l.map(Layer::view));
         let no_depth = if sampling == Sampling::Multi {
             self.none_multi.get_or_init(|| none(&device.device, 4))
         } else {
@@ -221,7 +243,9 @@ impl Composite {
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
                 entry(5, drops.unwrap_or(&self.none)),
                 entry(7, cells.unwrap_or(&self.none)),
-                entry(8, heights.unwrap_or(&self.none)),
+                entry(8, surface.unwrap_or(&self.none)),
+                entry(9, classes.as_ref().unwrap_or(&self.none)),
+                entry(10, normals.as_ref().unwrap_or(&self.none)),
             ],
         })
     }
@@ -255,5 +279,20 @@ impl Composite {
             self.pipelines.insert(variant, pipeline);
         }
         Ok(&self.pipelines[&variant])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gpu::shader;
+
+    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more.
+    #[test]
+    fn a_frame_reads_thirteen_textures() {
+        for name in ["single", "multi", "resolved"].map(|kind| format!("frame/composite_{kind}.wgsl")) {
+            let text = shader::assemble(&name).unwrap();
+            let bound = text.lines().filter(|l| l.starts_with("@group") && l.contains(": texture_")).count();
+            assert_eq!(bound, 13, "{name}");
+        }
     }
 }

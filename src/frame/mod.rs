@@ -46,6 +46,9 @@ impl FrameFlags {
     /// a frame is slower, and its picture may differ by rounding. For [`View::record`] only.
     pub const MEASURE: Self = Self(16);
 
+    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's world.
+    pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
+
     /// Whether any flag of `other` is set.
     pub fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
@@ -61,6 +64,10 @@ pub struct ImageLayers {
     pub depth: u32,
     /// Of [`Frame::mask`].
     pub mask: u32,
+    /// Of [`Frame::surface_classes`].
+    pub surface_classes: u32,
+    /// Of [`Frame::normals`].
+    pub normals: u32,
 }
 
 /// One frame of a host: where it looks from, what it drew, and what its numbers mean.
@@ -81,6 +88,13 @@ pub struct Frame<'a> {
     pub mask: Option<&'a wgpu::Texture>,
     /// Which layers of array textures the images are, as for the eyes of a stereo pair. Default: the first of each.
     pub layers: ImageLayers,
+    /// What each pixel shows is made of: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over 255, 0 where
+    /// the host's terrain or the context's default says it. Of one sample; needs TEXTURE_BINDING.
+    pub surface_classes: Option<&'a wgpu::Texture>,
+    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]): (n + 1) / 2 in
+    /// normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it to the host's terrain and
+    /// depth. Of one sample; needs TEXTURE_BINDING.
+    pub normals: Option<&'a wgpu::Texture>,
     /// What the numbers in `color` mean.
     pub color_space: ColorSpace,
     /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, (0, 1e9], default 1.
@@ -106,6 +120,8 @@ impl<'a> Frame<'a> {
             depth,
             mask: None,
             layers: ImageLayers::default(),
+            surface_classes: None,
+            normals: None,
             color_space: ColorSpace::SceneLinear,
             cd_m2_per_unit: 1.0,
             exposure: None,
@@ -127,9 +143,23 @@ impl<'a> Frame<'a> {
         self.mask.map(|texture| Layer { texture, index: self.layers.mask })
     }
 
+    /// Classes and normals.
+    fn surface_layers(&self) -> [Option<Layer<'a>>; 2] {
+        [
+            self.surface_classes.map(|texture| Layer { texture, index: self.layers.surface_classes }),
+            self.normals.map(|texture| Layer { texture, index: self.layers.normals }),
+        ]
+    }
+
     fn validate(&self) -> Result<()> {
-        for (name, layer) in [("color", self.color_layer()), ("depth", self.depth_layer()), ("mask", self.mask_layer())]
-        {
+        let [classes, normals] = self.surface_layers();
+        for (name, layer) in [
+            ("color", self.color_layer()),
+            ("depth", self.depth_layer()),
+            ("mask", self.mask_layer()),
+            ("surface_classes", classes),
+            ("normals", normals),
+        ] {
             if let Some(l) = layer.filter(|l| l.index >= l.texture.depth_or_array_layers()) {
                 let accepted = format!("below its texture's {} layers", l.texture.depth_or_array_layers());
                 return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));

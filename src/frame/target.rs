@@ -146,14 +146,49 @@ pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
             texture.format()
         )));
     }
+    check_of_one_sample("mask", texture, color)
+}
+
+/// Checks the optional classes of what the pixels show.
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Bgra8Unorm) {
+        return Err(Error::unsupported(format!(
+            "surface_classes format {:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm",
+            texture.format()
+        )));
+    }
+    check_of_one_sample("surface_classes", texture, color)
+}
+
+/// Checks the optional normals.
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    let format = texture.format();
+    if !matches!(format, F::Rgba8Unorm | F::Bgra8Unorm | F::Rgb10a2Unorm | F::Rgba16Float | F::Rgba32Float) {
+        return Err(Error::unsupported(format!(
+            "normals format {format:?}; supported: Rgba8Unorm, Bgra8Unorm, Rgb10a2Unorm, Rgba16Float, Rgba32Float"
+        )));
+    }
+    check_of_one_sample("normals", texture, color)
+}
+
+/// Checks that a texture that is read beside colour has its size and one sample.
+fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
         return Err(Error::range(
-            "mask",
+            name,
             &format!("as large as color, {} x {}, one sample", color.width(), color.height()),
             format!("{} x {}, {} samples", texture.width(), texture.height(), texture.sample_count()),
         ));
     }
-    check_usage("mask", texture, wgpu::TextureUsages::TEXTURE_BINDING)
+    check_usage(name, texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
 /// A texture like the host's colour, to read while the host's is written.

@@ -16,7 +16,10 @@ use super::{
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Sampling, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
+    target::{
+        ColorSpace, Sampling, Stages, can_be_apart, check_classes, check_color, check_depth, check_mask, check_normals,
+        color_copy,
+    },
     uniform::{FrameUniform, uniform},
 };
 use crate::{
@@ -38,10 +41,11 @@ struct Bound {
     color: KeptLayer,
     depth: Option<KeptLayer>,
     mask: Option<KeptLayer>,
+    surface: [Option<KeptLayer>; 2],
     own: OwnViews,
 }
 
-/// The drops before the picture, water and heights of the host's terrain.
+/// The drops before the picture, water and surface of the host's terrain.
 type OwnViews = [Option<wgpu::TextureView>; 3];
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -300,6 +304,8 @@ impl View {
         if let Some(mask) = frame.mask {
             check_mask(mask, color)?;
         }
+        frame.surface_classes.map_or(Ok(()), |t| check_classes(t, color))?;
+        frame.normals.map_or(Ok(()), |t| check_normals(t, color))?;
         frame.validate()?;
         if stages.has(Stages::TONE) && stages != Stages::ALL && frame.color_space != ColorSpace::SceneLinear {
             return Err(Error::range(
@@ -335,6 +341,8 @@ impl View {
             sampling: Sampling::of(color, frame.depth),
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
+            has_classes: frame.surface_classes.is_some(),
+            has_normals: frame.normals.is_some(),
             // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
             fog: (fog.kind != FogKind::Clear)
                 .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
@@ -376,8 +384,8 @@ impl View {
         if drops.is_none() {
             variant.stages = variant.stages.without(Stages::PARTICLES);
         }
-        let [water, heights] = context.terrain_views(variant.stages.has(Stages::SURFACE));
-        self.bind(frame, layer, [drops, water, heights])?;
+        let [water, terrain] = context.terrain_views(variant.stages.has(Stages::SURFACE));
+        self.bind(frame, layer, [drops, water, terrain])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
             (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
@@ -492,6 +500,7 @@ impl View {
             color == b.color
                 && is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())
+                && frame.surface_layers().into_iter().zip(&b.surface).all(|(l, kept)| is_kept(l, kept.as_ref()))
                 && b.own == own
         });
         if same {
@@ -504,7 +513,8 @@ impl View {
             self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
         let target = color.view();
         let [depth, mask] = [frame.depth_layer(), frame.mask_layer()].map(|l| l.map(Layer::kept));
-        let bound = Bound { color: color.kept(), depth, mask, own };
+        let surface = frame.surface_layers().map(|l| l.map(Layer::kept));
+        let bound = Bound { color: color.kept(), depth, mask, surface, own };
         self.bound = Some((bound, group, target));
         Ok(())
     }

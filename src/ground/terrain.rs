@@ -232,7 +232,8 @@ mod tests {
     };
 
     fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> Terrain {
-        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m };
+        let grid =
+            GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m, classes: Vec::new() };
         grid.validate().unwrap();
         Terrain::new(grid)
     }

@@ -74,6 +74,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
+        case("wk_context_set_default_surface_class", "context", false, |h| unsafe {
+            wk_context_set_default_surface_class(h.cast(), 0)
+        }),
         case("wk_context_set_ground_grid", "context", false, |h| unsafe {
             wk_context_set_ground_grid(h.cast(), null())
         }),

@@ -5,6 +5,7 @@ use welkin::{
     Status,
     context::{Context, ContextDesc, GivenDirection, GroundModel},
     frame::Stages,
+    ground::SurfaceClass,
     weather::Weather,
 };
 
@@ -14,6 +15,7 @@ fn context(host: &Host, model: GroundModel) -> Context {
     let desc = ContextDesc { ground: model, seed: 7, ..ContextDesc::default() };
     let mut context = Context::new(host.device.clone(), host.context.shared().clone(), desc).unwrap();
     context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
+    context.set_default_surface_class(SurfaceClass::Paved);
     context
 }
 
@@ -99,6 +101,12 @@ fn a_shower_wets_the_ground_and_the_sun_dries_it() {
     again.update(1800.0).unwrap();
     let under = places.filter(|p| again.ground_at(*p).unwrap().in_puddle).count() as f64 / 400.0;
     assert!((under - wet.puddles).abs() < 0.15, "{under} {}", wet.puddles);
+    // Where nothing is paved, none is drawn, and none is there.
+    again.set_default_surface_class(SurfaceClass::Unspecified);
+    for i in 0..400 {
+        let at = again.ground_at(DVec3::new(f64::from(i) * 0.3, 5.0, 0.0)).unwrap();
+        assert!(!at.in_puddle && at.water_mm == at.film_mm && at.film_mm > 0.2, "{at:?}");
+    }
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub fn grid() -> GroundGrid {
         (0.004 * y - 0.3 * (1.0 - away / 6.0).max(0.0)) as f32
     };
     let heights_m = (0..NODES[0] * NODES[1]).map(at).collect();
-    GroundGrid { origin: DVec3::new(-20.0, 0.0, 0.0), cell_m: 1.0, nodes: NODES, heights_m }
+    GroundGrid { origin: DVec3::new(-20.0, 0.0, 0.0), cell_m: 1.0, nodes: NODES, heights_m, classes: Vec::new() }
 }
 
 pub fn simulated(host: &Host) -> Context {
@@ -281,7 +281,13 @@ fn in_real_hills_water_stands_in_their_closed_hollows_alone() {
     assert!(pits.len() > 20 && tops.len() > 20, "{} {}", pits.len(), tops.len());
     let host = Host::new();
     let mut context = simulated(&host);
-    let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 80.0, nodes: [columns, rows], heights_m: heights_m.clone() };
+    let grid = GroundGrid {
+        origin: DVec3::ZERO,
+        cell_m: 80.0,
+        nodes: [columns, rows],
+        heights_m: heights_m.clone(),
+        classes: Vec::new(),
+    };
     context.set_ground_grid(Some(grid)).unwrap();
     context.set_weather(&rain(15.0, 3.0), 0.0, 0.0).unwrap();
     context.update(3600.0).unwrap();
@@ -351,7 +357,7 @@ fn large_grids_and_long_leaps_end_soon() {
         context.set_shelters(&[roof([10.0, 10.0, 4.0], [5.0, 5.0, 0.2])]).unwrap();
         let ms = |start: std::time::Instant| start.elapsed().as_secs_f64() * 1e3;
         let start = std::time::Instant::now();
-        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [side, side], heights_m };
+        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [side, side], heights_m, classes: Vec::new() };
         context.set_ground_grid(Some(grid)).unwrap();
         let set = ms(start);
         let start = std::time::Instant::now();

@@ -144,7 +144,7 @@ fn in_frame(e: Error) -> Error {
     let starts = |names: &[&str]| names.iter().any(|n| e.message.starts_with(n));
     let prefix = if starts(&["depth mapping", "cd_m2_per_unit"]) {
         "frame."
-    } else if starts(&["color", "depth", "mask"]) {
+    } else if starts(&["color", "depth", "mask", "surface_classes", "normals"]) {
         "frame.target."
     } else {
         ""

@@ -51,6 +51,8 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
         frame.color = Some(&images.color);
         frame.depth = images.depth_read.as_ref();
         frame.mask = images.mask.as_ref();
+        frame.surface_classes = images.surface_classes.as_ref();
+        frame.normals = images.normals.as_ref();
     }
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
 }
@@ -83,9 +85,10 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
 /// The target as the Rust side takes it; `None` without a colour image.
 fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
     let (color, depth, mask) = (image(&c.color), image(&c.depth), image(&c.mask));
+    let (surface_classes, normals) = (image(&c.surface_classes), image(&c.normals));
     let Some(color) = color else {
-        if depth.is_some() || mask.is_some() {
-            let text = "frame.target.color must be given where depth or mask are";
+        if [depth, mask, surface_classes, normals].iter().any(Option::is_some) {
+            let text = "frame.target.color must be given where depth, mask, surface_classes or normals are";
             return Err(Error::new(Status::InvalidArgument, text));
         }
         return Ok(None);
@@ -94,6 +97,8 @@ fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
         color,
         depth,
         mask,
+        surface_classes,
+        normals,
         width: c.width,
         height: c.height,
         generation: c.generation,

@@ -33,11 +33,21 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     let color = of_device::<TextureObject>(call, here, "frame.target.color", target.color)?;
     let depth = of_device::<TextureObject>(call, here, "frame.target.depth", target.depth)?;
     let mask = of_device::<TextureObject>(call, here, "frame.target.mask", target.mask)?;
+    let classes = of_device::<TextureObject>(call, here, "frame.target.surface_classes", target.surface_classes)?;
+    let normals = of_device::<TextureObject>(call, here, "frame.target.normals", target.normals)?;
     let surface = of_device::<SurfaceObject>(call, here, "frame.target.surface", target.surface)?;
     let window = surface.map(|s| s.lock().acquire()).transpose()?;
     let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
     let (color, depth, mask) = (window.or_else(|| get(&color)), get(&depth), get(&mask));
-    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref(), ..Images::default() };
+    let (classes, normals) = (get(&classes), get(&normals));
+    let images = Images {
+        color: color.as_ref(),
+        depth: depth.as_ref(),
+        mask: mask.as_ref(),
+        surface_classes: classes.as_ref(),
+        normals: normals.as_ref(),
+        ..Images::default()
+    };
     let frame = frame::from_c(c, images, false)?;
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
 }

@@ -120,16 +120,18 @@ impl Workshop<'_> {
             Some(part) => self.depth(part, samples, through)?,
             None => (None, None),
         };
-        let mask = match desc.mask {
-            Some(image) => {
-                let part = self.mask_part(desc, image)?;
-                let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
-                parts.push(part);
-                Some(texture)
-            }
-            None => None,
+        let mut read = |image: Option<GlImage>, side: Side| {
+            let Some(image) = image else { return Ok(None) };
+            let part = self.read_part(desc, image, side)?;
+            let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
+            parts.push(part);
+            Ok(Some(texture))
         };
-        Ok((GlTarget { id, color, color_read, depth, depth_read, mask, samples }, parts))
+        let mask = read(desc.mask, Side::Mask)?;
+        let surface_classes = read(desc.surface_classes, Side::Classes)?;
+        let normals = read(desc.normals, Side::Normals)?;
+        let target = GlTarget { id, color, color_read, depth, depth_read, mask, surface_classes, normals, samples };
+        Ok((target, parts))
     }
 
     /// A target that is only read: its depth stands for its colour too.
@@ -149,17 +151,20 @@ impl Workshop<'_> {
             depth: None,
             depth_read: Some(texture),
             mask: None,
+            surface_classes: None,
+            normals: None,
             samples: 1,
         };
         Ok((target, vec![part]))
     }
 
-    /// Asks about the mask.
-    fn mask_part(&self, desc: GlTargetDesc, image: GlImage) -> Result<Part> {
+    /// Asks about what is only read beside colour and depth.
+    fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
         if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
-            return Err(Error::unsupported("target.mask must be a texture of target GL_TEXTURE_2D"));
+            let text = format!("{} must be a texture of target GL_TEXTURE_2D", side.parameter());
+            return Err(Error::unsupported(text));
         }
-        self.part(desc, image, Side::Mask)
+        self.part(desc, image, side)
     }
 
     /// Whether multisampled images are copied to images of one sample.
@@ -272,7 +277,7 @@ impl Workshop<'_> {
         api.BindFramebuffer(FRAMEBUFFER, framebuffer);
         for (side, image, internal) in images {
             let attachment = match side {
-                Side::Color | Side::Mask => COLOR_ATTACHMENT0,
+                Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_ATTACHMENT0,
                 Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
                 Side::Depth => DEPTH_ATTACHMENT,
             };

@@ -194,6 +194,8 @@ impl GlHost {
             color: image,
             depth: Some(image),
             mask: None,
+            surface_classes: None,
+            normals: None,
             width,
             height,
             generation,
@@ -434,7 +436,8 @@ impl Inner {
 
 /// Whether two descriptions name the same images, used in the same way.
 fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
-    (a.color, a.depth, a.mask, a.multisample) == (b.color, b.depth, b.mask, b.multisample)
+    let images = |d: &GlTargetDesc| (d.color, d.depth, d.mask, d.surface_classes, d.normals, d.multisample);
+    images(a) == images(b)
 }
 
 /// Makes sure that the marked context is current.

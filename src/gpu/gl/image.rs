@@ -37,6 +37,8 @@ pub(super) enum Side {
     Color,
     Depth,
     Mask,
+    Classes,
+    Normals,
 }
 
 impl Side {
@@ -46,6 +48,8 @@ impl Side {
             Self::Color => "target.color",
             Self::Depth => "target.depth",
             Self::Mask => "target.mask",
+            Self::Classes => "target.surface_classes",
+            Self::Normals => "target.normals",
         }
     }
 }
@@ -170,7 +174,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits 
     }
     let component = get(FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) as u32;
     match side {
-        Side::Color | Side::Mask => Bits {
+        Side::Color | Side::Mask | Side::Classes | Side::Normals => Bits {
             red: get(FRAMEBUFFER_ATTACHMENT_RED_SIZE),
             green: get(FRAMEBUFFER_ATTACHMENT_GREEN_SIZE),
             alpha: get(FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE),
@@ -260,7 +264,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
         ));
     }
     let attachment = match (side, name) {
-        (Side::Color | Side::Mask, _) => match api.uint(DRAW_BUFFER0) {
+        (Side::Color | Side::Mask | Side::Classes | Side::Normals, _) => match api.uint(DRAW_BUFFER0) {
             NONE => {
                 return Err(Error::new(
                     Status::InvalidArgument,

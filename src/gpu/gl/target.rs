@@ -45,6 +45,10 @@ pub struct GlTargetDesc {
     pub depth: Option<GlImage>,
     /// Where red is 1 the host's pixel stays: a texture of one sample, if there is one.
     pub mask: Option<GlImage>,
+    /// What each pixel shows is made of: a texture of one sample, if there is one.
+    pub surface_classes: Option<GlImage>,
+    /// Normals of what each pixel shows: a texture of one sample, if there is one.
+    pub normals: Option<GlImage>,
     /// Width in pixels; must be the images' own.
     pub width: u32,
     /// Height in pixels; must be the images' own.
@@ -75,6 +79,10 @@ pub struct GlTarget {
     pub depth_read: Option<wgpu::Texture>,
     /// The mask, to read.
     pub mask: Option<wgpu::Texture>,
+    /// The classes, to read.
+    pub surface_classes: Option<wgpu::Texture>,
+    /// The normals, to read.
+    pub normals: Option<wgpu::Texture>,
     /// Samples of colour and depth.
     pub samples: u32,
 }
@@ -208,7 +216,7 @@ impl Entry {
 /// What a copy of an image carries.
 pub(super) fn mask(side: Side, internal: u32) -> u32 {
     match side {
-        Side::Color | Side::Mask => COLOR_BUFFER_BIT,
+        Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_BUFFER_BIT,
         Side::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
         Side::Depth => DEPTH_BUFFER_BIT,
     }
