@@ -83,9 +83,10 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
 static bool record(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, uint32_t flags)
 {
     wk_opengl_target target = WK_OPENGL_TARGET_INIT;
-    target.color.kind = target.depth.kind = WK_OPENGL_TEXTURE;
+    target.color.kind = target.depth.kind = target.surface_classes.kind = WK_OPENGL_TEXTURE;
     target.color.name = p->color;
     target.depth.name = p->depth;
+    target.surface_classes.name = p->classes; /* the road is paved: it alone mirrors */
     target.width = (uint32_t)p->width;
     target.height = (uint32_t)p->height;
     target.generation = w->generation;
