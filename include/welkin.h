@@ -2003,7 +2003,9 @@ wk_status wk_context_create(wk_device *device,
 /**
  * Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
  * frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
- * lies in the context's cache_dir, and writes it there. Without this call the first frame builds them, and waits.
+ * lies in the context's cache_dir, and writes it there. Without this call the first frame shows a draft of the sky, a few
+ * steps of 255 from the whole one, which some hundred frames refine without a visible step; WK_FRAME_NO_HISTORY in a frame
+ * builds the whole there and then (docs/first-frames.md).
  * `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
  * no file.
  * Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
@@ -3048,9 +3050,15 @@ typedef uint32_t wk_clip_space;
 /** Flags of a frame. */
 typedef uint32_t wk_frame_flags;
 
-/** The camera jumped: nothing of earlier frames may show. */
+/**
+ * The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
+ * built in this frame, as with WK_FRAME_NO_HISTORY.
+ */
 #define WK_FRAME_CUT 1
-/** Draw the pure function of (seed, time, view): no history at all. */
+/**
+ * Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
+ * are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
+ */
 #define WK_FRAME_NO_HISTORY 2
 /** Depth is reversed: 1 is near, 0 is far. */
 #define WK_FRAME_DEPTH_REVERSED 4
@@ -3280,7 +3288,9 @@ typedef struct wk_report {
     uint64_t frame_id;
     /** Full-screen draws recorded for this frame so far. */
     uint32_t passes;
-    /** Tables rebuilt for this frame so far; 0 when only the camera turned. */
+    /**
+     * Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
+     */
     uint32_t tables_rebuilt;
     /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
     double exposure;

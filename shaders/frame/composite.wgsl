@@ -14,16 +14,16 @@ override PARTICLES: bool = false;
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
-fn sky_behind(d: vec3f) -> vec3f {
+fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
     if (!CLEAR_SKY || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
-    let spectrum = sky_radiance(d);
+    let spectrum = sky_radiance_on(path, d);
     if d.z < 0.0 {
-        return color_of(spectrum + ground_radiance(d)) * frame.medium_share + frame.night_floor;
+        return color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share + frame.night_floor;
     }
     // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-    let disc = max(color_of(disc_radiance(d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
+    let disc = max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
     let clear = (color_of(spectrum) + disc) * drawn.z + frame.night_floor;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
@@ -39,10 +39,12 @@ fn display(luminance: vec3f) -> vec3f {
 fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     let sky = range >= RANGE_SKY;
     var veil = Veil(vec3f(0.0), vec3f(1.0));
+    // One path for sky and air: a driver that compiles both ways, and takes both, does its part once.
+    let path = sky_path(ray.direction, range);
     if BACKGROUND && sky {
-        veil = Veil(sky_behind(ray.direction), vec3f(0.0));
+        veil = Veil(sky_behind(path, ray.direction), vec3f(0.0));
     } else if MEDIUM && !sky {
-        veil = air_between(ray.direction, range);
+        veil = air_on(path, ray.direction);
     }
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);

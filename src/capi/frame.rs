@@ -55,9 +55,11 @@ pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
-/// The camera jumped: nothing of earlier frames may show.
+/// The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
+/// built in this frame, as with WK_FRAME_NO_HISTORY.
 pub const WK_FRAME_CUT: wk_frame_flags = 1;
-/// Draw the pure function of (seed, time, view): no history at all.
+/// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
+/// are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;

@@ -112,7 +112,7 @@ pub struct wk_report {
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame so far.
     pub passes: u32,
-    /// Tables rebuilt for this frame so far; 0 when only the camera turned.
+    /// Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
     pub exposure: f64,

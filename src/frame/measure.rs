@@ -110,7 +110,7 @@ pub struct Report {
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame_id so far.
     pub passes: u32,
-    /// Tables rebuilt for this frame_id so far; 0 when only the camera turned.
+    /// Tables built, refined or faded for this frame_id so far; 0 when only the camera turned and the sky has its final quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied.
     pub exposure: f64,

@@ -38,9 +38,10 @@ use crate::{
 pub struct FrameFlags(pub u32);
 
 impl FrameFlags {
-    /// The camera jumped: nothing of earlier frames may show.
+    /// The camera jumped: nothing of earlier frames may show. Tables of the sky are whole, as without history.
     pub const CUT: Self = Self(1);
-    /// Draw the pure function of (seed, time, view): no history at all.
+    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if
+    /// they are not yet.
     pub const NO_HISTORY: Self = Self(2);
     /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so such
     /// a frame is slower, and its picture may differ by rounding. For [`View::record`] only.

@@ -1,8 +1,11 @@
 //! The device: one queue, its caps, its faults, and the way into a host's context.
 
-use std::sync::{
-    Arc, Mutex, MutexGuard, PoisonError,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    collections::HashMap,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use crate::error::{Error, Result, Status};
@@ -125,6 +128,8 @@ pub struct Device {
     pub device: wgpu::Device,
     /// Its one queue.
     pub queue: wgpu::Queue,
+    /// Shaders by name: reading one takes longer than making a pipeline of it.
+    shaders: Mutex<HashMap<String, wgpu::ShaderModule>>,
     caps: Caps,
     faults: Arc<Faults>,
     submission: Mutex<()>,
@@ -213,6 +218,7 @@ impl Device {
             adapter,
             device,
             queue,
+            shaders: Mutex::default(),
             caps,
             faults,
             submission,
@@ -270,11 +276,17 @@ impl Device {
     /// # Errors
     /// [`Status::Internal`] if an include is missing.
     pub fn shader(&self, name: &str) -> Result<wgpu::ShaderModule> {
+        let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = shaders.get(name) {
+            return Ok(known.clone());
+        }
         let text = super::shader::assemble(name)?;
-        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let made = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(text.into()),
-        }))
+        });
+        shaders.insert(name.to_owned(), made.clone());
+        Ok(made)
     }
 
     /// Submits. One thread at a time: what a Vulkan host stages for its own submission goes with no other.

@@ -4,6 +4,7 @@ mod froxels;
 mod host;
 mod measure;
 mod queries;
+mod refined;
 mod spaces;
 mod stability;
 mod stages;
