@@ -38,7 +38,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --no-fail-fast,cargo test
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: help setup setup-build lib stage install uninstall host demo fmt lint header docs test accept bench gallery lab
+.PHONY: help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench gallery lab
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -69,6 +69,11 @@ stage: lib
 host: setup stage
 	cmake -S examples/glfw_host -B "$(STAGE)/glfw_host" -DCMAKE_PREFIX_PATH="$(STAGE)" >/dev/null
 	cmake --build "$(STAGE)/glfw_host"
+
+osg-host: setup stage ## the OpenSceneGraph host, in a window where there is a display (ARGS="--help")
+	cmake -S examples/osg_host -B "$(STAGE)/osg_host" -DCMAKE_PREFIX_PATH="$(STAGE)" >/dev/null
+	cmake --build "$(STAGE)/osg_host"
+	@[ ! -x "$(STAGE)/osg_host/osg_host" ] || "$(STAGE)/osg_host/osg_host" --data examples/data $(ARGS)
 
 demo: host ## a C simulator with weather in it: a window, or pictures in out/ where there is no display
 	@mkdir -p out

@@ -257,6 +257,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_GROUND_GRID 46
 /** wk_ground_texture */
 #define WK_STRUCT_TYPE_GROUND_TEXTURE 47
+/** wk_frame_light */
+#define WK_STRUCT_TYPE_FRAME_LIGHT 60
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -731,6 +733,9 @@ wk_status wk_surface_config_init(wk_surface_config *out,
  * HOST_CONTEXT: Welkin draws in the host's own context; every piece of state it touches is saved, set, and put back.
  * Any framebuffer can be a target, the window's (0) too, by copies in and out.
  *
+ * One device serves all windows whose contexts share objects in SHARED mode, with a view each; in HOST_CONTEXT mode a device
+ * belongs to one context.
+ *
  * When a call begins the host's context is current on the calling thread, and so it is when it returns. Needed: OpenGL
  * 3.3 or OpenGL ES 3.0, core or compatibility; compute shaders are used from 4.3 (ES 3.1) on.
  * ====================================================================================================
@@ -858,23 +863,36 @@ typedef struct wk_opengl_target {
     /** What is drawn into. Default none. */
     wk_opengl_image color;
     /**
-     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one; else another
+     * image. It has as many samples as `color`. Where that has one (a resolved picture) depth may have more, not on OpenGL ES: one
+     * sample of each pixel counts.
      */
     wk_opengl_image depth;
     /**
      * A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
      */
     wk_opengl_image mask;
-    /** Pixels; must be the images' own. Default 0; must be given. */
+    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
     uint32_t width;
-    /** Pixels; must be the images' own. Default 0; must be given. */
+    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
     uint32_t height;
-    /** A number that the host raises when it makes an object anew under an old name. Default 0. */
+    /** A number that the host raises when it makes an object anew under an old name; it never falls. Default 0. */
     uint64_t generation;
     /** Default WK_OPENGL_MULTISAMPLE_EACH. */
     wk_opengl_multisample multisample;
     /** Must be 0. */
     uint32_t reserved0;
+    /**
+     * A texture of one sample that says what each pixel shows is made of: the byte of red is a wk_surface_class, 0 where
+     * wk_ground_grid or the context's default says it. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+     */
+    wk_opengl_image surface_classes;
+    /**
+     * A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in
+     * GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. What is no unit vector, as a cleared pixel,
+     * leaves it to the host's terrain and depth. Default none.
+     */
+    wk_opengl_image normals;
 } wk_opengl_target;
 
 /** Every field of `wk_opengl_target` at its default. */
@@ -889,13 +907,17 @@ typedef struct wk_opengl_target {
     /* height */ 0, \
     /* generation */ UINT64_C(0), \
     /* multisample */ WK_OPENGL_MULTISAMPLE_EACH, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_classes */ WK_OPENGL_IMAGE_INIT, \
+    /* normals */ WK_OPENGL_IMAGE_INIT \
 }
 
 /** Which context is asked for. */
 typedef uint32_t wk_opengl_context;
 
-/** The one the host draws in. */
+/**
+ * The one the host draws in: with several windows, the one that was current when the call came (keep it for each thread).
+ */
 #define WK_OPENGL_CONTEXT_HOST 0
 /** The one the host made for Welkin, sharing objects with its own. */
 #define WK_OPENGL_CONTEXT_WELKIN 1
@@ -1163,6 +1185,17 @@ typedef struct wk_vulkan_target {
     uint32_t signal_count;
     /** Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
     uint32_t signal_stride;
+    /**
+     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+     * it. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+     */
+    const wk_vulkan_image *surface_classes;
+    /**
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`, one
+     * sample. Default NULL.
+     */
+    const wk_vulkan_image *normals;
 } wk_vulkan_target;
 
 /** Every field of `wk_vulkan_target` at its default. */
@@ -1178,7 +1211,9 @@ typedef struct wk_vulkan_target {
     /* wait_count */ 0, \
     /* wait_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
     /* signal_count */ 0, \
-    /* signal_stride */ (uint32_t)sizeof(wk_vulkan_semaphore) \
+    /* signal_stride */ (uint32_t)sizeof(wk_vulkan_semaphore), \
+    /* surface_classes */ NULL, \
+    /* normals */ NULL \
 }
 
 /**
@@ -1537,7 +1572,10 @@ typedef struct wk_weather {
     double aerosol_single_scattering_albedo;
     /** Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity. */
     double aerosol_asymmetry;
-    /** Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. */
+    /**
+     * Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. Held to the station's altitude over
+     * 4.6 at least (435 m at 2000 m): the sky counts densities from the sea.
+     */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
     double fog_top_m;
@@ -1884,7 +1922,10 @@ typedef uint32_t wk_world_kind;
 #define WK_WORLD_FLAT 0
 /** East-north-up at the origin's place, the curved planet below. */
 #define WK_WORLD_TANGENT 1
-/** Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter. */
+/**
+ * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
+ * simulated ground (WK_GROUND_SIMULATED).
+ */
 #define WK_WORLD_ECEF 2
 
 /** Which of the host's axes point where, in flat and tangent worlds. */
@@ -2003,7 +2044,9 @@ wk_status wk_context_create(wk_device *device,
 /**
  * Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
  * frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
- * lies in the context's cache_dir, and writes it there. Without this call the first frame builds them, and waits.
+ * lies in the context's cache_dir, and writes it there. Without this call the first frame shows a draft of the sky, a few
+ * steps of 255 from the whole one, which some hundred frames refine without a visible step; WK_FRAME_NO_HISTORY in a frame
+ * builds the whole there and then (docs/first-frames.md).
  * `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
  * no file.
  * Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
@@ -2157,7 +2200,7 @@ typedef struct wk_given_direction {
 }
 
 /**
- * Changes the weather, beginning at `start_time_s` and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
+ * Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
  * have a wk_weather_overrides in its chain. Copied during the call.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
@@ -2172,11 +2215,28 @@ wk_status wk_context_set_weather(wk_context *context,
 /**
  * Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
  * the views record.
+ * Weather and light are functions of time and follow at once. A simulated ground (WK_GROUND_SIMULATED) is stepped, one step for
+ * every 10 s: in one call for 50 ms at most, but one step at least. Where that is not enough, after a leap of hours, the call
+ * answers WK_PENDING: call it again with the same time, in a loop or once a frame, until it answers WK_OK. Until then water on
+ * the ground is drawn and answered as of wk_context_get_state_time, what is set acts only after the steps that remain, and a time
+ * later than the one under way is taken when these are done. So the state is the same however many calls it takes.
+ * A leap of more than a day begins the ground anew a day before its end, as the weather reports the ground then.
  * Thread: exclusive.
- * Answers WK_PENDING if simulation steps remain to be done: call again with the same time.
+ * Answers WK_PENDING, which is no error, if steps remain.
  * Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
  */
-WK_API wk_status wk_context_update(wk_context *context, double time_s);
+WK_API
+wk_status wk_context_update(wk_context *context,
+                            double time_s);
+
+/**
+ * Simulation time of all that has state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING; how far
+ * the state lags behind is the difference. It never goes back, but for wk_context_load.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_state_time(const wk_context *context,
+                                    double *out_state_time_s);
 
 /**
  * Ties universal time to simulation time: it is `utc_s` (Unix time, seconds without leap seconds) at simulation time
@@ -2186,7 +2246,8 @@ WK_API wk_status wk_context_update(wk_context *context, double time_s);
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
 
 /**
- * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. Years -2000 to 6000.
+ * Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
+ * last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
  * Thread: any.
  */
 WK_API
@@ -2217,10 +2278,14 @@ WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_directi
 WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
 
 /**
- * Writes everything that decides what the context shows from now on: UTF-8 text, the same on every machine.
+ * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine: weather, time,
+ * clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain with its water, and of which
+ * world, place, planet, seed, tone curve and ground model it is. Not in it: how it is drawn (sky settings, views, plans), and the
+ * images of wk_context_set_occluder_maps, which may be other ones on each channel.
  * `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
  * or `buffer` is NULL with `capacity` 0 (then it succeeds).
  * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
 WK_API
 wk_status wk_context_save(const wk_context *context,
@@ -2229,10 +2294,13 @@ wk_status wk_context_save(const wk_context *context,
                           size_t *out_size);
 
 /**
- * Takes up a state that wk_context_save wrote, on a context of the same planet and seed.
+ * Loads a state that wk_context_save wrote, in place of all that it holds, on a context that was created alike: with the same
+ * world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for WK_WORLD_ECEF), seed,
+ * planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
  * Thread: exclusive.
- * Errors: WK_ERROR_PARSE for bytes that are no such state or of another version; WK_ERROR_INVALID_ARGUMENT if planet or
- * seed differ. The context stays as it was then.
+ * Errors: WK_ERROR_PARSE for bytes that are no such state, cut short, changed by as little as a byte, or of another format, which
+ * the message names (this version reads format 2; format 1, which did not say of which place it was, must be saved anew);
+ * WK_ERROR_INVALID_ARGUMENT naming all that was created otherwise. The context stays as it was then.
  */
 WK_API
 wk_status wk_context_load(wk_context *context,
@@ -2240,10 +2308,13 @@ wk_status wk_context_load(wk_context *context,
                           size_t size);
 
 /**
- * A number that is equal on two channels whose contexts show the same world from now on.
+ * A number that is equal on two channels whose contexts show the same world from now on: a hash of what wk_context_save writes.
  * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
-WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_hash);
+WK_API
+wk_status wk_context_state_hash(const wk_context *context,
+                                uint64_t *out_hash);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`
@@ -2371,7 +2442,11 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * Queries: conditions
  *
  * What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
- * come: closed form, no device is asked. Heights are above the station unless they say otherwise.
+ * come: closed form, no device is asked. Heights are above the station unless they say otherwise. Every number is continuous in
+ * time while the weather changes, and of a layer that comes or goes the geometry too.
+ *
+ * A position, here and in every other function, is a place if it lies within 1e12 m of the world's origin and at an altitude in
+ * [-1e4, 1e9] m above the sea. At other positions nothing is answered.
  * ====================================================================================================
  */
 
@@ -2423,7 +2498,9 @@ typedef struct wk_conditions {
     double fog_softness_m;
     /** Part of the ground that it covers, fraction. */
     double fog_coverage;
-    /** Part of the sky hidden by all layers together, fraction. */
+    /**
+     * Part of the sky hidden by all layers together, fraction. During a change never less and never more than at both its ends.
+     */
     double cloud_cover;
     /** Rain, mm/h. */
     double rain_mm_h;
@@ -2973,7 +3050,8 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * What falls at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+ * What falls at a place of the host's world and a simulation time. Above the clouds that it falls from there is none: above
+ * their bases, on the mean over what covers the sky.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3048,9 +3126,15 @@ typedef uint32_t wk_clip_space;
 /** Flags of a frame. */
 typedef uint32_t wk_frame_flags;
 
-/** The camera jumped: nothing of earlier frames may show. */
+/**
+ * The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
+ * built in this frame, as with WK_FRAME_NO_HISTORY.
+ */
 #define WK_FRAME_CUT 1
-/** Draw the pure function of (seed, time, view): no history at all. */
+/**
+ * Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
+ * are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
+ */
 #define WK_FRAME_NO_HISTORY 2
 /** Depth is reversed: 1 is near, 0 is far. */
 #define WK_FRAME_DEPTH_REVERSED 4
@@ -3065,12 +3149,17 @@ typedef uint32_t wk_frame_flags;
  * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
  */
 #define WK_FRAME_MEASURE 16
+/**
+ * The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
+ * those of the host's world.
+ */
+#define WK_FRAME_NORMALS_IN_EYE_SPACE 32
 
 /** What the numbers in the host's colour mean. */
 typedef uint32_t wk_color_space;
 
 /**
- * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which TONE may tone-map the picture.
+ * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
  */
 #define WK_COLOR_SCENE_LINEAR 0
 /** Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
@@ -3149,6 +3238,48 @@ typedef struct wk_frame {
     /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
 }
 
+/**
+ * Light for the host's own shading of a frame, in the numbers of its colour_space: a surface of colour c whose normal is n
+ * shows c * (ambient + direct * max(dot(n, direction), 0)).
+ *
+ * Scene-linear: exact for matt surfaces. Display spaces: the tone curve at the frame's exposure is in it, so that one pair of
+ * lights cannot be right for every surface; it is for a grey card of 18 %, in shade and facing the sun. For
+ * WK_COLOR_DISPLAY_LINEAR c is linear and the host (or its sRGB framebuffer) encodes what comes out; for
+ * WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
+ */
+typedef struct wk_frame_light {
+    /** sizeof(wk_frame_light) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FRAME_LIGHT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Unit vector in the host's world towards the sun, or towards the moon where that is brighter. */
+    double direction[3];
+    /** Its direct light on a surface that faces it, after air, clouds and fog; 0 below the horizon. */
+    double direct[3];
+    /** Light of sky, clouds and fog on level ground. */
+    double ambient[3];
+    /**
+     * Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+     */
+    double ambient_below[3];
+    /** Display units per cd/m^2 with which Welkin draws the frame. */
+    double exposure;
+} wk_frame_light;
+
+/** Every field of `wk_frame_light` at its default. */
+#define WK_FRAME_LIGHT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_frame_light), \
+    /* struct_type */ WK_STRUCT_TYPE_FRAME_LIGHT, \
+    /* next */ NULL, \
+    /* direction */ { 0.0, 0.0, 0.0 }, \
+    /* direct */ { 0.0, 0.0, 0.0 }, \
+    /* ambient */ { 0.0, 0.0, 0.0 }, \
+    /* ambient_below */ { 0.0, 0.0, 0.0 }, \
+    /* exposure */ 0.0 \
+}
+
 /** The images of a frame on an own device. */
 typedef struct wk_own_target {
     /** sizeof(wk_own_target) of your header. */
@@ -3165,6 +3296,17 @@ typedef struct wk_own_target {
     const wk_texture *depth;
     /** Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL. */
     const wk_texture *mask;
+    /**
+     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+     * it. R8_UNORM or the like, as large as `color`. Default NULL.
+     */
+    const wk_texture *surface_classes;
+    /**
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
+     * Default NULL.
+     */
+    const wk_texture *normals;
 } wk_own_target;
 
 /** Every field of `wk_own_target` at its default. */
@@ -3175,8 +3317,21 @@ typedef struct wk_own_target {
     /* color */ NULL, \
     /* surface */ NULL, \
     /* depth */ NULL, \
-    /* mask */ NULL \
+    /* mask */ NULL, \
+    /* surface_classes */ NULL, \
+    /* normals */ NULL \
 }
+
+/**
+ * Says how the host should light its own objects in a frame, before it draws them: of `frame` the camera's position, the
+ * colour_space with cd_m2_per_unit, and the exposure count; its target is not looked at.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name.
+ */
+WK_API
+wk_status wk_context_get_frame_light(const wk_context *context,
+                                     const wk_frame *frame,
+                                     wk_frame_light *out_light);
 
 /**
  * Writes the default of every field: the same bytes as `WK_FRAME_INIT`. `struct_size` is `sizeof(wk_frame)`
@@ -3189,6 +3344,14 @@ WK_API wk_status wk_frame_init(wk_frame *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FRAME_LIGHT_INIT`. `struct_size` is `sizeof(wk_frame_light)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_frame_light_init(wk_frame_light *out,
+                              uint32_t struct_size);
 
 /*
  * ====================================================================================================
@@ -3203,7 +3366,7 @@ WK_API wk_status wk_own_target_init(wk_own_target *out, uint32_t struct_size);
  *   MEDIUM      fog and aerial perspective on all that was drawn so far
  *   PARTICLES   what falls and flies
  *   LENS        water on the windscreen
- *   TONE        exposure, tone curve, encoding and dither of the whole picture
+ *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
  *
  * The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
  * in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
@@ -3247,8 +3410,9 @@ typedef uint32_t wk_stage_flags;
 /** Water on the windscreen. */
 #define WK_STAGE_LENS 32
 /**
- * Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
- * others are encoded as sRGB here.
+ * Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
+ * values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
+ * that: TONE does nothing then, alone or among other stages.
  */
 #define WK_STAGE_TONE 64
 /** Everything in one call. */
@@ -3280,7 +3444,9 @@ typedef struct wk_report {
     uint64_t frame_id;
     /** Full-screen draws recorded for this frame so far. */
     uint32_t passes;
-    /** Tables rebuilt for this frame so far; 0 when only the camera turned. */
+    /**
+     * Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
+     */
     uint32_t tables_rebuilt;
     /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
     double exposure;
@@ -3318,6 +3484,8 @@ typedef struct wk_report {
     double splashes_left_out_per_m2_s;
     /** Likewise the smallest stones that did not hop. */
     double stones_left_out_per_m2_s;
+    /** The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn. */
+    double contrast_gain;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3343,7 +3511,8 @@ typedef struct wk_report {
     /* reserved1 */ 0, \
     /* drop_weight */ 0.0, \
     /* splashes_left_out_per_m2_s */ 0.0, \
-    /* stones_left_out_per_m2_s */ 0.0 \
+    /* stones_left_out_per_m2_s */ 0.0, \
+    /* contrast_gain */ 0.0 \
 }
 
 /** What a frame spends time on. */
@@ -3401,7 +3570,7 @@ WK_API wk_status wk_view_destroy(wk_view *view);
 
 /**
  * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
- * After an error nothing was drawn by this call.
+ * What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
  * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
  * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
  * the field's name; WK_ERROR_DEVICE_LOST.
@@ -3821,6 +3990,18 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
+/** wk_rain.shutter_s of an eye: it adds up light over about so long by day. Streaks are long and faint. */
+#define WK_RAIN_SHUTTER_EYE_S 0.05
+
+/** wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default. */
+#define WK_RAIN_SHUTTER_CAMERA_60_S 0.016666666666666666
+
+/** wk_rain.shutter_s of a camera in good light. Streaks are short. */
+#define WK_RAIN_SHUTTER_CAMERA_500_S 0.002
+
+/** wk_rain.contrast_gain for trainers: rain by day shows on a display of eight bits as it does in a film. */
+#define WK_RAIN_GAIN_TRAINER 4.0
+
 /** With what a view draws rain; what falls is the same. */
 typedef uint32_t wk_rain_model;
 
@@ -3844,7 +4025,7 @@ typedef uint32_t wk_rain_model;
  */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
-/** How a view draws rain; what falls does not depend on it. */
+/** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
 typedef struct wk_rain {
     /** sizeof(wk_rain) of your header. */
     uint32_t struct_size;
@@ -3852,7 +4033,10 @@ typedef struct wk_rain {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Time for which a picture is exposed, s: it makes streaks of drops. Range [1e-4, 0.1], default 1/60. */
+    /**
+     * Time for which a picture is exposed, s: it makes streaks of drops, the longer and the fainter the longer it is
+     * (WK_RAIN_SHUTTER_ constants). Range [1e-4, 0.1], default 1/60.
+     */
     double shutter_s;
     /**
      * Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
@@ -3861,6 +4045,13 @@ typedef struct wk_rain {
     uint32_t most_drops;
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
+    /**
+     * By how much what falls stands out of the picture more than it does in nature. Range [1, 16], or 0, the default: 1, as in
+     * nature. Beyond 1 streaks, stones and splashes hide as much as so many of them one before the other, a departure from
+     * physics for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water
+     * and queries do not depend on it. Set it alike on all channels of a simulator.
+     */
+    double contrast_gain;
 } wk_rain;
 
 /** Every field of `wk_rain` at its default. */
@@ -3870,7 +4061,8 @@ typedef struct wk_rain {
     /* next */ NULL, \
     /* shutter_s */ 0.016666666666666666, \
     /* most_drops */ 0, \
-    /* model */ WK_RAIN_MODEL_AUTOMATIC \
+    /* model */ WK_RAIN_MODEL_AUTOMATIC, \
+    /* contrast_gain */ 0.0 \
 }
 
 /** A box that rain does not pass, in the host's world. */
@@ -4050,7 +4242,7 @@ typedef struct wk_rain_area {
     double velocity_m_s[2];
     /**
      * Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
-     * timeline knows. Default 0.
+     * timeline knows, but for 0, from which the wind's way is counted. Default 0.
      */
     double at_s;
     /** Default WK_AREA_MOTION_WITH_WIND. */
@@ -4161,8 +4353,7 @@ typedef struct wk_wind_grid {
 }
 
 /**
- * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Not part of a saved state.
- * Unchanged after an error.
+ * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -4257,7 +4448,7 @@ typedef struct wk_occluder_map {
 
 /**
  * Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
- * after an error.
+ * after an error. They are no part of a saved state: each channel may have its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
  * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
@@ -4554,14 +4745,39 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * ====================================================================================================
  * Wet ground
  *
- * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky, level
- * ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
- * colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, and of objects only that what keeps rain off is dark.
+ * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky,
+ * paved ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
+ * colour is taken for the ground's own. What is not marked by a wk_surface_class is natural ground, which hardly mirrors: mark
+ * roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky, and of objects only that what keeps rain off is dark.
  *
  * How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
  * in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
  * ====================================================================================================
  */
+
+/**
+ * What the ground is made of, in a wk_ground_grid, in an image of the target (the byte of red), and where neither says it, for
+ * all of a context. The image counts first, then the grid, then the context's default.
+ */
+typedef uint32_t wk_surface_class;
+
+/**
+ * In a grid or an image: as the context's default. As that default: natural ground, soil where the host's colour is not green and
+ * vegetation where it is.
+ */
+#define WK_SURFACE_CLASS_UNSPECIFIED 0
+/** Earth, sand, gravel: darkens, and mirrors hardly. */
+#define WK_SURFACE_CLASS_SOIL 1
+/** Bare rock: darkens, and shines in parts. */
+#define WK_SURFACE_CLASS_ROCK 2
+/** Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles. */
+#define WK_SURFACE_CLASS_PAVED 3
+/** Grass, crops, shrubs, trees: hardly changes. */
+#define WK_SURFACE_CLASS_VEGETATION 4
+/** Water that the host draws: rain leaves it as it is. */
+#define WK_SURFACE_CLASS_WATER 5
+/** Roofs and walls: darken and shine, without puddles. */
+#define WK_SURFACE_CLASS_BUILDING 6
 
 /** Water at a place of the ground. */
 typedef struct wk_ground {
@@ -4579,10 +4795,14 @@ typedef struct wk_ground {
     double wetness;
     /** Share of all the ground, or of the host's terrain, under standing water. */
     double puddles;
-    /** 1 where standing water covers the place, else 0. */
+    /** 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles. */
     uint32_t in_puddle;
     /** 0. */
     uint32_t reserved0;
+    /** What the ground is made of there, by the host's terrain, else by the context's default. */
+    wk_surface_class surface_class;
+    /** 0. */
+    uint32_t reserved1;
 } wk_ground;
 
 /** Every field of `wk_ground` at its default. */
@@ -4595,7 +4815,9 @@ typedef struct wk_ground {
     /* wetness */ 0.0, \
     /* puddles */ 0.0, \
     /* in_puddle */ 0, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_class */ WK_SURFACE_CLASS_UNSPECIFIED, \
+    /* reserved1 */ 0 \
 }
 
 /** Where the wetness of the ground comes from. */
@@ -4607,7 +4829,8 @@ typedef uint32_t wk_ground_model;
 #define WK_GROUND_REPORTED 0
 /**
  * A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
- * (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
+ * (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
+ * ground then. See wk_context_update for leaps that take more than one call.
  */
 #define WK_GROUND_SIMULATED 1
 
@@ -4635,7 +4858,7 @@ typedef struct wk_simulation_desc {
 }
 
 /**
- * Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+ * Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
  * it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
  * the context's seed.
  * Thread: concurrent.
@@ -4645,6 +4868,14 @@ WK_API
 wk_status wk_context_get_ground(const wk_context *context,
                                 const double (*position_m)[3],
                                 wk_ground *out_ground);
+
+/**
+ * What the ground is made of where neither the target's image nor the host's terrain says it. Default
+ * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
+ */
+WK_API wk_status wk_context_set_default_surface_class(wk_context *context, wk_surface_class surface_class);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SIMULATION_DESC_INIT`. `struct_size` is `sizeof(wk_simulation_desc)`
@@ -4701,6 +4932,15 @@ typedef struct wk_ground_grid {
     uint32_t height_count;
     /** Must be 0. */
     uint32_t reserved0;
+    /**
+     * What each cell is made of, in the order of the heights: numbers of wk_surface_class, 0 where the context's default holds.
+     * Copied by the call. Default NULL: nothing is said of any cell.
+     */
+    const uint8_t *surface_classes;
+    /** Numbers in surface_classes: 0 (the default), or height_count. */
+    uint32_t surface_class_count;
+    /** Must be 0. */
+    uint32_t reserved1;
 } wk_ground_grid;
 
 /** Every field of `wk_ground_grid` at its default. */
@@ -4713,7 +4953,10 @@ typedef struct wk_ground_grid {
     /* nodes */ { 2, 2 }, \
     /* heights_m */ NULL, \
     /* height_count */ 0, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* surface_classes */ NULL, \
+    /* surface_class_count */ 0, \
+    /* reserved1 */ 0 \
 }
 
 /**
@@ -4734,7 +4977,7 @@ typedef struct wk_ground_cell {
 
 /**
  * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
- * keeps its water, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
+ * keeps its water, whatever it is made of, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
  * error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
@@ -4744,7 +4987,7 @@ wk_status wk_context_set_ground_grid(wk_context *context,
                                      const wk_ground_grid *ground_grid);
 
 /**
- * Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+ * Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
  * `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
  * upload anew what has changed, every 10 s of simulation time at most.
  * Thread: concurrent.

@@ -163,7 +163,14 @@ public:
         return check(wk_context_set_weather(get(), &weather, start_time_s, transition_s));
     }
     wk_status set_clock(double utc_s, double time_s) { return check(wk_context_set_clock(get(), utc_s, time_s)); }
+    /* How the host should light its own objects in this frame. */
+    wk_status get_frame_light(const wk_frame &frame, wk_frame_light &light) const
+    {
+        return check(wk_context_get_frame_light(get(), &frame, &light));
+    }
+    /* WK_PENDING: steps of a simulated ground remain; call it again with the same time. */
     wk_status update(double time_s) { return check(wk_context_update(get(), time_s)); }
+    wk_status get_state_time(double &state_time_s) const { return check(wk_context_get_state_time(get(), &state_time_s)); }
     wk_status build_sky(wk_progress_fn progress = nullptr, void *user = nullptr)
     {
         return check(wk_context_build_sky(get(), progress, user));

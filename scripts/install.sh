@@ -26,13 +26,14 @@ fill() {
     chmod 644 "$2"
 }
 
+# What has not changed keeps its time (-C), so that hosts are not built again for nothing.
 install -d "$root/include" "$root/lib/pkgconfig" "$root/lib/cmake/welkin"
-install -m 755 "$build/$shared" "$root/lib/$shared_full"
+install -C -m 755 "$build/$shared" "$root/lib/$shared_full"
 ln -sf "$shared_full" "$root/lib/$shared_abi"
 ln -sf "$shared_abi" "$root/lib/$shared"
-install -m 644 "$build/libwelkin.a" "$root/lib/libwelkin.a"
+install -C -m 644 "$build/libwelkin.a" "$root/lib/libwelkin.a"
 for header in include/*; do
-    install -m 644 "$header" "$root/include/"
+    install -C -m 644 "$header" "$root/include/"
 done
 fill packaging/welkin.pc.in "$root/lib/pkgconfig/welkin.pc"
 fill packaging/welkinConfig.cmake.in "$root/lib/cmake/welkin/welkinConfig.cmake"

@@ -15,6 +15,7 @@ all_packages=(
     g++ pkg-config cmake binutils                     # C and C++ examples, consumers of the installed tree
     libgl-dev libegl-dev libpng-dev                   # C OpenGL host: its world, its pictures
     libglfw3-dev libx11-dev libxrandr-dev             # its window, and a window by native handle
+    libopenscenegraph-dev                             # C++ OpenSceneGraph host
     libvulkan-dev                                     # C Vulkan host
     libgl1-mesa-dri libegl1 libgl1 libvulkan1         # drivers, software ones included
     mesa-vulkan-drivers vulkan-validationlayers

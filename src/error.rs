@@ -86,6 +86,27 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// Most characters of a host's text that an error repeats.
+const MOST_SHOWN: usize = 120;
+
+/// A host's text as an error repeats it: its beginning, if it is long.
+pub(crate) fn shown(text: &str) -> std::borrow::Cow<'_, str> {
+    match text.char_indices().nth(MOST_SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]).into(),
+        None => text.into(),
+    }
+}
+
+/// What is wrong with a text that should be TOML: line, column and fault, without the line itself, which may be a whole state.
+pub(crate) fn toml_fault(text: &str, e: &toml::de::Error) -> String {
+    let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
+        return format!("TOML parse error: {}", shown(e.message()));
+    };
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    format!("TOML parse error at line {line}, column {column}: {}", shown(e.message()))
+}
+
 /// Checks that a parameter is finite and lies in `[lo, hi]`, or says so by name.
 ///
 /// # Errors
@@ -101,6 +122,16 @@ pub fn check_range(name: &str, value: f64, lo: f64, hi: f64, unit: &str) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_of_hosts_are_repeated_in_part() {
+        assert_eq!(shown("short"), "short");
+        assert_eq!(shown(&"\u{e9}".repeat(5000)).chars().count(), MOST_SHOWN + 3);
+        let text = format!("a = 1\n{} = = 2", "k".repeat(5000));
+        let e = toml::from_str::<toml::Table>(&text).unwrap_err();
+        let fault = toml_fault(&text, &e);
+        assert!(fault.starts_with("TOML parse error at line 2, column 50") && fault.len() < 300, "{fault}");
+    }
 
     #[test]
     fn range_check_names_parameter_range_and_unit() {

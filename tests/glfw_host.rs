@@ -2,9 +2,13 @@
 //! and its window on an X server without a screen. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
+mod x_server;
+
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::{fs, io::BufRead, io::BufReader};
+use std::process::Command;
+
+use x_server::Server;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -131,18 +135,10 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
 #[test]
 fn a_window_opens_draws_and_closes() {
     let host = Host::build("window");
-    let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("Xvfb is installed");
-    let mut line = String::new();
-    BufReader::new(server.stdout.take().expect("piped")).read_line(&mut line).expect("Xvfb names its display");
+    let server = Server::start();
     let mut window = host.command();
-    window.env("DISPLAY", format!(":{}", line.trim())).args(["--frames", "3"]);
+    window.env("DISPLAY", &server.display).args(["--frames", "3"]);
     let output = window.output();
-    let _ = (server.kill(), server.wait());
     let output = output.expect("the host runs");
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success() && said.contains("adapter: ") && said.contains("last frame: "), "{output:?}");

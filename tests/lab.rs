@@ -3,6 +3,9 @@
 // The lab's own modules; what only its commands call is not called here.
 #![allow(dead_code)]
 
+#[path = "rain/brute.rs"]
+#[allow(dead_code)] // The rain's own tests need more of it.
+mod brute;
 #[path = "../examples/lab/canvas.rs"]
 mod canvas;
 #[path = "../examples/lab/chart.rs"]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::sky::probe::{Answer, Probe, Question, Ray};
-use welkin::sky::{Observer, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables, SkyVolume};
+use welkin::sky::{Observer, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables, SkyVolume, TablesProgress};
 
 fn golden_planet() -> Planet {
     Planet::from_toml(include_str!("../examples/data/planet_golden.toml")).unwrap()
@@ -209,6 +209,61 @@ fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
     assert_eq!(*values.last().unwrap(), after, "it arrives where a fresh build is");
     let largest = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
     assert!(largest < (after - before).abs() / 12.0, "{values:?}");
+}
+
+/// Frames until the whole tables are shown.
+fn run(
+    tables: &mut SkyTables,
+    planet: &Planet,
+    follow: &mut dyn FnMut(&mut SkyTables, &Planet) -> (TablesProgress, bool),
+) -> Vec<(TablesProgress, bool)> {
+    let mut all: Vec<(TablesProgress, bool)> = Vec::new();
+    while all.last().is_none_or(|(p, _)| p.done < 1.0) {
+        all.push(follow(tables, planet));
+        assert!(all.len() < 200);
+    }
+    all
+}
+
+/// The work of every frame, counted: the tables of the default settings, on a device that draws nothing.
+#[test]
+fn a_frame_pays_a_slice_of_the_work_and_every_eighth_none() {
+    let device = Device::headless(&DeviceOptions { backends: wgpu::Backends::NOOP, ..Default::default() }).unwrap();
+    let mut tables = SkyTables::new(&device, &SkySettings::default()).unwrap();
+    let mut volume = SkyVolume::new(&tables).unwrap();
+    let share = 1.0 / 80.0;
+    let mut follow = |tables: &mut SkyTables, planet: &Planet| {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let progress = tables.update(&mut encoder, planet, share).unwrap();
+        let drawn = volume.prepare(&mut encoder, tables, &Observer::under_sun(planet, 10.0, 1.2)).unwrap();
+        device.submit_and_wait(encoder).unwrap();
+        (progress, drawn)
+    };
+    let planet = golden_planet();
+    let (first, drawn) = follow(&mut tables, &planet);
+    assert!(drawn && first.work > 0.0 && first.work < 1.0 / 16.0 && first.done == 0.0, "a draft at once: {first:?}");
+    let refined = run(&mut tables, &planet, &mut follow);
+    let works: Vec<f32> = refined.iter().map(|(p, _)| p.work).collect();
+    let built = works.iter().rposition(|w| *w > 0.0).unwrap() + 1;
+    assert!((works.iter().sum::<f32>() - 1.0).abs() < 1e-3 && (90..=98).contains(&built), "{built}: {works:?}");
+    assert!(works[..built - 1].chunks(8).all(|c| c.iter().take(7).all(|w| *w > 0.9 * share && *w <= share + 1e-6)));
+    assert!(works[..built].iter().skip(7).step_by(8).all(|w| *w == 0.0), "{works:?}");
+    // Neither where observers draw what was built, nor while it fades in.
+    assert!(refined[..built].iter().all(|(_, drawn)| !drawn) && refined[built].1);
+    assert_eq!(refined.len(), built + 1 + 16);
+    assert!(refined.windows(2).all(|w| w[0].0.done <= w[1].0.done));
+    // Another air begins with a draft of it, which costs as much a frame; a little of one does without.
+    let far = run(&mut tables, &planet.with_air_scaled(1.3), &mut follow);
+    assert!(far.iter().all(|(p, _)| p.work <= share + 1e-6) && far[0].0.done == 0.0);
+    assert!(far.len() > refined.len() + 16, "{} after {}", far.len(), refined.len());
+    let near = run(&mut tables, &planet.with_air_scaled(1.31), &mut follow);
+    assert_eq!((near.len(), near.iter().all(|(p, _)| p.work <= share + 1e-6)), (refined.len(), true));
+    // And an air far from what is being built ends that build.
+    follow(&mut tables, &planet.with_air_scaled(1.32));
+    let back = run(&mut tables, &planet, &mut follow);
+    assert_eq!(back.len(), far.len());
+    let builds = tables.builds();
+    assert_eq!(builds, 4, "drafts, and what was given up, are not counted");
 }
 
 #[test]

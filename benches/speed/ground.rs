@@ -7,6 +7,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
+    ground::SurfaceClass,
     scene::Camera,
     weather::{Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
 };
@@ -50,6 +51,8 @@ pub fn run() -> Fallible<()> {
     for (name, state, rate) in grounds {
         let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 35.0 }))?;
+        // All that water can do: film, puddles and rings.
+        context.set_default_surface_class(SurfaceClass::Paved);
         let surface = Surface { state: Some(state), ..Surface::default() };
         let kind = if rate > 0.0 { PrecipitationKind::Rain } else { PrecipitationKind::None };
         let precipitation = Precipitation::of(kind, rate);

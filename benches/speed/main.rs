@@ -1,8 +1,9 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, fog, glass, ground, parts, rain, sky).
+//! (record, first, fog, glass, ground, parts, rain, sky).
 
 #[path = "../../tests/depth_texture/mod.rs"]
 mod depth_texture;
+mod first;
 mod fog;
 mod glass;
 mod ground;
@@ -16,6 +17,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wanted = |name: &str| named.is_empty() || named.iter().any(|n| n == name);
     if wanted("record") {
         record::run()?;
+    }
+    if wanted("first") {
+        first::run()?;
     }
     if wanted("fog") {
         fog::run()?;

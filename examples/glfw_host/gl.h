@@ -36,6 +36,7 @@
     X(glDisable, PFNGLDISABLEPROC)                                     \
     X(glDrawBuffer, PFNGLDRAWBUFFERPROC)                               \
     X(glDrawArrays, PFNGLDRAWARRAYSPROC)                               \
+    X(glDrawBuffers, PFNGLDRAWBUFFERSPROC)                             \
     X(glDrawElements, PFNGLDRAWELEMENTSPROC)                           \
     X(glEnable, PFNGLENABLEPROC)                                       \
     X(glEnableVertexAttribArray, PFNGLENABLEVERTEXATTRIBARRAYPROC)     \

@@ -38,7 +38,11 @@ bool picture_create(picture *p, int width, int height)
     p->color = texture(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     p->depth = texture(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
     p->shown = texture(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE);
+    p->classes = texture(GL_R8, width, height, GL_RED, GL_UNSIGNED_BYTE);
     p->frame = framebuffer(p->color, p->depth);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, p->classes, 0);
+    const GLenum outputs[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, outputs);
     bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     p->shown_frame = framebuffer(p->shown, 0);
     complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
@@ -53,9 +57,9 @@ bool picture_create(picture *p, int width, int height)
 
 void picture_destroy(picture *p)
 {
-    GLuint textures[3] = {p->color, p->depth, p->shown}, frames[2] = {p->frame, p->shown_frame};
+    GLuint textures[4] = {p->color, p->depth, p->classes, p->shown}, frames[2] = {p->frame, p->shown_frame};
     glDeleteFramebuffers(2, frames);
-    glDeleteTextures(3, textures);
+    glDeleteTextures(4, textures);
     glDeleteVertexArrays(1, &p->array);
     glDeleteProgram(p->program);
     *p = (picture){0};

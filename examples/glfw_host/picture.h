@@ -8,7 +8,8 @@ typedef struct picture {
     int width, height;
     GLuint color;   /* RGBA16F texture */
     GLuint depth;   /* DEPTH_COMPONENT32F texture */
-    GLuint frame;   /* framebuffer with both */
+    GLuint classes; /* R8 texture: what each pixel is made of, a wk_surface_class over 255 */
+    GLuint frame;   /* framebuffer with all three */
     GLuint shown;   /* RGBA8 texture, display-encoded */
     GLuint shown_frame;
     GLuint program, array;

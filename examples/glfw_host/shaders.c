@@ -30,7 +30,8 @@ const char *const SCENE_FRAGMENT =
     "uniform vec3 ambient[9];\n"        /* radiance of the sky as spherical harmonics */
     "uniform sampler2DShadow shadow_map;\n"
     "uniform float per_unit;\n"         /* 1 / luminance of the value 1 */
-    "out vec4 colour;\n"
+    "layout(location = 0) out vec4 colour;\n"
+    "layout(location = 1) out vec4 surface_class;\n"
     "const float PI = 3.14159265;\n"
 
     /* Value noise; octaves finer than a pixel's footprint fade to their mean. */
@@ -73,6 +74,14 @@ const char *const SCENE_FRAGMENT =
     "    return mix(asphalt, albedo, smoothstep(3.5 - soft, 3.6 + soft, d));\n"
     "}\n"
 
+    /* A wk_surface_class: paved road, soil beside it and on the pad, rock on steep faces, plants elsewhere; machines and sheds. */
+    "float made_of(vec3 n) {\n"
+    "    if (!ground) return 6.0;\n"
+    "    if (abs(v_road) < 3.55) return 3.0;\n"
+    "    if (abs(v_road) < 4.9 || length(v_position.xy - pad) < 10.5) return 1.0;\n"
+    "    return n.z < 0.75 ? 2.0 : 4.0;\n"
+    "}\n"
+
     "float sun_visibility(float cosine) {\n"
     "    if (any(lessThan(v_shadow, vec3(0.0))) || any(greaterThan(v_shadow, vec3(1.0)))) return v_sunlit;\n"
     "    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));\n"
@@ -98,6 +107,7 @@ const char *const SCENE_FRAGMENT =
     "    float cosine = max(dot(n, sun_direction), 0.0);\n"
     "    vec3 irradiance = sun_illuminance * (cosine > 0.0 ? cosine * sun_visibility(cosine) : 0.0) + sky_irradiance(n);\n"
     "    colour = vec4(min(albedo / PI * irradiance * per_unit, vec3(60000.0)), 1.0);\n"
+    "    surface_class = vec4(made_of(n) / 255.0, 0.0, 0.0, 1.0);\n"
     "}\n";
 
 const char *const SHADOW_VERTEX =

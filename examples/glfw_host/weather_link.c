@@ -25,10 +25,15 @@ bool weather_open(weather_link *w, const platform *p)
     place.latitude_deg = SITE_LATITUDE_DEG;
     place.longitude_deg = SITE_LONGITUDE_DEG;
 
+    /* Rain as trainees should see it: at the default's contrast, as in nature, hardly any shows by day. */
+    wk_rain rain = WK_RAIN_INIT;
+    rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
+
     *w = (weather_link){.caps = WK_CAPS_INIT};
     return check(wk_device_create_opengl(&host, &w->device)) &&
            check(wk_context_create(w->device, &place, &w->context)) &&
-           check(wk_view_create(w->context, NULL, &w->view));
+           check(wk_view_create(w->context, NULL, &w->view)) &&
+           check(wk_view_set_rain(w->view, &rain));
 }
 
 void weather_close(weather_link *w)
@@ -61,6 +66,7 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     wk_ambient sky = WK_AMBIENT_INIT;
     wk_ground_light arriving;
     w->time_s = time_s;
+    /* WK_PENDING passes: a simulated ground that lags after a leap goes on in the next frame. */
     if (!check(wk_context_update(w->context, time_s)) || !check(wk_context_get_sun(w->context, &at, &sun)) ||
         !check(wk_context_get_moon(w->context, &at, &moon)) || !check(wk_context_get_ambient(w->context, &at, &sky)) ||
         !check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))
@@ -83,9 +89,10 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
 static bool record(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, uint32_t flags)
 {
     wk_opengl_target target = WK_OPENGL_TARGET_INIT;
-    target.color.kind = target.depth.kind = WK_OPENGL_TEXTURE;
+    target.color.kind = target.depth.kind = target.surface_classes.kind = WK_OPENGL_TEXTURE;
     target.color.name = p->color;
     target.depth.name = p->depth;
+    target.surface_classes.name = p->classes; /* the road is paved: it alone mirrors */
     target.width = (uint32_t)p->width;
     target.height = (uint32_t)p->height;
     target.generation = w->generation;

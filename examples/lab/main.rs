@@ -3,6 +3,9 @@
 //! `make lab ARGS="chart sky"`. Results are kept row by row: a run that was stopped is continued by the same command.
 //! Wrong arguments: a message on standard error, exit code 2, nothing written.
 
+#[path = "../../tests/rain/brute.rs"]
+#[allow(dead_code)] // The tests need more of it.
+mod brute;
 mod canvas;
 mod chart;
 mod command;

@@ -20,6 +20,7 @@ use welkin::sky::SkySettings;
 use welkin::sky::spectral::luminance;
 use welkin::weather::{Precipitation, PrecipitationKind, Weather};
 
+use crate::brute::Film;
 use crate::scenes::RainScene;
 use crate::timing::target;
 
@@ -37,6 +38,8 @@ const WALL_M: f64 = 60.0;
 /// Up to where the truth has drops.
 const FAR_M: f64 = cones::BANDS_M[cones::CONES];
 const NEAREST: (f64, f64) = (0.125, 0.25);
+/// What is smaller shows in no way as drops, mm.
+const DRAWN_FROM_MM: f64 = 0.5;
 const HALF: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
@@ -271,15 +274,7 @@ struct Drops {
     extinction_per_m: f64,
     hidden_per_m: f64,
     counted: Classes,
-}
-
-/// SplitMix64, [0, 1).
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    rate_mm_h: f64,
 }
 
 impl Drops {
@@ -298,6 +293,7 @@ impl Drops {
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
             lamps: host.context.lights().to_vec(),
             counted,
+            rate_mm_h: host.scene.rate_mm_h,
             light: DropLight::of(&scene),
         })
     }
@@ -336,28 +332,27 @@ impl Drops {
         layer(&sums)
     }
 
-    /// Light and cover at every pixel, of all drops.
+    /// Light and cover at every pixel, of all drops: their sizes, speeds and places are none of Welkin's.
     fn all(&self, size: (u32, u32), seed: u64) -> Vec<[f64; 2]> {
-        let f = focal(size);
-        let far = FAR_M;
-        let (wide, high) = (0.5 * f64::from(size.0) / f, 0.5 * f64::from(size.1) / f);
-        let mut state = seed;
+        let film = Film {
+            size,
+            fov_rad: FOV,
+            exposure_s: self.exposure_s,
+            rate_mm_h: self.rate_mm_h,
+            wind_m_s: self.wind_m_s,
+            camera_m_s: self.camera_m_s,
+            from_mm: DRAWN_FROM_MM,
+            near_m: NEAREST,
+            far_m: FAR_M,
+        };
         let mut sums = vec![[0.0f64; 2]; (size.0 * size.1) as usize];
-        for (diameter, speed, number) in &self.classes {
-            let half = self.half(*speed);
-            // A pyramid with a margin, so that streaks come in from outside.
-            let (w, h) = (wide * far + 0.5, high * far + 0.5);
-            let count = (number * 4.0 * w * h * far / 3.0).round() as u64;
-            for _ in 0..count {
-                let y = far * random(&mut state).cbrt();
-                let side = |s: f64, u: f64| (2.0 * u - 1.0) * s * y / far;
-                let p = DVec3::new(side(w, random(&mut state)), y, side(h, random(&mut state)));
-                let d = p.length();
-                let t = ((d - NEAREST.0) / (NEAREST.1 - NEAREST.0)).clamp(0.0, 1.0);
-                if d < far && t > 0.0 && half.y.abs() < 0.6 * y {
-                    let share = t * t * (3.0 - 2.0 * t) * (-self.extinction_per_m * d).exp();
-                    self.deposit(&mut sums, size, (p, half, *diameter), share);
-                }
+        for drop in film.drops(seed, 0.0) {
+            let (p, half) = (drop.position_m, drop.velocity_m_s * (0.5 * self.exposure_s));
+            let d = p.length();
+            let t = ((d - NEAREST.0) / (NEAREST.1 - NEAREST.0)).clamp(0.0, 1.0);
+            if p.y > 0.0 && d < FAR_M && t > 0.0 && half.y.abs() < 0.6 * p.y {
+                let share = t * t * (3.0 - 2.0 * t) * (-self.extinction_per_m * d).exp();
+                self.deposit(&mut sums, size, (p, half, drop.diameter_m), share);
             }
         }
         layer(&sums)

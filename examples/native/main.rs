@@ -12,6 +12,7 @@ use welkin::{
     context::{Context, ContextDesc, Scene},
     frame::{Frame, Shared, Stages, View, tone},
     gpu::{Device, readback},
+    rain::RainSettings,
     scene::{Camera, HostLight},
 };
 
@@ -39,6 +40,7 @@ struct Host {
     group: wgpu::BindGroup,
     color: wgpu::Texture,
     depth: wgpu::Texture,
+    classes: wgpu::Texture,
     terrain: world::Terrain,
 }
 
@@ -69,7 +71,7 @@ impl Host {
         let lent = lend_device()?;
         let device = &lent.device;
         let module = device.create_shader_module(wgpu::include_wgsl!("scene.wgsl"));
-        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+        let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("host"),
             layout: None,
@@ -96,7 +98,7 @@ impl Host {
                 module: &module,
                 entry_point: Some("fragment"),
                 compilation_options: Default::default(),
-                targets: &[Some(wgpu::TextureFormat::Rgba16Float.into())],
+                targets: &[Some(wgpu::TextureFormat::Rgba16Float.into()), Some(wgpu::TextureFormat::R8Unorm.into())],
             }),
             multiview_mask: None,
             cache: None,
@@ -114,8 +116,9 @@ impl Host {
         });
         let color = target(device, wgpu::TextureFormat::Rgba16Float);
         let depth = target(device, wgpu::TextureFormat::Depth32Float);
+        let classes = target(device, wgpu::TextureFormat::R8Unorm);
         let terrain = world::Terrain::read("examples/data/jacksboro_dem.png")?;
-        Ok(Self { pipeline, uniform, group, color, depth, terrain, device: lent.clone() })
+        Ok(Self { pipeline, uniform, group, color, depth, classes, terrain, device: lent.clone() })
     }
 
     /// Vertices relative to the camera, so that f32 holds them.
@@ -157,15 +160,19 @@ impl Host {
             deck,
         };
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
-        let (color, depth) = (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("host"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &color,
+        let [color, depth, classes] =
+            [&self.color, &self.depth, &self.classes].map(|t| t.create_view(&Default::default()));
+        let cleared = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host"),
+            color_attachments: &[cleared(&color), cleared(&classes)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
@@ -217,6 +224,7 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let forward = DVec3::new(sa * ce, ca * ce, se);
     let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
     let mut view = View::new(&context)?;
+    view.set_rain(RainSettings::TRAINER)?;
     if let Some(windscreen) = shot.windscreen {
         // Rain has fallen on it for 50 s.
         for i in 0..=1000u32 {
@@ -231,7 +239,8 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
     let scene = context.scene_at(eye, context.time_s())?;
     host.draw(&mut encoder, &camera, &scene, context.lights(), vertices.as_ref(), deck(shot));
-    let frame = Frame::new(1, camera, &host.color, Some(&host.depth));
+    // The road is paved, and it alone mirrors.
+    let frame = Frame { surface_classes: Some(&host.classes), ..Frame::new(1, camera, &host.color, Some(&host.depth)) };
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
     host.device.submit_and_wait(encoder)?;
     let pixels = readback::rgba(&host.device, &host.color)?;

@@ -28,11 +28,12 @@ struct Varying {
     @location(0) normal: vec3f,
     @location(1) albedo: vec3f,
     @location(2) place: vec3f,
+    @location(3) made_of: f32,
 }
 
 @vertex
-fn vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @location(2) albedo: vec3f) -> Varying {
-    return Varying(host.view_projection * vec4f(position, 1.0), normal, albedo, position);
+fn vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @location(2) albedo: vec3f, @location(3) made_of: f32) -> Varying {
+    return Varying(host.view_projection * vec4f(position, 1.0), normal, albedo, position, made_of);
 }
 
 // Part of the sky's light on level ground that a level rectangle hides, whose corner is `a` away over its height; as odd in
@@ -60,8 +61,14 @@ fn sky_share(p: vec3f, n: vec3f) -> f32 {
     return up * (1.0 - hidden) + 0.12 * (1.0 - up);
 }
 
+struct Drawn {
+    @location(0) color: vec4f,
+    // What Welkin reads of each pixel: the number of what it is made of over 255.
+    @location(1) made_of: vec4f,
+}
+
 @fragment
-fn fragment(in: Varying) -> @location(0) vec4f {
+fn fragment(in: Varying) -> Drawn {
     let n = normalize(in.normal);
     var light = host.sun_light * max(dot(n, host.sun), 0.0) + host.sky_light * sky_share(in.place, n);
     for (var i = 0; i < 2; i++) {
@@ -71,5 +78,5 @@ fn fragment(in: Varying) -> @location(0) vec4f {
         let beam = smoothstep(lamp.end, lamp.full, dot(d, lamp.direction));
         light += lamp.intensity * (beam * max(-dot(n, d), 0.0) / dot(to, to));
     }
-    return vec4f(in.albedo * light / 3.14159265, 1.0);
+    return Drawn(vec4f(in.albedo * light / 3.14159265, 1.0), vec4f(in.made_of / 255.0));
 }

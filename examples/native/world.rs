@@ -1,6 +1,7 @@
 //! The host's world: real terrain, a road, posts at known distances, a simple excavator of boxes.
 
 use glam::{Vec2, Vec3};
+use welkin::ground::SurfaceClass;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -8,6 +9,8 @@ pub struct Vertex {
     pub position: [f32; 3],
     pub normal: [f32; 3],
     pub albedo: [f32; 3],
+    /// Number of what it is made of.
+    pub class: f32,
 }
 
 /// Distances of the posts along the road, m.
@@ -56,7 +59,7 @@ impl Terrain {
                     let normal = self.normal(c, r);
                     let flat = (normal.z - 0.9).max(0.0) * 10.0;
                     let albedo = Vec3::new(0.10, 0.12, 0.05).lerp(Vec3::new(0.12, 0.15, 0.06), flat);
-                    out.push(vertex(self.position(c, r), normal, albedo));
+                    out.push(vertex(self.position(c, r), normal, albedo, SurfaceClass::Unspecified));
                 }
             }
         }
@@ -69,8 +72,9 @@ impl Terrain {
     }
 }
 
-fn vertex(position: Vec3, normal: Vec3, albedo: Vec3) -> Vertex {
-    Vertex { position: position.to_array(), normal: normal.to_array(), albedo: albedo.to_array() }
+fn vertex(position: Vec3, normal: Vec3, albedo: Vec3, class: SurfaceClass) -> Vertex {
+    let [position, normal, albedo] = [position, normal, albedo].map(|v| v.to_array());
+    Vertex { position, normal, albedo, class: f32::from(class as u8) }
 }
 
 /// An upright box that stands on `foot`.
@@ -83,7 +87,7 @@ fn cuboid(foot: Vec3, size: Vec3, albedo: Vec3, out: &mut Vec<Vertex>) {
             let v = n.cross(u);
             let corner = |a: f32, b: f32| centre + 0.5 * size * (n + a * u + b * v);
             for (a, b) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-                out.push(vertex(corner(a, b), n, albedo));
+                out.push(vertex(corner(a, b), n, albedo, SurfaceClass::Building));
             }
         }
     }
@@ -112,7 +116,7 @@ pub fn mesh(terrain: &Terrain, eye: Vec2, with_bridge: bool) -> Vec<Vertex> {
         let ends = [(-3.0, y), (3.0, y), (3.0, y + 10.0), (-3.0, y), (3.0, y + 10.0), (-3.0, y + 10.0)];
         for (x, y) in ends {
             let p = ground(eye + Vec2::new(x, y)) + Vec3::new(0.0, 0.0, 0.3 + 0.002 * y.max(0.0));
-            out.push(vertex(p, Vec3::Z, Vec3::splat(0.09)));
+            out.push(vertex(p, Vec3::Z, Vec3::splat(0.09), SurfaceClass::Paved));
         }
     }
     for d in POSTS_M {

@@ -6,7 +6,12 @@ struct Facing {
     normal: vec3f,
     // 0 where depth is too coarse to tell, 1 where the normal can be trusted.
     sure: f32,
+    // By which angle the normal may be off, rad; more than 1 where nothing is known.
+    error: f32,
 }
+
+// Error of a normal of which nothing is known, rad.
+const UNKNOWN_FACING: f32 = 10.0;
 
 struct DepthPoint {
     at: vec3f,
@@ -38,12 +43,12 @@ fn facing_of(u: DepthUniform, depth: f32, around: vec4f, ndc: vec2f, pixel: vec2
     let across = cross(edge_x, edge_y);
     let area = length(across);
     if !(area > 0.0) || max(length(edge_x), length(edge_y)) > 1e9 {
-        return Facing(-ray.direction, 0.0);
+        return Facing(-ray.direction, 0.0, UNKNOWN_FACING);
     }
     let n = across / area;
     let away = dot(n, ray.direction);
     // How far the host's depth may be off, over the distance to the neighbours: the angle by which the normal is.
     let off = abs(view_depth(u, depth + grain.x + grain.y * abs(depth), ndc) - here.depth) * ray.slant;
     let tilt = off * abs(away) / min(length(edge_x), length(edge_y));
-    return Facing(select(n, -n, away > 0.0), 1.0 - smoothstep(0.1, 0.4, tilt));
+    return Facing(select(n, -n, away > 0.0), 1.0 - smoothstep(0.1, 0.4, tilt), min(tilt, UNKNOWN_FACING));
 }

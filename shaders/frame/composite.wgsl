@@ -14,16 +14,16 @@ override PARTICLES: bool = false;
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
-fn sky_behind(d: vec3f) -> vec3f {
+fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
     if (!CLEAR_SKY || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
-    let spectrum = sky_radiance(d);
+    let spectrum = sky_radiance_on(path, d);
     if d.z < 0.0 {
-        return color_of(spectrum + ground_radiance(d)) * frame.medium_share + frame.night_floor;
+        return color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share + frame.night_floor;
     }
     // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-    let disc = max(color_of(disc_radiance(d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
+    let disc = max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
     let clear = (color_of(spectrum) + disc) * drawn.z + frame.night_floor;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
@@ -39,10 +39,12 @@ fn display(luminance: vec3f) -> vec3f {
 fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     let sky = range >= RANGE_SKY;
     var veil = Veil(vec3f(0.0), vec3f(1.0));
+    // One path for sky and air: a driver that compiles both ways, and takes both, does its part once.
+    let path = sky_path(ray.direction, range);
     if BACKGROUND && sky {
-        veil = Veil(sky_behind(ray.direction), vec3f(0.0));
+        veil = Veil(sky_behind(path, ray.direction), vec3f(0.0));
     } else if MEDIUM && !sky {
-        veil = air_between(ray.direction, range);
+        veil = air_on(path, ray.direction);
     }
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
@@ -60,6 +62,24 @@ fn with_drops(veil: Veil, pixel: vec2u) -> Veil {
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 
+// What the host says of the surface that a pixel shows, where it does: its class in red, and its normal.
+@group(0) @binding(9) var host_classes: texture_2d<f32>;
+@group(0) @binding(10) var host_normals: texture_2d<f32>;
+
+override HAS_CLASSES: bool = false;
+override HAS_NORMALS: bool = false;
+
+fn host_surface(facing: Facing, pixel: vec2u) -> HostSurface {
+    var surface = HostSurface(facing, 0u, vec4f(0.0));
+    if HAS_CLASSES {
+        surface.number = u32(textureLoad(host_classes, vec2i(pixel), 0).r * 255.0 + 0.5);
+    }
+    if HAS_NORMALS {
+        surface.normal = given_normal(ground, textureLoad(host_normals, vec2i(pixel), 0).rgb);
+    }
+    return surface;
+}
+
 // The host's colour as luminance, or linear in the display's space.
 fn linear_host(host: vec3f) -> vec3f {
     if frame.color_space == SCENE_LINEAR {
@@ -73,7 +93,7 @@ fn compose(host: vec4f, range: f32, plane: f32, facing: Facing, mask: f32, ndc: 
     let ray = view_ray(frame.depth, ndc);
     var veil = weather_over(ray, range, plane);
     if SURFACE && range < RANGE_SKY {
-        let wet = wet_surface(linear_host(host.rgb), frame.color_space != SCENE_LINEAR, ray, range, facing);
+        let wet = wet_surface(linear_host(host.rgb), frame.color_space != SCENE_LINEAR, ray, range, host_surface(facing, pixel));
         veil.light += veil.transmittance * wet.light;
         veil.transmittance *= wet.transmittance;
     }

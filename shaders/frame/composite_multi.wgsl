@@ -26,7 +26,7 @@ fn composite(in: FullscreenVarying, @builtin(sample_index) sample: u32) -> @loca
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
     var range = RANGE_SKY;
     var plane = RANGE_SKY;
-    var facing = Facing(vec3f(0.0), 0.0);
+    var facing = Facing(vec3f(0.0), 0.0, UNKNOWN_FACING);
     if HAS_DEPTH {
         let depth = textureLoad(host_depth, pixel, i32(sample)).r;
         range = view_range(frame.depth, depth, ndc);

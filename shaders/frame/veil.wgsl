@@ -20,10 +20,14 @@ fn overcast_gradation(sin_elevation: f32) -> f32 {
 }
 
 fn air_between(d: vec3f, distance: f32) -> Veil {
+    return air_on(sky_path(d, distance), d);
+}
+
+fn air_on(path: SkyPath, d: vec3f) -> Veil {
     if !AIR || drawn.x == 0.0 {
         return Veil(vec3f(0.0), vec3f(1.0));
     }
-    let air = aerial(d, distance);
+    let air = aerial_on(path, d);
     let night = frame.night_floor * (1.0 - air.transmittance);
     let clear = color_of(air.radiance) * frame.medium_share;
     // No beam reaches the air below a deck: it is lit by the deck, and far things fade to the deck at the horizon.

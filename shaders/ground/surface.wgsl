@@ -3,16 +3,12 @@
 //!include "frame/ground_binding.wgsl"
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
-//!include "ground/normal.wgsl"
-//!include "ground/terrain.wgsl"
+//!include "ground/class.wgsl"
 //!include "rain/lights_binding.wgsl"
 //!include "rain/shelter.wgsl"
 
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;
-
-// Whether the host has given its terrain.
-override TERRAIN: bool = false;
 
 // Whether anything keeps rain off, and whether there are lamps of the host's.
 override SHELTER: bool = false;
@@ -22,7 +18,7 @@ override LAMPS: bool = false;
 fn sky_without_lamps(d: vec3f) -> vec3f {
     var clear = frame.night_floor;
     if CLEAR_SKY && drawn.z > 0.0 && frame.deck_cover < 1.0 {
-        clear += color_of(sky_radiance(d)) * drawn.z;
+        clear += color_of(sky_radiance_above(d)) * drawn.z;
     }
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
@@ -45,14 +41,7 @@ fn caught(up_cosine: f32) -> f32 {
 fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f {
     let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
     let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up)) + lamps;
-    return clamp(luminance * SKY_PI / max(light, vec3f(1e-9)), vec3f(0.0), vec3f(0.9));
-}
-
-// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which is 0
-// for grey and below 0 for soil. Leaves shed water: they neither shine as a film nor show the puddles below them.
-fn plants(albedo: vec3f) -> f32 {
-    let excess = (2.0 * albedo.g - albedo.r - albedo.b) / max(albedo.r + albedo.g + albedo.b, 1e-6);
-    return smoothstep(0.08, 0.3, excess);
+    return luminance * SKY_PI / max(light, vec3f(1e-9));
 }
 
 // One kind of water on a surface: how it is turned, how rough it is, how much of it there is.
@@ -98,6 +87,9 @@ const CLOSED_FILM_SLOPE: f32 = 0.15;
 
 // Slope of the clear ice that freezing rain leaves.
 const GLAZE_SLOPE: f32 = 0.04;
+
+// Slope up to which ground keeps the pattern's puddles for certain (`smoothstep` of its cosine).
+const POOL_SLOPE: f32 = 0.08;
 
 // Radius that a lamp of the host is taken to have, m.
 const LAMP_RADIUS: f32 = 0.1;
@@ -182,19 +174,49 @@ fn rained_on(p: vec3f, boxes: bool) -> f32 {
     return share;
 }
 
+// How a surface lies, what it is made of, and its own colour.
+struct Wetted {
+    facing: Facing,
+    look: SurfaceLook,
+    albedo: vec3f,
+}
+
+// `host`, `albedo_known`: as of `wet_surface`.
+fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSurface, here: TerrainPoint) -> Wetted {
+    let known = known_facing(surface, here);
+    if albedo_known {
+        let look = surface_look(surface, here, host);
+        return Wetted(settled_facing(known, up, look.level), look, clamp(host, vec3f(0.0), vec3f(look.most_albedo)));
+    }
+    let lamps = host_lamps(at, known.normal);
+    let look = surface_look(surface, here, dry_albedo(host, up, up, lamps));
+    let facing = settled_facing(known, up, look.level);
+    // The host lights natural ground by normals that go smoothly over its triangles: those of depth would show each of them.
+    // Gentle slopes are taken for level there, which is off by a tenth of the darkening at most.
+    let rough = smoothstep(0.0, 0.3, look.slope) * smoothstep(0.5, 0.8, dot(facing.normal, up));
+    let by_depth = surface.normal.w == 0.0;
+    let flat = select(0.0, max(rough, 1.0 - facing.sure) * (1.0 - here.share), by_depth);
+    let albedo = dry_albedo(host, normalize(mix(facing.normal, up, flat)), up, lamps);
+    return Wetted(facing, look, clamp(albedo, vec3f(0.0), vec3f(look.most_albedo)));
+}
+
 // `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that is
 // known of the albedo.
-fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing: Facing) -> Veil {
+fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Veil {
     let at = ray.origin + ray.direction * range;
     let up = normalize(vec3f(at.xy * ground.curvature, 1.0));
-    let level = dot(facing.normal, up);
-    let kept = caught(level);
-    let to_eye = -ray.direction;
-    var albedo = clamp(host, vec3f(0.0), vec3f(0.9));
-    if !albedo_known {
-        albedo = dry_albedo(host, facing.normal, up, host_lamps(at, facing.normal));
+    var here = no_terrain();
+    if TERRAIN {
+        here = terrain_at(at);
     }
-    let below = wet_share(albedo, ground.entering);
+    let ground_here = wetted(host, albedo_known, at, up, surface, here);
+    let facing = ground_here.facing;
+    let look = ground_here.look;
+    // What depth does not tell is taken for level.
+    let level = dot(facing.normal, up);
+    let kept = caught(mix(1.0, level, facing.sure));
+    let to_eye = -ray.direction;
+    let below = wet_share(ground_here.albedo, ground.entering);
 
     // The pixel's sides on the ground.
     let side = range * frame.pixel_angle;
@@ -204,30 +226,30 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let across = vec2f(-along.y, along.x) * side;
     let place = vec2f(dot(ground.axis_u, at), dot(ground.axis_v, at));
 
-    var here = TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0));
-    if TERRAIN {
-        here = terrain_at(at);
-    }
     var gets = 1.0;
     if SHELTER {
         // What falls past boxes the terrain's cells know.
         gets = rained_on(off_surface(at, facing.normal, range), here.share < 0.5 || ground.glaze > 0.0);
     }
-    let bare = facing.sure * (1.0 - plants(albedo));
-    let waves = select(0u, HOLLOW_WAVES, bare > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
-    let hollow = hollow_depth(ground, place, across, along * (side / cosine), waves);
-    var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level);
+    // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
+    let waves = select(0u, HOLLOW_WAVES, look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
+    let pattern = hollow_depth(ground, place, across, along * (side / cosine), waves);
+    let hollow = vec2f(pattern.x * look.hollows, mix(1.0, pattern.y, look.hollows));
+    var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * look.hollows;
+    pool *= mirror_left(facing.error, POOL_SLOPE);
     var soaked_share = ground.soaked;
     var film_level = ground.film_level;
     var film_slope = ground.film_slope;
     if TERRAIN {
-        // Water is level whatever lies below it.
-        pool = mix(pool, here.water.pool * smoothstep(0.5, 0.8, level), here.share);
+        // Water is level whatever lies below it, and shows where it reaches over that.
+        let over = smoothstep(0.2 * look.relief_mm, 2.0 * look.relief_mm, here.water.standing);
+        let stands = select(0.0, over, look.relief_mm > 0.0) * smoothstep(0.5, 0.8, mix(1.0, level, facing.sure));
+        pool = mix(pool, stands, here.share);
         soaked_share = mix(soaked_share, here.water.soaked, here.share);
         film_level = mix(min(film_level, FARTHEST_LEVEL), level_of(here.water.film), here.share);
         film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, here.water.film), here.share);
     }
-    pool *= bare * gets;
+    pool *= gets;
     // A pixel too long to see rings sees a rougher surface.
     let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
     let rings = pool > 1e-3 && ground.ring_chance > 0.0 && seen > 0.0;
@@ -235,11 +257,14 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, facing
     let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
     let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
     // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as bright.
-    let filmed = kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * bare * gets;
-    let film = Film(facing.normal, mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ground.glaze * gets));
+    let ice = ground.glaze * gets;
+    let own = mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ice);
+    let film = Film(facing.normal, sqrt(own * own + look.slope * look.slope));
+    let holds = mix(look.film, smoothstep(0.0, 0.1, look.film), ice) * mirror_left(facing.error, film.slope);
+    let filmed = kept * clamp(1.25 * level - 0.25, 0.0, 1.0) * holds * gets;
 
     // Where a film lies on rough ground its facets look every way; through standing water the eye looks one way.
-    let soaked = max(soaked_share, ground.glaze) * kept * (0.5 + 0.5 * bare) * gets;
+    let soaked = max(soaked_share, ground.glaze) * kept * look.soaks * gets;
     let wet = mix(vec3f(1.0), below, soaked);
     let cover = max(covered_share(hollow, film_level, FILM_EDGE), ground.glaze) * filmed;
     let thin = mirror(film, to_eye);

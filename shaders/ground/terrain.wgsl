@@ -1,11 +1,22 @@
-// Water on the host's terrain at a point of a surface.
+// The host's terrain at a point of a surface: the water on it, how it lies and what it is made of.
 //!include "frame/ground_binding.wgsl"
 //!include "snippets/welkin_ground.wgsl"
+
+// Whether the host has given its terrain.
+override TERRAIN: bool = false;
 
 struct TerrainPoint {
     // 1 on the terrain, 0 beyond it and on what stands above it.
     share: f32,
     water: WelkinGround,
+    normal: vec3f,
+    // Classes of the four nodes about the point, and where it lies between them.
+    classes: vec4f,
+    part: vec2f,
+}
+
+fn no_terrain() -> TerrainPoint {
+    return TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), vec4f(0.0), vec2f(0.0));
 }
 
 // `at`: camera-relative east, north, up.
@@ -16,10 +27,17 @@ fn terrain_at(at: vec3f) -> TerrainPoint {
     let low = clamp(floor(cells), vec2f(0.0), ground.terrain_last - 1.0);
     let part = clamp(cells - low, vec2f(0.0), vec2f(1.0));
     let first = vec2i(low);
-    let south = mix(textureLoad(terrain_heights, first, 0).x, textureLoad(terrain_heights, first + vec2i(1, 0), 0).x, part.x);
-    let north = mix(textureLoad(terrain_heights, first + vec2i(0, 1), 0).x, textureLoad(terrain_heights, first + vec2i(1, 1), 0).x, part.x);
-    let off = abs(dot(ground.terrain_z, p) - mix(south, north, part.y));
+    let a = textureLoad(terrain_surface, first, 0);
+    let b = textureLoad(terrain_surface, first + vec2i(1, 0), 0);
+    let c = textureLoad(terrain_surface, first + vec2i(0, 1), 0);
+    let d = textureLoad(terrain_surface, first + vec2i(1, 1), 0);
+    let lies = mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
+    let off = abs(dot(ground.terrain_z, p) - lies.z);
     let on = 1.0 - smoothstep(ground.terrain_near, 2.0 * ground.terrain_near, off);
     let share = smoothstep(0.0, ground.terrain_rim, min(inside.x, inside.y)) * on;
-    return TerrainPoint(share, welkin_ground_at(terrain_cells, cells));
+    // The grid's own axes, as seen from the camera.
+    let east = normalize(ground.terrain_x.xyz);
+    let north = normalize(ground.terrain_y.xyz);
+    let normal = normalize(ground.terrain_z.xyz - east * lies.x - north * lies.y);
+    return TerrainPoint(share, welkin_ground_at(terrain_cells, cells), normal, vec4f(a.w, b.w, c.w, d.w), part);
 }

@@ -2,6 +2,27 @@
 
 const HOLLOW_WAVES: u32 = 16u;
 
+// Classes of surface, and how water shows on one (src/ground/class.rs).
+const SURFACE_CLASSES: u32 = 7u;
+
+struct SurfaceLook {
+    // Share of the darkening of wet ground.
+    soaks: f32,
+    // Share of it that a closed film covers.
+    film: f32,
+    // Root mean square slope of what the film lies on, beyond the film's own.
+    slope: f32,
+    // Depth at which standing water is level over most of it, mm; 0 keeps none.
+    relief_mm: f32,
+    // Largest albedo that its colour is taken for.
+    most_albedo: f32,
+    // Share of the pattern's puddles that it has.
+    hollows: f32,
+    // How sure it is that it lies level, where nothing else says how it lies.
+    level: f32,
+    pad: f32,
+}
+
 struct GroundUniform {
     // Unit, towards the lamp that lights the ground, as it appears.
     to_lamp: vec3f,
@@ -65,6 +86,12 @@ struct GroundUniform {
     terrain_last: vec2f,
     terrain_rim: f32,
     terrain_near: f32,
+    // Rows that turn normals of the host's image to east, north, up; w: what its numbers are multiplied by, and added to that.
+    normal_x: vec4f,
+    normal_y: vec4f,
+    normal_z: vec4f,
+    // Of each class; the first one is the context's default.
+    looks: array<SurfaceLook, SURFACE_CLASSES>,
     // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.
     waves: array<vec4f, HOLLOW_WAVES>,
 }

@@ -59,7 +59,7 @@ fn look_at(at: OnCone, shape: vec4f) -> Look {
     let tall = max(shape.y, shape.w * exp2(octave));
     // A pixel in texels.
     let pixel = rain.pixel_angle * CONE_SIDE / at.sine;
-    let level = max(log2(pixel * max(tiles * 0.15915494, 1.0 / tall)), 0.0);
+    let level = max(log2(pixel * tiles * 0.15915494) - 1.0, 0.0);
     let uv = vec2f(at.turn * tiles + 0.37 * octave, at.latitude / tall + 0.61 * octave);
     return Look(uv, tall, level, shape.z * at.sine * at.sine * 6.2831853 / tiles * tall);
 }

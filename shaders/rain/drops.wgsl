@@ -40,7 +40,8 @@ struct RainUniform {
     y_sign: f32,
     // Shells of drops that are drawn.
     shells: u32,
-    pad1: f32,
+    // By how much what falls stands out more than it does in nature; 1: as it does.
+    gain: f32,
     // Of the camera, m/s.
     camera: vec3f,
     pad2: f32,
@@ -129,7 +130,7 @@ fn drop_at(kind: Kind, index: u32, away_units: vec3u) -> Drop {
 // Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it, and what the
 // sun sends through it.
 fn day_light(d: vec3f) -> vec3f {
-    return mix(rain.below, rain.above, 0.5 + 0.5 * d.z) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
+    return mix(rain.below, rain.above, sky_share(d.z)) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
 }
 
 // What lamps send through one at `p`.
@@ -152,8 +153,9 @@ struct RainVarying {
     // Premultiplied.
     @location(0) light: vec4f,
     @location(1) range: f32,
-    // Across the streak, -1 to 1.
-    @location(2) across: f32,
+    // Across the streak, -1 to 1, and along it from its middle, in radii of the drop as it is drawn; how far the drop's middle goes
+    // to either side of that.
+    @location(2) at: vec3f,
 }
 
 // Whether a line between two points, some pixels wide, can be in the picture.
@@ -197,8 +199,32 @@ struct Streak {
     width: f32,
     // From the middle to its end, m.
     half: vec3f,
-    // Premultiplied.
+    // Where it hides most, premultiplied.
     light: vec4f,
+}
+
+// What hides a share of a pixel's exposure, with the contrast's gain on it: as much as `gain` of it one before the other would.
+fn gained(cover: f32) -> f32 {
+    let most = min(cover, 1.0);
+    return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);
+}
+
+// The part of the exposure for which a disc of radius 1 that goes from -reach to reach along y lies before a place, over the most that
+// any place has: the photometric model of Garg and Nayar (2007), whose tau / T is 1 / reach on the way of a disc's middle.
+fn passing(at: vec2f, reach: f32) -> f32 {
+    let chord = sqrt(max(1.0 - at.x * at.x, 0.0));
+    let passed = min(reach, at.y + chord) - max(-reach, at.y - chord);
+    return max(passed, 0.0) / (2.0 * min(reach, 1.0));
+}
+
+// The most of [`passing`] that any place has.
+fn longest_passing(reach: f32) -> f32 {
+    return min(1.0 / reach, 1.0);
+}
+
+// How far a disc of a radius goes in its own radii: what hardly moves has a way all the same.
+fn reach_of(stretch: f32, radius: f32) -> f32 {
+    return max(stretch / radius, 1e-3);
 }
 
 // The streak of a drop of a `velocity`, if it `shows`.
@@ -212,10 +238,10 @@ fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
     let toward = drop.position / d;
     let width = max(drop.diameter, max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6));
     let stretch = max(length(half - toward * dot(half, toward)), 1e-6);
-    // As much of the picture as the drop covers on the mean over the exposure: its disc, spread over the quad. The profile
-    // across has the mean 2/3.
-    let disc = 0.78539816 * drop.diameter * drop.diameter * drop.weight;
-    let cover = min(1.5 * disc / ((2.0 * stretch + width) * width), 1.0) * (drop.share * part.w);
+    // Where it is drawn wider than it is, it hides as much less.
+    let thin = drop.diameter / width;
+    let most = thin * thin * drop.weight * longest_passing(reach_of(stretch, 0.5 * width));
+    let cover = gained(most) * (drop.share * part.w);
     let clear = exp(-rain.extinction * d);
     let light = vec4f(drop_light(drop.position, toward) * (cover * clear), cover * clear);
     return Streak(drop.position, width, half, light);
@@ -228,13 +254,15 @@ fn corner_of(streak: Streak, corner: u32) -> RainVarying {
     let along = select(-1.0, 1.0, (corner & 2u) != 0u);
     let side = select(-1.0, 1.0, (corner & 1u) != 0u);
     let way = streak.half - toward * dot(streak.half, toward);
-    let lengthwise = way / max(length(way), 1e-6);
+    let stretch = max(length(way), 1e-6);
+    let lengthwise = way / stretch;
     let end = streak.middle + along * (streak.half + lengthwise * (0.5 * streak.width))
         + cross(toward, lengthwise) * (side * 0.5 * streak.width);
     var clip = rain.clip * vec4f(end, 1.0);
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), streak.width > 0.0);
-    return RainVarying(position, streak.light, d, side);
+    let reach = reach_of(stretch, 0.5 * max(streak.width, 1e-9));
+    return RainVarying(position, streak.light, d, vec3f(side, along * (reach + 1.0), reach));
 }
 
 // Every drop of the lattice, where there are no compute shaders.
@@ -260,5 +288,5 @@ fn listed_vertex(@builtin(vertex_index) corner: u32, listed: Listed) -> RainVary
 
 fn streak(in: RainVarying, range: f32) -> vec4f {
     let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
-    return in.light * ((1.0 - in.across * in.across) * soft);
+    return in.light * (passing(in.at.xy, in.at.z) * soft);
 }

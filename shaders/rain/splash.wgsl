@@ -247,7 +247,7 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let size = max(shown, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
     // The water of the crown is a thin sheet and droplets: a third of what the quad covers.
     let thin = (shown.x * shown.y) / (size.x * size.y) * exp(-rain.extinction * d);
-    let cover = 0.35 * landing.fade * (1.0 - age * age) * thin;
+    let cover = gained(0.35 * thin) * (landing.fade * (1.0 - age * age));
     return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age);
 }
 
@@ -306,7 +306,8 @@ fn crown_color(in: CrownVarying, range: f32, pixel: f32) -> vec4f {
     let soft = clamp((range - in.range_age.x) * 4.0 + 0.5, 0.0, 1.0);
     let shape = min(crown_profile(in.at, in.range_age.y, in.chance), 3.0);
     let profile = mix(shape, 1.0 - in.at.x * in.at.x, smoothstep(0.15, 0.4, pixel));
-    return in.light * (profile * soft);
+    // Where it is thick it hides no more than all.
+    return in.light * min(profile * soft, 1.0 / max(in.light.a, 1e-6));
 }
 
 struct ListedCrown {

@@ -159,7 +159,7 @@ fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
 struct StoneVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
-    // How much it hides where it is thickest, before it is cut off at all.
+    // How much it hides where it hides most.
     @location(1) cover: f32,
     @location(2) range: f32,
     // Place in the quad in radii, across and along, and how far the middle's way reaches.
@@ -171,7 +171,7 @@ fn no_stone() -> StoneVarying {
     return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, 0.0, vec2f(0.0), 0.0);
 }
 
-// A corner of what the stone covers while the shutter is open: a round bar.
+// A corner of what the stone covers while the shutter is open.
 fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     let d = max(length(stone.position), 1e-3);
     let toward = stone.position / d;
@@ -194,11 +194,10 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     clip.y *= rain.y_sign;
     out.position = vec4f(clip.xy, 0.0, clip.w);
     out.range = d - stone.diameter;
-    out.reach = stretch / radius;
+    out.reach = reach_of(stretch, radius);
     out.at = vec2f(side, end * (out.reach + 1.0));
-    let disc = 0.78539816 * stone.diameter * stone.diameter * stone.weight;
-    // The profile has the mean 2/3 along the bar and 1/2 over its round ends.
-    out.cover = disc / (radius * (2.6666667 * stretch + 1.5707963 * radius)) * (stone.share * part.w);
+    let thin = 0.5 * stone.diameter / radius;
+    out.cover = gained(thin * thin * stone.weight * longest_passing(out.reach)) * (stone.share * part.w);
     out.light = stone_light(stone.position, toward, stone.clear);
     return out;
 }
@@ -223,9 +222,7 @@ fn hopping_corner(touch: Touch, surface: vec4f, corner: u32) -> StoneVarying {
 
 // Premultiplied.
 fn stone_color(in: StoneVarying, range: f32) -> vec4f {
-    let beyond = max(abs(in.at.y) - in.reach, 0.0);
-    let profile = max(1.0 - in.at.x * in.at.x - beyond * beyond, 0.0);
     let soft = clamp((range - in.range) * 4.0 + 0.5, 0.0, 1.0);
-    let cover = min(in.cover * profile, 1.0) * soft * exp(-rain.extinction * in.range);
+    let cover = min(in.cover * passing(in.at, in.reach), 1.0) * soft * exp(-rain.extinction * in.range);
     return vec4f(in.light * cover, cover);
 }

@@ -29,6 +29,10 @@ fn disc_place(lamp: SkyLamp, dir: vec3f, pixel_angle: f32) -> vec2f {
 // Radiance of the lamps' discs in a direction, reddened by the air; `pixel_angle` is the angle of a pixel, rad, over
 // which the edge is smoothed. 0 below the horizon.
 fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
+    return disc_radiance_on(whole_path(dir), dir, pixel_angle);
+}
+
+fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     let real = unrefracted(dir);
     var out = vec3f(0.0);
     for (var i = 0u; i < sky_view.lamp_count; i++) {
@@ -46,5 +50,5 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
         }
         out += lamp.irradiance * law * (place.y * lamp.disc_scale);
     }
-    return out * sky_transmittance(dir);
+    return out * sky_transmittance_on(path);
 }

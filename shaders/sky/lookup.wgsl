@@ -88,14 +88,49 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     return lamp.irradiance * (once + light.more);
 }
 
+// A direction's ray, and the optical depth of what of it is looked through: several look-ups along one direction share it.
+struct SkyPath {
+    ray: SkyRay,
+    // Metres from the observer.
+    distance: Length,
+    depth: vec3f,
+}
+
+// To `distance`, or all the way if that is farther.
+fn sky_path(dir: vec3f, distance: Length) -> SkyPath {
+    let ray = sky_view_ray(dir);
+    let end = min(distance, ray.before + ray.length);
+    return SkyPath(ray, end, sky_depth(ray, end));
+}
+
+fn whole_path(dir: vec3f) -> SkyPath {
+    return sky_path(dir, 1e30);
+}
+
 // Radiance that the air scatters into a whole ray: to space, or to the ground below the horizon. Discs and the ground's
 // own light are not in it.
 fn sky_radiance(dir: vec3f) -> Radiance {
-    let dims = sky_view.dims;
+    return sky_radiance_on(whole_path(dir), dir);
+}
+
+fn sky_radiance_on(path: SkyPath, dir: vec3f) -> Radiance {
     let v = view_place(sky_view.edges, dir.z);
+    return sky_table_light(path.ray, dir, v) * select(air_opacity(path.depth), vec3f(1.0), v >= 0.0 || SKY_MARCH);
+}
+
+// The same for directions above the horizon alone.
+fn sky_radiance_above(dir: vec3f) -> Radiance {
+    if (SKY_MARCH) {
+        return sky_radiance(dir);
+    }
+    return sky_table_light(SkyRay(), dir, max(view_place(sky_view.edges, dir.z), 0.0));
+}
+
+// As the table has it: below the horizon over the opacity of the air. The ray is read where pixels march.
+fn sky_table_light(ray: SkyRay, dir: vec3f, v: f32) -> vec3f {
+    let dims = sky_view.dims;
     var out = vec3f(0.0);
     if (SKY_MARCH) {
-        let ray = sky_view_ray(dir);
         for (var i = 0u; i < sky_view.lamp_count; i++) {
             out += lamp_march(sky_view.lamps[i], dir, ray, ray.length);
         }
@@ -110,19 +145,19 @@ fn sky_radiance(dir: vec3f) -> Radiance {
         let b = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer + 1u, 0.0);
         out += lamp_light(lamp, dir, a, b);
     }
-    if (v < 0.0) {
-        let ray = sky_view_ray(dir);
-        out *= air_opacity(sky_depth(ray, ray.before + ray.length));
-    }
     return out;
 }
 
 // Air between the observer and a point `distance` metres away in direction `dir`.
 fn aerial(dir: vec3f, distance: Length) -> Aerial {
+    return aerial_on(sky_path(dir, distance), dir);
+}
+
+fn aerial_on(path: SkyPath, dir: vec3f) -> Aerial {
     let dims = sky_view.dims;
-    let ray = sky_view_ray(dir);
-    let end = clamp(distance - ray.before, 0.0, ray.length);
-    let depth = sky_depth(ray, distance);
+    let ray = path.ray;
+    let end = clamp(path.distance - ray.before, 0.0, ray.length);
+    let depth = path.depth;
     var out = vec3f(0.0);
     if (SKY_MARCH) {
         for (var i = 0u; i < sky_view.lamp_count; i++) {
@@ -152,8 +187,11 @@ fn aerial(dir: vec3f, distance: Length) -> Aerial {
 
 // Transmittance of a whole ray to space; 0 below the horizon.
 fn sky_transmittance(dir: vec3f) -> vec3f {
-    let ray = sky_view_ray(dir);
-    return select(exp(-sky_depth(ray, ray.before + ray.length)), vec3f(0.0), ray.grounded == 1u);
+    return sky_transmittance_on(whole_path(dir));
+}
+
+fn sky_transmittance_on(path: SkyPath) -> vec3f {
+    return select(exp(-path.depth), vec3f(0.0), path.ray.grounded == 1u);
 }
 
 // Irradiance of all lamps' skies on a level surface facing up; sun angles are those at the observer's place.
@@ -185,11 +223,14 @@ fn lamp_irradiance(index: u32, altitude: Length) -> vec3f {
 
 // Radiance of the planet's own ground (a Lambert surface lit by lamps and sky), seen through the air; 0 above the horizon.
 fn ground_radiance(dir: vec3f) -> Radiance {
-    let ray = sky_view_ray(dir);
-    if (ray.grounded == 0u) {
+    return ground_radiance_on(whole_path(dir), dir);
+}
+
+fn ground_radiance_on(path: SkyPath, dir: vec3f) -> Radiance {
+    if (path.ray.grounded == 0u) {
         return vec3f(0.0);
     }
-    let distance = ray.before + ray.length;
+    let distance = path.distance;
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
     var lit = vec3f(0.0);
     for (var i = 0u; i < sky_view.lamp_count; i++) {
@@ -198,5 +239,5 @@ fn ground_radiance(dir: vec3f) -> Radiance {
         let direct = max(mu_s, 0.0) * sun_transmittance(sky_view.air, 0.0, mu_s);
         lit += lamp.irradiance * (direct + diffuse_irradiance(0.0, mu_s));
     }
-    return sky_view.air.ground_albedo / SKY_PI * lit * exp(-sky_depth(ray, distance));
+    return sky_view.air.ground_albedo / SKY_PI * lit * exp(-path.depth);
 }

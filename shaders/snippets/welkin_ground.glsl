@@ -14,6 +14,8 @@ struct WelkinGround {
     float pool;
     // Share under ice.
     float ice;
+    // Depth of standing water, mm; negative where none stands.
+    float standing;
 };
 
 // Of one node: how soaked, share under a film, level of standing water over the ground in mm, share under ice. Soaked pores make
@@ -35,7 +37,7 @@ WelkinGround welkin_ground_at(sampler2D ground, vec2 place) {
     vec4 d = welkin_ground_node(texelFetch(ground, first + ivec2(1, 1), 0));
     vec4 water = mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
     // A puddle's edge is as thin as what grains of asphalt reach through.
-    return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w);
+    return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w, water.z);
 }
 
 WelkinGround welkin_ground(sampler2D ground, vec2 uv) {

@@ -13,6 +13,8 @@ struct WelkinGround {
     pool: f32,
     // Share under ice.
     ice: f32,
+    // Depth of standing water, mm; negative where none stands.
+    standing: f32,
 }
 
 // Of one node: how soaked, share under a film, level of standing water over the ground in mm, share under ice. Soaked pores make
@@ -34,7 +36,7 @@ fn welkin_ground_at(ground: texture_2d<f32>, place: vec2f) -> WelkinGround {
     let d = welkin_ground_node(textureLoad(ground, first + vec2i(1, 1), 0));
     let water = mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
     // A puddle's edge is as thin as what grains of asphalt reach through.
-    return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w);
+    return WelkinGround(water.x, water.y, smoothstep(0.2, 2.0, water.z), water.w, water.z);
 }
 
 fn welkin_ground(ground: texture_2d<f32>, uv: vec2f) -> WelkinGround {

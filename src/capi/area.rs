@@ -73,7 +73,7 @@ pub struct wk_rain_area {
     /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
     pub velocity_m_s: [f64; 2],
     /// Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
-    /// timeline knows. Default 0.
+    /// timeline knows, but for 0, from which the wind's way is counted. Default 0.
     pub at_s: f64,
     /// Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,

@@ -1,7 +1,11 @@
 //! Queries: conditions
 //!
 //! What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
-//! come: closed form, no device is asked. Heights are above the station unless they say otherwise.
+//! come: closed form, no device is asked. Heights are above the station unless they say otherwise. Every number is continuous in
+//! time while the weather changes, and of a layer that comes or goes the geometry too.
+//!
+//! A position, here and in every other function, is a place if it lies within 1e12 m of the world's origin and at an altitude in
+//! [-1e4, 1e9] m above the sea. At other positions nothing is answered.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -71,7 +75,7 @@ pub struct wk_conditions {
     pub fog_softness_m: f64,
     /// Part of the ground that it covers, fraction.
     pub fog_coverage: f64,
-    /// Part of the sky hidden by all layers together, fraction.
+    /// Part of the sky hidden by all layers together, fraction. During a change never less and never more than at both its ends.
     pub cloud_cover: f64,
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -276,6 +280,14 @@ impl wk_cloud_slab {
     }
 }
 
+/// What is wrong with `position`, said of the parameter that the host gave.
+pub(super) fn of_position(param: &str, e: Error) -> Error {
+    match e.message.strip_prefix("position ") {
+        Some(rest) => Error::new(e.status, format!("{param} {rest}")),
+        None => e,
+    }
+}
+
 /// A place of the host's world, three finite numbers.
 ///
 /// # Safety
@@ -311,7 +323,8 @@ pub unsafe extern "C" fn wk_context_get_conditions(
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_conditions", out_conditions)?) };
         let time_s = check_finite("time_s", time_s)?;
-        place.set(&wk_conditions::of(&object.read().conditions_at(DVec3::from_array(at), time_s)?));
+        let conditions = object.read().conditions_at(DVec3::from_array(at), time_s);
+        place.set(&wk_conditions::of(&conditions.map_err(|e| of_position("position_m", e))?));
         Ok(Status::Ok)
     })
 }
@@ -337,7 +350,8 @@ pub unsafe extern "C" fn wk_context_get_cloud_slabs(
         let count = out("out_count", out_count)?;
         let room = input::Room::new("slabs", "slab_size", slabs, capacity, slab_size)?;
         let time_s = check_finite("time_s", time_s)?;
-        let conditions = object.read().conditions_at(DVec3::from_array(at), time_s)?;
+        let conditions = object.read().conditions_at(DVec3::from_array(at), time_s);
+        let conditions = conditions.map_err(|e| of_position("position_m", e))?;
         let found: [Option<&CloudSlab>; MAX_CLOUD_LAYERS] = {
             let mut slabs = conditions.cloud_slabs();
             std::array::from_fn(|_| slabs.next())

@@ -50,7 +50,8 @@ pub type wk_world_kind = u32;
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84); axes, origin and grid bearing do not matter.
+/// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
+/// simulated ground (WK_GROUND_SIMULATED).
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Which of the host's axes point where, in flat and tangent worlds.
@@ -264,7 +265,9 @@ pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: 
 
 /// Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
 /// frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
-/// lies in the context's cache_dir, and writes it there. Without this call the first frame builds them, and waits.
+/// lies in the context's cache_dir, and writes it there. Without this call the first frame shows a draft of the sky, a few
+/// steps of 255 from the whole one, which some hundred frames refine without a visible step; WK_FRAME_NO_HISTORY in a frame
+/// builds the whole there and then (docs/first-frames.md).
 /// `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
 /// no file.
 /// Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status, check_range},
     fog::{
-        CompatibilityLaw, Law, koschmieder_extinction_per_m,
+        CompatibilityLaw, Law, MAX_EXTINCTION_PER_M, koschmieder_extinction_per_m,
         laws::{CULL_THRESHOLD, Curve, DistanceKind, cull_distance_m},
     },
 };
@@ -105,7 +105,8 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
         WK_FOG_CURVE_LINEAR => Curve::Linear { start_m: c.start_m, end_m: c.end_m },
         WK_FOG_CURVE_EXPONENTIAL => Curve::Exponential { density_per_m: c.density_per_m },
         WK_FOG_CURVE_EXPONENTIAL_SQUARED => Curve::ExponentialSquared { density_per_m: c.density_per_m },
-        _ => return Ok(Law::Clear),
+        // No curve at all, but what is given beside it must be what it could be.
+        _ => Curve::Exponential { density_per_m: c.density_per_m },
     };
     let plane = c.distance == WK_FOG_DISTANCE_PLANE;
     let law = CompatibilityLaw {
@@ -115,7 +116,15 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
         sky_band: c.sky_band,
     };
     law.validate().map_err(in_law)?;
-    Ok(Law::Compatibility(law))
+    check_unused(&c).map_err(in_law)?;
+    Ok(if c.curve == WK_FOG_CURVE_CLEAR { Law::Clear } else { Law::Compatibility(law) })
+}
+
+/// Figures of the curves that `law` does not name: nothing of them is drawn, but a host that sets one out of its range is mistaken.
+fn check_unused(law: &wk_fog_law) -> Result<()> {
+    check_range("fog.start_m", law.start_m, 0.0, 1e9, "m")?;
+    check_range("fog.end_m", law.end_m, 0.0, 1e9, "m")?;
+    check_range("fog.density_per_m", law.density_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")
 }
 
 /// `fog.start_m must ..` as the header has it: `fog_law.start_m must ..`.

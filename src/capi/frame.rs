@@ -16,14 +16,16 @@ use std::{ffi::c_void, ptr::null};
 use glam::{DMat4, DVec3};
 
 use super::{
-    context::{self, WK_EXPOSURE_OF_CONTEXT, wk_exposure_mode},
-    layout::{init_struct, struct_size},
+    boundary::guard,
+    context::{self, ContextObject, WK_EXPOSURE_OF_CONTEXT, wk_context, wk_exposure_mode},
+    host,
+    layout::{self, init_struct, struct_size},
     status::*,
     surface::wk_surface,
     texture::wk_texture,
 };
 use crate::{
-    error::{Error, Result},
+    error::{Error, Result, Status},
     frame::{ColorSpace, Frame, FrameFlags, ImageLayers},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
 };
@@ -46,7 +48,7 @@ pub const WK_CLIP_MINUS_ONE_TO_ONE: wk_clip_space = 1;
 
 /// What the numbers in the host's colour mean.
 pub type wk_color_space = u32;
-/// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which TONE may tone-map the picture.
+/// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
 pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
 /// Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
@@ -55,9 +57,11 @@ pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
-/// The camera jumped: nothing of earlier frames may show.
+/// The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
+/// built in this frame, as with WK_FRAME_NO_HISTORY.
 pub const WK_FRAME_CUT: wk_frame_flags = 1;
-/// Draw the pure function of (seed, time, view): no history at all.
+/// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
+/// are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
@@ -68,6 +72,9 @@ pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
 /// such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
 /// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
+/// The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
+/// those of the host's world.
+pub const WK_FRAME_NORMALS_IN_EYE_SPACE: wk_frame_flags = 32;
 
 /// One frame of one view.
 #[repr(C)]
@@ -155,6 +162,13 @@ pub struct wk_own_target {
     pub depth: *const wk_texture,
     /// Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL.
     pub mask: *const wk_texture,
+    /// What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+    /// it. R8_UNORM or the like, as large as `color`. Default NULL.
+    pub surface_classes: *const wk_texture,
+    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+    /// float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
+    /// Default NULL.
+    pub normals: *const wk_texture,
 }
 
 impl wk_own_target {
@@ -166,7 +180,79 @@ impl wk_own_target {
         surface: null(),
         depth: null(),
         mask: null(),
+        surface_classes: null(),
+        normals: null(),
     };
+}
+
+/// Light for the host's own shading of a frame, in the numbers of its colour_space: a surface of colour c whose normal is n
+/// shows c * (ambient + direct * max(dot(n, direction), 0)).
+///
+/// Scene-linear: exact for matt surfaces. Display spaces: the tone curve at the frame's exposure is in it, so that one pair of
+/// lights cannot be right for every surface; it is for a grey card of 18 %, in shade and facing the sun. For
+/// WK_COLOR_DISPLAY_LINEAR c is linear and the host (or its sRGB framebuffer) encodes what comes out; for
+/// WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_frame_light {
+    /// sizeof(wk_frame_light) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FRAME_LIGHT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
+    pub direction: [f64; 3],
+    /// Its direct light on a surface that faces it, after air, clouds and fog; 0 below the horizon.
+    pub direct: [f64; 3],
+    /// Light of sky, clouds and fog on level ground.
+    pub ambient: [f64; 3],
+    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+    pub ambient_below: [f64; 3],
+    /// Display units per cd/m^2 with which Welkin draws the frame.
+    pub exposure: f64,
+}
+
+impl wk_frame_light {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FRAME_LIGHT,
+        next: null(),
+        direction: [0.0; 3],
+        direct: [0.0; 3],
+        ambient: [0.0; 3],
+        ambient_below: [0.0; 3],
+        exposure: 0.0,
+    };
+}
+
+/// Says how the host should light its own objects in a frame, before it draws them: of `frame` the camera's position, the
+/// colour_space with cd_m2_per_unit, and the exposure count; its target is not looked at.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT by the field's name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_frame_light(
+    context: *const wk_context,
+    frame: *const wk_frame,
+    out_light: *mut wk_frame_light,
+) -> wk_status {
+    guard("wk_context_get_frame_light", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises about `frame` and `out_light`.
+        let (c, place) = unsafe { (layout::read(&"frame", frame)?, layout::out_struct(&"out_light", out_light)?) };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"frame", c.next, &[])? };
+        let light = from_c(&c, Images::default(), false)?.light(&object.read()).map_err(host::in_frame)?;
+        place.set(&wk_frame_light {
+            direction: light.direction.to_array(),
+            direct: light.direct,
+            ambient: light.ambient,
+            ambient_below: light.ambient_below,
+            exposure: light.exposure,
+            ..wk_frame_light::INIT
+        });
+        Ok(Status::Ok)
+    })
 }
 
 /// The images of a frame as the Rust side takes them.
@@ -177,6 +263,8 @@ pub(super) struct Images<'a> {
     pub(super) mask: Option<&'a wgpu::Texture>,
     /// Which layer of its texture each is.
     pub(super) layers: ImageLayers,
+    pub(super) surface_classes: Option<&'a wgpu::Texture>,
+    pub(super) normals: Option<&'a wgpu::Texture>,
 }
 
 /// A checked C frame with its images, as the Rust side takes it.
@@ -213,6 +301,8 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         depth: images.depth,
         mask: images.mask,
         layers: images.layers,
+        surface_classes: images.surface_classes,
+        normals: images.normals,
         color_space: match c.color_space {
             WK_COLOR_DISPLAY_LINEAR => ColorSpace::DisplayLinear,
             WK_COLOR_DISPLAY_SRGB => ColorSpace::DisplaySrgb,
@@ -221,7 +311,9 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         cd_m2_per_unit: c.cd_m2_per_unit,
         exposure,
         origin_bottom_left: bottom_left || c.flags & WK_FRAME_FIRST_ROW_AT_MINUS_Y != 0,
-        flags: FrameFlags(c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE)),
+        flags: FrameFlags(
+            c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE | WK_FRAME_NORMALS_IN_EYE_SPACE),
+        ),
         camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),
     })
 }

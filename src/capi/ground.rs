@@ -1,8 +1,9 @@
 //! Wet ground
 //!
-//! The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky, level
-//! ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
-//! colour is taken for the ground's own. Plants, told by their green, do not shine. Mirrors show the sky, and of objects only that what keeps rain off is dark.
+//! The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky,
+//! paved ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
+//! colour is taken for the ground's own. What is not marked by a wk_surface_class is natural ground, which hardly mirrors: mark
+//! roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky, and of objects only that what keeps rain off is dark.
 //!
 //! How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
 //! in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
@@ -13,14 +14,16 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    conditions::position,
+    conditions::{of_position, position},
     context::{ContextObject, wk_context},
+    input,
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
     context::{GroundAt, GroundModel},
     error::Status,
+    ground::SurfaceClass,
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
@@ -30,8 +33,28 @@ pub type wk_ground_model = u32;
 /// The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
-/// (Penman 1948) in steps of 10 s. A leap of more than 30 days is simulated over its last 30.
+/// (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
+/// ground then. See wk_context_update for leaps that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
+
+/// What the ground is made of, in a wk_ground_grid, in an image of the target (the byte of red), and where neither says it, for
+/// all of a context. The image counts first, then the grid, then the context's default.
+pub type wk_surface_class = u32;
+/// In a grid or an image: as the context's default. As that default: natural ground, soil where the host's colour is not green and
+/// vegetation where it is.
+pub const WK_SURFACE_CLASS_UNSPECIFIED: wk_surface_class = 0;
+/// Earth, sand, gravel: darkens, and mirrors hardly.
+pub const WK_SURFACE_CLASS_SOIL: wk_surface_class = 1;
+/// Bare rock: darkens, and shines in parts.
+pub const WK_SURFACE_CLASS_ROCK: wk_surface_class = 2;
+/// Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles.
+pub const WK_SURFACE_CLASS_PAVED: wk_surface_class = 3;
+/// Grass, crops, shrubs, trees: hardly changes.
+pub const WK_SURFACE_CLASS_VEGETATION: wk_surface_class = 4;
+/// Water that the host draws: rain leaves it as it is.
+pub const WK_SURFACE_CLASS_WATER: wk_surface_class = 5;
+/// Roofs and walls: darken and shine, without puddles.
+pub const WK_SURFACE_CLASS_BUILDING: wk_surface_class = 6;
 
 /// What has state, and how. An extension: put it into wk_context_desc.next.
 #[repr(C)]
@@ -82,10 +105,14 @@ pub struct wk_ground {
     pub wetness: f64,
     /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
-    /// 1 where standing water covers the place, else 0.
+    /// 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles.
     pub in_puddle: u32,
     /// 0.
     pub reserved0: u32,
+    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    pub surface_class: wk_surface_class,
+    /// 0.
+    pub reserved1: u32,
 }
 
 impl wk_ground {
@@ -99,6 +126,8 @@ impl wk_ground {
         puddles: 0.0,
         in_puddle: 0,
         reserved0: 0,
+        surface_class: WK_SURFACE_CLASS_UNSPECIFIED,
+        reserved1: 0,
     };
 
     fn of(g: &GroundAt) -> Self {
@@ -108,12 +137,13 @@ impl wk_ground {
             wetness: g.wetness,
             puddles: g.puddles,
             in_puddle: u32::from(g.in_puddle),
+            surface_class: g.surface_class as u32,
             ..Self::INIT
         }
     }
 }
 
-/// Water on the ground at a place of the host's world, now: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
+/// Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
 /// it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
 /// the context's seed.
 /// Thread: concurrent.
@@ -129,7 +159,26 @@ pub unsafe extern "C" fn wk_context_get_ground(
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ground", out_ground)?) };
-        place.set(&wk_ground::of(&object.read().ground_at(DVec3::from_array(at))?));
+        let ground = object.read().ground_at(DVec3::from_array(at)).map_err(|e| of_position("position_m", e))?;
+        place.set(&wk_ground::of(&ground));
+        Ok(Status::Ok)
+    })
+}
+
+/// What the ground is made of where neither the target's image nor the host's terrain says it. Default
+/// WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_default_surface_class(
+    context: *mut wk_context,
+    surface_class: wk_surface_class,
+) -> wk_status {
+    guard("wk_context_set_default_surface_class", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        input::check_enum("surface_class", &layout::WK_SURFACE_CLASS, surface_class)?;
+        let class = u8::try_from(surface_class).unwrap_or(u8::MAX);
+        object.write().set_default_surface_class(SurfaceClass::from_number("surface_class", class)?);
         Ok(Status::Ok)
     })
 }

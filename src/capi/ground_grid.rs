@@ -19,8 +19,8 @@ use super::{
 };
 use crate::{
     context::GroundCell,
-    error::{Error, Status},
-    ground::{GroundGrid, MAX_GRID_NODES},
+    error::{Error, Result, Status},
+    ground::{GroundGrid, MAX_GRID_NODES, SurfaceClass},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
@@ -50,6 +50,13 @@ pub struct wk_ground_grid {
     pub height_count: u32,
     /// Must be 0.
     pub reserved0: u32,
+    /// What each cell is made of, in the order of the heights: numbers of wk_surface_class, 0 where the context's default holds.
+    /// Copied by the call. Default NULL: nothing is said of any cell.
+    pub surface_classes: *const u8,
+    /// Numbers in surface_classes: 0 (the default), or height_count.
+    pub surface_class_count: u32,
+    /// Must be 0.
+    pub reserved1: u32,
 }
 
 impl wk_ground_grid {
@@ -63,6 +70,9 @@ impl wk_ground_grid {
         heights_m: null(),
         height_count: 0,
         reserved0: 0,
+        surface_classes: null(),
+        surface_class_count: 0,
+        reserved1: 0,
     };
 }
 
@@ -87,7 +97,7 @@ impl wk_ground_cell {
 }
 
 /// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
-/// keeps its water, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
+/// keeps its water, whatever it is made of, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
 /// error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
@@ -105,24 +115,33 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
         // SAFETY: the caller's promise about `ground_grid`.
         let c = unsafe { layout::read(&"ground_grid", ground_grid)? };
         // SAFETY: the caller's promise about its pointers.
-        let heights = unsafe {
+        let (heights, classes) = unsafe {
             layout::check_chain(&"ground_grid", c.next, &[])?;
             let most = (MAX_GRID_NODES * MAX_GRID_NODES) as usize;
-            input::slice("ground_grid.heights_m", c.heights_m, c.height_count as usize, most)?
+            let class_count = c.surface_class_count as usize;
+            (
+                input::slice("ground_grid.heights_m", c.heights_m, c.height_count as usize, most)?,
+                input::slice("ground_grid.surface_classes", c.surface_classes, class_count, most)?,
+            )
+        };
+        let class = |(i, number): (usize, &u8)| {
+            SurfaceClass::from_number(&format!("ground_grid.surface_classes[{i}]"), *number)
         };
         let grid = GroundGrid {
             origin: DVec3::from_array(c.origin_m),
             cell_m: c.cell_m,
             nodes: c.nodes,
             heights_m: heights.to_vec(),
+            classes: classes.iter().enumerate().map(class).collect::<Result<_>>()?,
         };
-        let named = |e| renamed("heights_m' count", "height_count", e);
+        let named =
+            |e| renamed("heights_m' count", "height_count", renamed("classes' count", "surface_class_count", e));
         object.write().set_ground_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })
 }
 
-/// Water of the terrain's cells now, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
+/// Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
 /// `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
 /// upload anew what has changed, every 10 s of simulation time at most.
 /// Thread: concurrent.

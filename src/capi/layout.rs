@@ -194,6 +194,18 @@ pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
     Ok(())
 }
 
+/// A place for an answer that may be left out.
+///
+/// # Errors
+/// If it is misaligned. To be asked of every place before any is written.
+pub(super) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
+    if p.is_null() {
+        return Ok(None);
+    }
+    check_pointer(param, p)?;
+    Ok(Some(p))
+}
+
 /// Checks the head of a struct at `p` and returns the bytes that the caller gave.
 ///
 /// # Safety

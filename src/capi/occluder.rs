@@ -110,7 +110,7 @@ impl wk_occluder_map {
 }
 
 /// Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
-/// after an error.
+/// after an error. They are no part of a saved state: each channel may have its own.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
 /// WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.

@@ -10,6 +10,9 @@
 //! HOST_CONTEXT: Welkin draws in the host's own context; every piece of state it touches is saved, set, and put back.
 //! Any framebuffer can be a target, the window's (0) too, by copies in and out.
 //!
+//! One device serves all windows whose contexts share objects in SHARED mode, with a view each; in HOST_CONTEXT mode a device
+//! belongs to one context.
+//!
 //! When a call begins the host's context is current on the calling thread, and so it is when it returns. Needed: OpenGL
 //! 3.3 or OpenGL ES 3.0, core or compatibility; compute shaders are used from 4.3 (ES 3.1) on.
 
@@ -40,7 +43,7 @@ pub type wk_opengl_make_current_fn = Option<unsafe extern "C" fn(user: *mut c_vo
 
 /// Which context is asked for.
 pub type wk_opengl_context = u32;
-/// The one the host draws in.
+/// The one the host draws in: with several windows, the one that was current when the call came (keep it for each thread).
 pub const WK_OPENGL_CONTEXT_HOST: wk_opengl_context = 0;
 /// The one the host made for Welkin, sharing objects with its own.
 pub const WK_OPENGL_CONTEXT_WELKIN: wk_opengl_context = 1;
@@ -149,20 +152,29 @@ pub struct wk_opengl_target {
     pub next: *const c_void,
     /// What is drawn into. Default none.
     pub color: wk_opengl_image,
-    /// The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one.
+    /// The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one; else another
+    /// image. It has as many samples as `color`. Where that has one (a resolved picture) depth may have more, not on OpenGL ES: one
+    /// sample of each pixel counts.
     pub depth: wk_opengl_image,
     /// A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
     pub mask: wk_opengl_image,
-    /// Pixels; must be the images' own. Default 0; must be given.
+    /// Pixels; must be the images' own, and a window's size now. Default 0; must be given.
     pub width: u32,
-    /// Pixels; must be the images' own. Default 0; must be given.
+    /// Pixels; must be the images' own, and a window's size now. Default 0; must be given.
     pub height: u32,
-    /// A number that the host raises when it makes an object anew under an old name. Default 0.
+    /// A number that the host raises when it makes an object anew under an old name; it never falls. Default 0.
     pub generation: u64,
     /// Default WK_OPENGL_MULTISAMPLE_EACH.
     pub multisample: wk_opengl_multisample,
     /// Must be 0.
     pub reserved0: u32,
+    /// A texture of one sample that says what each pixel shows is made of: the byte of red is a wk_surface_class, 0 where
+    /// wk_ground_grid or the context's default says it. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+    pub surface_classes: wk_opengl_image,
+    /// A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in
+    /// GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. What is no unit vector, as a cleared pixel,
+    /// leaves it to the host's terrain and depth. Default none.
+    pub normals: wk_opengl_image,
 }
 
 impl wk_opengl_target {
@@ -178,6 +190,8 @@ impl wk_opengl_target {
         generation: 0,
         multisample: WK_OPENGL_MULTISAMPLE_EACH,
         reserved0: 0,
+        surface_classes: wk_opengl_image::INIT,
+        normals: wk_opengl_image::INIT,
     };
 }
 

@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::{
     MAX_BATCH,
     boundary::guard,
-    conditions::position,
+    conditions::{of_position, position},
     context::{ContextObject, wk_context},
     input::{self, check_finite},
     layout::{self, init_struct, struct_size},
@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     context::{Between, Context, GroundLight, Light, LightAt},
-    error::{Result, Status},
+    error::{Error, Result, Status},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_query.rs"));
@@ -241,8 +241,8 @@ unsafe fn celestial(
         // SAFETY: the caller's promises.
         let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&out_name, out)?) };
         let context = object.read();
-        let light = context.light_at(DVec3::from_array(at), time_or_now(&context, time_s)?)?;
-        place.set(&wk_celestial::of(&which(&light)));
+        let light = context.light_at(DVec3::from_array(at), time_or_now(&context, time_s)?);
+        place.set(&wk_celestial::of(&which(&light.map_err(|e| of_position("position_m", e))?)));
         Ok(Status::Ok)
     })
 }
@@ -306,7 +306,8 @@ unsafe fn light(
         let answer = |i: usize| {
             // SAFETY: `i` is below the count that the caller promises.
             let at = unsafe { position(&format!("positions_m[{i}]"), places.at(i))? };
-            Ok(wk_ground_light::of(&context.light_at(DVec3::from_array(at), time_s)?.arriving))
+            let light = context.light_at(DVec3::from_array(at), time_s);
+            Ok(wk_ground_light::of(&light.map_err(|e| of_position(&format!("positions_m[{i}]"), e))?.arriving))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, light) in answers.iter().enumerate() {
@@ -375,7 +376,7 @@ unsafe fn way(
                 (part("from_m", &raw const (*pair).from_m)?, part("to_m", &raw const (*pair).to_m)?)
             };
             let between = context.between(DVec3::from_array(from), DVec3::from_array(to), time_s);
-            Ok(wk_between::of(&between.map_err(|e| e.within(&format!("segments[{i}]: ")))?))
+            Ok(wk_between::of(&between.map_err(|e| of_segment(i, e))?))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, between) in answers.iter().enumerate() {
@@ -384,6 +385,16 @@ unsafe fn way(
         }
         Ok(Status::Ok)
     })
+}
+
+/// What is wrong with `from` or `to`, said of the segment's field.
+fn of_segment(i: usize, e: Error) -> Error {
+    for end in ["from", "to"] {
+        if let Some(rest) = e.message.strip_prefix(&format!("{end} ")) {
+            return Error::new(e.status, format!("segments[{i}].{end}_m {rest}"));
+        }
+    }
+    e.within(&format!("segments[{i}]: "))
 }
 
 /// The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,
@@ -401,7 +412,7 @@ pub unsafe extern "C" fn wk_context_get_ambient(
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ambient", out_ambient)?) };
         object.cell.drain();
-        let sh = object.read().ambient_at(DVec3::from_array(at))?;
+        let sh = object.read().ambient_at(DVec3::from_array(at)).map_err(|e| of_position("position_m", e))?;
         let mut answer = wk_ambient::INIT;
         for (to, from) in answer.sh9.iter_mut().zip(sh.as_flattened()) {
             *to = f64::from(*from);

@@ -44,7 +44,16 @@ pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 /// (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
-/// How a view draws rain; what falls does not depend on it.
+/// wk_rain.shutter_s of an eye: it adds up light over about so long by day. Streaks are long and faint.
+pub const WK_RAIN_SHUTTER_EYE_S: f64 = 0.05;
+/// wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default.
+pub const WK_RAIN_SHUTTER_CAMERA_60_S: f64 = 0.016_666_666_666_666_666;
+/// wk_rain.shutter_s of a camera in good light. Streaks are short.
+pub const WK_RAIN_SHUTTER_CAMERA_500_S: f64 = 0.002;
+/// wk_rain.contrast_gain for trainers: rain by day shows on a display of eight bits as it does in a film.
+pub const WK_RAIN_GAIN_TRAINER: f64 = 4.0;
+
+/// How a view draws what falls: rain, hail and splashes. What falls does not depend on it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain {
@@ -54,13 +63,19 @@ pub struct wk_rain {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Time for which a picture is exposed, s: it makes streaks of drops. Range [1e-4, 0.1], default 1/60.
+    /// Time for which a picture is exposed, s: it makes streaks of drops, the longer and the fainter the longer it is
+    /// (WK_RAIN_SHUTTER_ constants). Range [1e-4, 0.1], default 1/60.
     pub shutter_s: f64,
     /// Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
     /// 400 000, and 100 000 on a software driver.
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_rain_model,
+    /// By how much what falls stands out of the picture more than it does in nature. Range [1, 16], or 0, the default: 1, as in
+    /// nature. Beyond 1 streaks, stones and splashes hide as much as so many of them one before the other, a departure from
+    /// physics for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water
+    /// and queries do not depend on it. Set it alike on all channels of a simulator.
+    pub contrast_gain: f64,
 }
 
 impl wk_rain {
@@ -71,6 +86,7 @@ impl wk_rain {
         shutter_s: 0.016_666_666_666_666_666,
         most_drops: 0,
         model: WK_RAIN_MODEL_AUTOMATIC,
+        contrast_gain: 0.0,
     };
 }
 
@@ -174,6 +190,7 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
                 WK_RAIN_MODEL_INTEGRATED => RainModel::Integrated,
                 _ => RainModel::Automatic,
             };
+            settings.contrast_gain = if c.contrast_gain == 0.0 { 1.0 } else { c.contrast_gain };
         }
         object.lock().set_rain(settings)?;
         Ok(Status::Ok)

@@ -162,10 +162,10 @@ pub unsafe extern "C" fn wk_get_preset(
         let Some(found) = texts.get(index as usize) else {
             return Err(Error::range("index", &format!("below {}", texts.len()), index));
         };
-        for (param, place, text) in [("out_name", out_name, &found[0]), ("out_description", out_description, &found[1])]
-        {
-            if !place.is_null() {
-                layout::check_pointer(&param, place)?;
+        let name = layout::optional_out(&"out_name", out_name)?;
+        let description = layout::optional_out(&"out_description", out_description)?;
+        for (place, text) in [(name, &found[0]), (description, &found[1])] {
+            if let Some(place) = place {
                 // SAFETY: checked, and the caller's.
                 unsafe { place.write(text.as_ptr()) };
             }

@@ -142,6 +142,8 @@ pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 /// wk_ground_texture
 pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
+/// wk_frame_light
+pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 
 /// How grave a message is.
 pub type wk_log_level = u32;
@@ -177,14 +179,14 @@ pub extern "C" fn wk_last_error_message() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
     guard("wk_version", |_| {
+        let out = super::layout::optional_out::<u32>;
         let parts = [
-            (&"major", major, env!("CARGO_PKG_VERSION_MAJOR")),
-            (&"minor", minor, env!("CARGO_PKG_VERSION_MINOR")),
-            (&"patch", patch, env!("CARGO_PKG_VERSION_PATCH")),
+            (out(&"major", major)?, env!("CARGO_PKG_VERSION_MAJOR")),
+            (out(&"minor", minor)?, env!("CARGO_PKG_VERSION_MINOR")),
+            (out(&"patch", patch)?, env!("CARGO_PKG_VERSION_PATCH")),
         ];
-        for (name, out, text) in parts {
-            if !out.is_null() {
-                super::layout::check_pointer(name, out)?;
+        for (place, text) in parts {
+            if let Some(out) = place {
                 // SAFETY: checked, and the caller's promise that it points to a `uint32_t`.
                 unsafe { out.write(text.parse().unwrap_or(0)) };
             }

@@ -85,6 +85,7 @@ impl wk_texture_desc {
 pub(super) struct TextureObject {
     cell: Arc<DeviceCell>,
     pub(super) texture: wgpu::Texture,
+    pub(super) format: wk_format,
     /// Reads and writes wait for the GPU; one at a time.
     transfer: Mutex<()>,
 }
@@ -96,6 +97,11 @@ impl Object for TextureObject {
     fn device(&self) -> Option<&Arc<DeviceCell>> {
         Some(&self.cell)
     }
+}
+
+/// The header's name of a checked constant.
+pub(super) fn name_of(format: wk_format) -> &'static str {
+    layout::WK_FORMAT.values.iter().find(|v| v.1 == u64::from(format)).map_or("?", |v| v.0)
 }
 
 /// The wgpu format of a checked constant.
@@ -129,7 +135,8 @@ pub unsafe extern "C" fn wk_texture_create(
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         let place = out("out_texture", out_texture)?;
         let texture = create(&object.cell, &desc)?;
-        let texture = TextureObject { cell: object.cell.clone(), texture, transfer: Mutex::new(()) };
+        let (cell, format) = (object.cell.clone(), desc.format);
+        let texture = TextureObject { cell, texture, format, transfer: Mutex::new(()) };
         let handle = handles::insert::<_, DeviceObject>(Arc::new(texture), Some(device))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };
@@ -145,12 +152,18 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
     let format = format(desc.format);
     let mut usage =
         wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-    let allowed = format.guaranteed_format_features(gpu.device.features()).allowed_usages;
-    if allowed.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+    // What WebGPU promises is not what every driver has: OpenGL's need not draw into floats of 32 bits.
+    let mut allowed = format.guaranteed_format_features(gpu.device.features()).allowed_usages;
+    if !gpu.adapter.get_downlevel_capabilities().is_webgpu_compliant() {
+        allowed &= gpu.adapter.get_texture_format_features(format).allowed_usages;
+    }
+    let only_read = matches!(desc.format, WK_FORMAT_R32_FLOAT | WK_FORMAT_R8_UNORM);
+    if !only_read || allowed.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
         usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
     }
     if !allowed.contains(usage) {
-        return Err(Error::unsupported(format!("desc.format: this device makes no {format:?} textures")));
+        let text = "desc.format must be one that this device can make and draw into: WK_FORMAT_RGBA16_FLOAT always is";
+        return Err(Error::unsupported(format!("{text}, got {}", name_of(desc.format))));
     }
     let _entered = cell.enter()?;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -19,7 +19,7 @@ use super::{
     weather_convert::{from_c, overrides},
 };
 use crate::{
-    context::GivenDirection,
+    context::{GivenDirection, UPDATE_TIME},
     error::{Error, Result, Status},
     sky::sun::Utc,
 };
@@ -52,7 +52,7 @@ impl wk_given_direction {
     };
 }
 
-/// Changes the weather, beginning at `start_time_s` and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
+/// Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
 /// have a wk_weather_overrides in its chain. Copied during the call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
@@ -75,13 +75,36 @@ pub unsafe extern "C" fn wk_context_set_weather(
 
 /// Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
 /// the views record.
+/// Weather and light are functions of time and follow at once. A simulated ground (WK_GROUND_SIMULATED) is stepped, one step for
+/// every 10 s: in one call for 50 ms at most, but one step at least. Where that is not enough, after a leap of hours, the call
+/// answers WK_PENDING: call it again with the same time, in a loop or once a frame, until it answers WK_OK. Until then water on
+/// the ground is drawn and answered as of wk_context_get_state_time, what is set acts only after the steps that remain, and a time
+/// later than the one under way is taken when these are done. So the state is the same however many calls it takes.
+/// A leap of more than a day begins the ground anew a day before its end, as the weather reports the ground then.
 /// Thread: exclusive.
-/// Answers WK_PENDING if simulation steps remain to be done: call again with the same time.
+/// Answers WK_PENDING, which is no error, if steps remain.
 /// Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64) -> wk_status {
     guard("wk_context_update", |call| {
-        call.get::<ContextObject>("context", context)?.write().update(time_s)?;
+        call.get::<ContextObject>("context", context)?.write().update_within(time_s, UPDATE_TIME)
+    })
+}
+
+/// Simulation time of all that has state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING; how far
+/// the state lags behind is the difference. It never goes back, but for wk_context_load.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_state_time(
+    context: *const wk_context,
+    out_state_time_s: *mut f64,
+) -> wk_status {
+    guard("wk_context_get_state_time", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let place = out("out_state_time_s", out_state_time_s)?;
+        let state_time_s = object.read().state_time_s();
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(state_time_s) };
         Ok(Status::Ok)
     })
 }
@@ -99,7 +122,8 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
     })
 }
 
-/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. Years -2000 to 6000.
+/// Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000]; `second` in [0, 60), in the
+/// last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the next day, as Unix time has it.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(
@@ -191,10 +215,14 @@ fn value_name(e: Error) -> Error {
     Error::new(e.status, format!("value {rest}"))
 }
 
-/// Writes everything that decides what the context shows from now on: UTF-8 text, the same on every machine.
+/// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine: weather, time,
+/// clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain with its water, and of which
+/// world, place, planet, seed, tone curve and ground model it is. Not in it: how it is drawn (sky settings, views, plans), and the
+/// images of wk_context_set_occluder_maps, which may be other ones on each channel.
 /// `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
 /// or `buffer` is NULL with `capacity` 0 (then it succeeds).
 /// Thread: concurrent.
+/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_save(
     context: *const wk_context,
@@ -211,10 +239,13 @@ pub unsafe extern "C" fn wk_context_save(
     })
 }
 
-/// Takes up a state that wk_context_save wrote, on a context of the same planet and seed.
+/// Loads a state that wk_context_save wrote, in place of all that it holds, on a context that was created alike: with the same
+/// world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for WK_WORLD_ECEF), seed,
+/// planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_PARSE for bytes that are no such state or of another version; WK_ERROR_INVALID_ARGUMENT if planet or
-/// seed differ. The context stays as it was then.
+/// Errors: WK_ERROR_PARSE for bytes that are no such state, cut short, changed by as little as a byte, or of another format, which
+/// the message names (this version reads format 2; format 1, which did not say of which place it was, must be saved anew);
+/// WK_ERROR_INVALID_ARGUMENT naming all that was created otherwise. The context stays as it was then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {
     guard("wk_context_load", |call| {
@@ -227,8 +258,9 @@ pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const
     })
 }
 
-/// A number that is equal on two channels whose contexts show the same world from now on.
+/// A number that is equal on two channels whose contexts show the same world from now on: a hash of what wk_context_save writes.
 /// Thread: concurrent.
+/// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_state_hash(context: *const wk_context, out_hash: *mut u64) -> wk_status {
     guard("wk_context_state_hash", |call| {

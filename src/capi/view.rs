@@ -9,7 +9,7 @@
 //!   MEDIUM      fog and aerial perspective on all that was drawn so far
 //!   PARTICLES   what falls and flies
 //!   LENS        water on the windscreen
-//!   TONE        exposure, tone curve, encoding and dither of the whole picture
+//!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
 //!
 //! The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
 //! in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
@@ -27,7 +27,7 @@ use std::{
 
 use super::{
     boundary::guard,
-    context::{ContextObject, wk_context},
+    context::{ContextObject, renamed, wk_context},
     device_cell::DeviceCell,
     frame::{WK_FRAME_MEASURE, wk_frame},
     handles::{self, Object},
@@ -62,8 +62,9 @@ pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 /// Water on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
-/// Exposure, tone curve, encoding and dither of the whole picture. Targets of floats and sRGB formats get display-linear values, the
-/// others are encoded as sRGB here.
+/// Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
+/// values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
+/// that: TONE does nothing then, alone or among other stages.
 pub const WK_STAGE_TONE: wk_stage_flags = 64;
 /// Everything in one call.
 pub const WK_STAGE_ALL: wk_stage_flags = 127;
@@ -112,7 +113,7 @@ pub struct wk_report {
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame so far.
     pub passes: u32,
-    /// Tables rebuilt for this frame so far; 0 when only the camera turned.
+    /// Tables built, refined or faded for this frame so far; 0 when only the camera turned and the sky has its final quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
     pub exposure: f64,
@@ -146,6 +147,8 @@ pub struct wk_report {
     pub splashes_left_out_per_m2_s: f64,
     /// Likewise the smallest stones that did not hop.
     pub stones_left_out_per_m2_s: f64,
+    /// The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn.
+    pub contrast_gain: f64,
 }
 
 impl wk_report {
@@ -172,6 +175,7 @@ impl wk_report {
         drop_weight: 0.0,
         splashes_left_out_per_m2_s: 0.0,
         stones_left_out_per_m2_s: 0.0,
+        contrast_gain: 0.0,
     };
 }
 
@@ -289,7 +293,7 @@ pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
 }
 
 /// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
-/// After an error nothing was drawn by this call.
+/// What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
 /// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
 /// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
 /// the field's name; WK_ERROR_DEVICE_LOST.
@@ -310,7 +314,8 @@ pub unsafe extern "C" fn wk_view_record(
         object.cell.drain();
         let measured = (c.flags & WK_FRAME_MEASURE != 0).then(Instant::now);
         // SAFETY: as above.
-        unsafe { host::record(call, &object, &c, stages)? };
+        unsafe { host::record(call, &object, &c, stages) }
+            .map_err(|e| renamed("frame.camera.position ", "frame.position_m ", e))?;
         if let Some(start) = measured {
             object.lock().add_hand_over(start);
         }
@@ -347,6 +352,7 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
             drop_weight: report.rain.drop_weight,
             splashes_left_out_per_m2_s: report.rain.splashes_left_out_per_m2_s,
             stones_left_out_per_m2_s: report.rain.stones_left_out_per_m2_s,
+            contrast_gain: report.rain.contrast_gain,
             has: has.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
             ms: report.costs.map_or(0.0, |c| c.whole_ms),
             predicted_ms: expected.milliseconds.unwrap_or(0.0),

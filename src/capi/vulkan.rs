@@ -244,6 +244,13 @@ pub struct wk_vulkan_target {
     pub signal_count: u32,
     /// Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
     pub signal_stride: u32,
+    /// What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
+    /// it. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+    pub surface_classes: *const wk_vulkan_image,
+    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
+    /// float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`, one
+    /// sample. Default NULL.
+    pub normals: *const wk_vulkan_image,
 }
 
 impl wk_vulkan_target {
@@ -260,6 +267,8 @@ impl wk_vulkan_target {
         wait_stride: struct_size::<wk_vulkan_semaphore>(),
         signal_count: 0,
         signal_stride: struct_size::<wk_vulkan_semaphore>(),
+        surface_classes: null(),
+        normals: null(),
     };
 }
 

@@ -159,7 +159,8 @@ pub struct wk_weather {
     pub aerosol_single_scattering_albedo: f64,
     /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
     pub aerosol_asymmetry: f64,
-    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind.
+    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. Held to the station's altitude over
+    /// 4.6 at least (435 m at 2000 m): the sky counts densities from the sea.
     pub aerosol_scale_height_m: f64,
     /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
     pub fog_top_m: f64,

@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::{
     MAX_BATCH,
     boundary::guard,
-    conditions::position,
+    conditions::{of_position, position},
     context::{ContextObject, wk_context},
     input::{self, check_finite},
     layout::{self, init_struct, struct_size},
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
         let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_wind", out_wind)?) };
         let time_s = check_finite("time_s", time_s)?;
         let context = object.read();
-        let wind = context.wind_at(DVec3::from_array(at), time_s)?;
+        let wind = context.wind_at(DVec3::from_array(at), time_s).map_err(|e| of_position("position_m", e))?;
         place.set(&wk_wind {
             velocity_m_s: wind.velocity_m_s.to_array(),
             mean_m_s: wind.mean_m_s.to_array(),
@@ -200,7 +200,8 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// What falls at a place of the host's world and a simulation time. Above the lowest cloud there is none.
+/// What falls at a place of the host's world and a simulation time. Above the clouds that it falls from there is none: above
+/// their bases, on the mean over what covers the sky.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -216,7 +217,8 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_rainfall", out_rainfall)?) };
         let time_s = check_finite("time_s", time_s)?;
-        place.set(&wk_rainfall::of(&object.read().rain_at(DVec3::from_array(at), time_s)?));
+        let rain = object.read().rain_at(DVec3::from_array(at), time_s);
+        place.set(&wk_rainfall::of(&rain.map_err(|e| of_position("position_m", e))?));
         Ok(Status::Ok)
     })
 }
@@ -259,7 +261,7 @@ pub unsafe extern "C" fn wk_context_get_rain_on_at(
                 area_m2: check_finite(&format!("surfaces[{i}].area_m2"), c.area_m2)?,
             };
             let on = context.rain_on(&surface, time_s);
-            Ok(wk_rain_on::of(&on.map_err(|e| e.within(&format!("surfaces[{i}].")))?))
+            Ok(wk_rain_on::of(&on.map_err(|e| of_position("position_m", e).within(&format!("surfaces[{i}].")))?))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, on) in answers.iter().enumerate() {

@@ -71,8 +71,7 @@ impl wk_wind_grid {
     };
 }
 
-/// Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Not part of a saved state.
-/// Unchanged after an error.
+/// Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

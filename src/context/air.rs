@@ -1,6 +1,6 @@
 //! The planet's air as the weather makes it: gas by pressure and temperature, haze by visibility, ozone by its column.
 
-use crate::{sky::Planet, weather::Conditions};
+use crate::{fog::MAX_EXTINCTION_PER_M, sky::Planet, weather::Conditions};
 
 /// Dobson units that a planet file's ozone layer stands for.
 const PLANET_OZONE_DU: f64 = 300.0;
@@ -18,8 +18,12 @@ pub fn planet_under(planet: &Planet, c: &Conditions) -> Planet {
     }
     p.rayleigh.scale_height_m *= c.air.rayleigh_scale_height_m / STANDARD_SCALE_HEIGHT_M;
     let at_sea_level = c.aerosol.sea_level_factor();
-    p.mie.extinction_per_m = c.aerosol.extinction_at(p.wavelengths_nm).map(|v| v * at_sea_level);
-    p.mie.scattering_per_m = c.aerosol.scattering_at(p.wavelengths_nm).map(|v| v * at_sea_level);
+    let extinction = c.aerosol.extinction_at(p.wavelengths_nm).map(|v| v * at_sea_level);
+    let scattering = c.aerosol.scattering_at(p.wavelengths_nm).map(|v| v * at_sea_level);
+    // What a planet may have hides everything within half a metre: more of it shows nothing else.
+    p.mie.extinction_per_m = extinction.map(|v| v.min(MAX_EXTINCTION_PER_M));
+    let held = |i: usize| if extinction[i] > MAX_EXTINCTION_PER_M { MAX_EXTINCTION_PER_M / extinction[i] } else { 1.0 };
+    p.mie.scattering_per_m = [0, 1, 2].map(|i| (scattering[i] * held(i)).min(p.mie.extinction_per_m[i]));
     p.mie.scale_height_m = c.aerosol.scale_height_m;
     p.mie.asymmetry_g = c.aerosol.asymmetry;
     for v in &mut p.absorption.extinction_per_m {

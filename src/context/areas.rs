@@ -3,11 +3,11 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Context, fog::falling_top_m};
+use super::{Context, MAX_TIME_S};
 use crate::{
     error::{Error, Result, check_range},
     rain::{AreaMotion, MAX_AREAS, RainArea, Shaft, drops::factor_in, sizes::DropSizes},
-    weather::{Conditions, Falling, hydrometeors},
+    weather::{Conditions, Falling, Timeline, hydrometeors},
 };
 
 /// An area and what is known of it.
@@ -18,13 +18,6 @@ pub(super) struct KeptArea {
     /// timeline forgets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     carried_m: Option<[f64; 2]>,
-}
-
-impl KeptArea {
-    /// Whether a saved one can be one of ours.
-    pub fn is_valid(&self) -> bool {
-        self.area.validate().is_ok() && self.carried_m.is_none_or(|d| d.iter().all(|v| v.is_finite()))
-    }
 }
 
 /// Height above the station for which the wind of a cloud stands, m: the highest that the profile knows.
@@ -53,12 +46,39 @@ impl Context {
 
     fn check_area(&self, area: &RainArea) -> Result<()> {
         area.validate()?;
-        self.desc.world.frame_at(DVec3::from(area.center_m)).place.validate()?;
-        let from = match area.motion {
-            AreaMotion::WithWind => self.timeline.known_from_s().max(-super::MAX_TIME_S),
-            AreaMotion::Own(_) => -super::MAX_TIME_S,
+        self.desc.world.place_at("rain_area.center_m", DVec3::from(area.center_m))?;
+        check_range("rain_area.at_s", area.at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let known_s = self.timeline.known_from_s();
+        if area.motion == AreaMotion::WithWind && area.at_s != 0.0 && area.at_s < known_s {
+            let accepted =
+                format!("0, or at least {known_s} s where the wind moves it: how it blew before is forgotten");
+            return Err(Error::range("rain_area.at_s", &accepted, area.at_s));
+        }
+        Ok(())
+    }
+
+    /// How far the wind had carried the air at a time that [`Context::set_rain_areas`] accepts, m east and north: nowhere at time 0,
+    /// from which it is counted, whatever the timeline has forgotten since.
+    fn carried_until(&self, at_s: f64) -> Result<[f64; 2]> {
+        if at_s == 0.0 { Ok([0.0; 2]) } else { Ok(self.wind_displacement(at_s)?.truncate().to_array()) }
+    }
+
+    /// Whether saved ones can be some of ours over `timeline`.
+    pub(super) fn are_valid(&self, areas: &[KeptArea], timeline: &Timeline) -> bool {
+        let is_place = |center_m: [f64; 3]| self.desc.world.frame_at(DVec3::from(center_m)).place.validate().is_ok();
+        let is_timed = |kept: &KeptArea| match (kept.area.motion, kept.carried_m) {
+            (AreaMotion::Own(_), carried) => carried.is_none(),
+            (AreaMotion::WithWind, Some(carried)) => carried.iter().all(|v| v.is_finite()),
+            (AreaMotion::WithWind, None) => kept.area.at_s >= timeline.known_from_s(),
         };
-        check_range("rain_area.at_s", area.at_s, from, super::MAX_TIME_S, "s")
+        areas.len() <= MAX_AREAS
+            && areas.iter().all(|kept| {
+                let area = &kept.area;
+                area.validate().is_ok()
+                    && is_place(area.center_m)
+                    && area.at_s.abs() <= super::MAX_TIME_S
+                    && is_timed(kept)
+            })
     }
 
     /// The regions with rain of their own, as they were set.
@@ -71,7 +91,7 @@ impl Context {
         for i in 0..self.areas.len() {
             let KeptArea { area, carried_m } = self.areas[i];
             if carried_m.is_none() && area.at_s <= now_s && area.motion == AreaMotion::WithWind {
-                self.areas[i].carried_m = Some(self.wind_displacement(area.at_s)?.truncate().to_array());
+                self.areas[i].carried_m = Some(self.carried_until(area.at_s)?);
             }
         }
         Ok(())
@@ -91,7 +111,7 @@ impl Context {
                 AreaMotion::WithWind => {
                     let then = match kept.carried_m {
                         Some(carried) => DVec2::from(carried),
-                        None => self.wind_displacement(kept.area.at_s).ok()?.truncate(),
+                        None => DVec2::from(self.carried_until(kept.area.at_s).ok()?),
                     };
                     (drift - then, wind * shear)
                 }
@@ -114,7 +134,7 @@ impl Context {
         let local = self.desc.world.frame_at(position);
         let altitude_m = local.place.altitude_m;
         let mut falling = c.precipitation;
-        if altitude_m > falling_top_m(c) {
+        if altitude_m > c.falling_top_m() {
             (falling.rain_mm_h, falling.drizzle_mm_h) = (0.0, 0.0);
         }
         let factor = factor_in(&c.air, altitude_m);
@@ -195,9 +215,9 @@ fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling
 
 /// Share of the extinction of all that falls that is rain's and drizzle's.
 pub(super) fn liquid_share(f: &Falling) -> f64 {
-    let rain =
-        if f.showers > 0.0 { hydrometeors::shower_extinction_per_m } else { hydrometeors::rain_extinction_per_m };
-    let liquid = rain(f.rain_mm_h) + hydrometeors::drizzle_extinction_per_m(f.drizzle_mm_h);
+    let [steady, showers] =
+        [hydrometeors::rain_extinction_per_m, hydrometeors::shower_extinction_per_m].map(|law| law(f.rain_mm_h));
+    let liquid = steady + (showers - steady) * f.showers + hydrometeors::drizzle_extinction_per_m(f.drizzle_mm_h);
     let solid = hydrometeors::snow_extinction_per_m(f.snow_mm_h)
         + hydrometeors::ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
         + hydrometeors::hail_extinction_per_m(f.hail_mm_h);

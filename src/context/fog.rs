@@ -13,7 +13,7 @@ use crate::{
     },
     rain::curtain,
     scene::Place,
-    weather::{Conditions, lifting},
+    weather::{Conditions, lifting, smoothstep},
 };
 
 /// Least change of the optical depth of the longest curtain that shows.
@@ -23,32 +23,64 @@ const LEAST_SHOWN: f64 = 1e-3;
 /// Altitudes above the sea.
 ///
 /// One layer holds both, so that a reported visibility is the drawn one at the station: rain or snow alone fills the air
-/// up to the lowest cloud; with fog, the denser of the two gives the shape. Patches go with the air: `drift_m` is how far
-/// the wind has carried it (east, north).
+/// up to the lowest cloud; with fog, the denser of the two gives the shape, and both where they are about as dense. Patches go with
+/// the air: `drift_m` is how far the wind has carried it (east, north).
 pub fn fog_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let falling = c.precipitation.extinction_per_m;
-    let fog = ground_layer(c, seed, drift_m);
-    if falling <= 0.0 {
-        return fog;
+    let rain = (falling > 0.0).then(|| FogLayer {
+        // Under the deck that it falls from, light comes from all sides: where the drops send it does not show.
+        phase: Phase::HenyeyGreenstein { g: 0.0 },
+        ..FogLayer::ground_fog(falling.min(crate::fog::MAX_EXTINCTION_PER_M), c.falling_top_m(), 100.0)
+    });
+    match (ground_layer(c, seed, drift_m), rain) {
+        (Some(fog), Some(rain)) => Some(together(&fog, &rain)),
+        (fog, rain) => fog.or(rain),
     }
-    let mut layer = match fog {
-        Some(fog) if fog.extinction_per_m >= falling => fog,
-        denser => FogLayer {
-            extinction_per_m: denser.map_or(0.0, |f| f.extinction_per_m),
-            // Under the deck that it falls from, light comes from all sides: where the drops send it does not show.
-            phase: Phase::HenyeyGreenstein { g: 0.0 },
-            ..FogLayer::ground_fog(0.0, falling_top_m(c), 100.0)
-        },
-    };
-    layer.extinction_per_m = (layer.extinction_per_m + falling).min(crate::fog::MAX_EXTINCTION_PER_M);
-    Some(layer)
 }
 
-/// Where the falling begins: the lowest cloud's base, at least 100 m up; 2 km if no cloud is known.
-pub(super) fn falling_top_m(c: &Conditions) -> f64 {
-    let lowest = c.cloud_slabs().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
-    c.air.station_altitude_m + if lowest.is_finite() { lowest.max(100.0) } else { 2000.0 }
+/// Fog and what falls as one layer: its extinction and what it absorbs are those of both, its shape that of the denser one; between
+/// the two as long as neither has twice the other's extinction, so that it never jumps.
+fn together(fog: &FogLayer, rain: &FogLayer) -> FogLayer {
+    let whole = fog.extinction_per_m + rain.extinction_per_m;
+    let part = rain.extinction_per_m / whole;
+    let shape = smoothstep(1.0 / 3.0, 2.0 / 3.0, part);
+    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    let profile = match (fog.profile, rain.profile) {
+        (
+            Profile::Slab { base_m, top_m, base_softness_m, top_softness_m },
+            Profile::Slab { base_m: base, top_m: top, base_softness_m: base_softness, top_softness_m: top_softness },
+        ) => Profile::Slab {
+            base_m: mix(base_m, base, shape),
+            top_m: mix(top_m, top, shape),
+            base_softness_m: mix(base_softness_m, base_softness, shape),
+            top_softness_m: mix(top_softness_m, top_softness, shape),
+        },
+        (profile, _) => profile,
+    };
+    let patches = fog.patches.map(|p| Patches { amount: p.amount * (1.0 - shape), ..p });
+    FogLayer {
+        extinction_per_m: whole.min(crate::fog::MAX_EXTINCTION_PER_M),
+        angstrom: mix(fog.angstrom, rain.angstrom, part),
+        albedo: [0, 1, 2].map(|i| mix(fog.albedo[i], rain.albedo[i], part)),
+        profile,
+        phase: toward_even(fog.phase, shape),
+        patches: patches.filter(|p| p.amount > 0.0),
+    }
 }
+
+/// A phase function so far on the way to one that scatters to all sides alike.
+fn toward_even(phase: Phase, share: f64) -> Phase {
+    match phase {
+        Phase::HenyeyGreenstein { g } => Phase::HenyeyGreenstein { g: g * (1.0 - share) },
+        Phase::Droplets { diameter_um } => Phase::Between { diameter_um, g: 0.0, share },
+        Phase::Between { diameter_um, g, share: there } => {
+            Phase::Between { diameter_um, g: g * (1.0 - share), share: there + (1.0 - there) * share }
+        }
+    }
+}
+
+/// Least unevenness of a layer that shows as patches.
+const LEAST_PATCHES: f64 = 0.002;
 
 fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let f = &c.fog;
@@ -66,10 +98,12 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
         base_softness_m: 0.0,
         top_softness_m: softness,
     };
-    let phase = if f.angstrom_exponent > 0.5 {
-        Phase::HenyeyGreenstein { g: f.asymmetry.clamp(-0.95, 0.95) }
-    } else {
-        Phase::Droplets { diameter_um: 15.0 }
+    // Particles that tell colours apart are no droplets.
+    let (diameter_um, g) = (15.0, f.asymmetry.clamp(-0.95, 0.95));
+    let phase = match smoothstep(0.25, 0.75, f.angstrom_exponent) {
+        share if share <= 0.0 => Phase::Droplets { diameter_um },
+        share if share >= 1.0 => Phase::HenyeyGreenstein { g },
+        share => Phase::Between { diameter_um, g, share },
     };
     let covered = (2.0 * (1.0 - f.coverage)).clamp(0.0, 1.0);
     // The pattern's values are spread exponentially about its mean of 1. The densest share c of it, which is the part of
@@ -78,7 +112,8 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     // Gusts lift more here and less there; what is reported is their mean.
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
     let amount = covered.max(gusts);
-    let patches = (amount > 0.002).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m });
+    let amount = (amount - LEAST_PATCHES) / (1.0 - LEAST_PATCHES);
+    let patches = (amount > 0.0).then_some(Patches { amount, size_m: f.patch_size_m.clamp(5.0, 1e5), seed, drift_m });
     // Dust takes blue, soot every colour: absorption has a power of the wavelength of its own.
     let absorbed = 1.0 - f.single_scattering_albedo.clamp(0.0, 1.0);
     let dust = lifting::DUST_ABSORPTION_EXPONENT;
@@ -118,9 +153,10 @@ pub(super) fn through_fog(
     let model = under(sun, sun_lux, sky_lux)?;
     let [sun_under, mut sky_under] = model.light_at(place.altitude_m).unwrap_or([sun_lux, sky_lux]);
     // By day nobody sees what fog makes of the moon's light.
-    if moon_lux[1] > 1e-4 * sky_lux[1] {
+    let seen = smoothstep(1e-4, 2e-4, moon_lux[1] / sky_lux[1].max(f64::MIN_POSITIVE));
+    if seen > 0.0 {
         let [_, more] = under(moon, moon_lux, [0.0; 3])?.light_at(place.altitude_m).unwrap_or_default();
-        sky_under = [0, 1, 2].map(|i| sky_under[i] + more[i]);
+        sky_under = [0, 1, 2].map(|i| sky_under[i] + more[i] * seen);
     }
     let share = model.beam_share(moon.direction.z, place.altitude_m);
     Ok([sun_under, [0, 1, 2].map(|i| moon_lux[i] * share[i]), sky_under])
@@ -155,11 +191,12 @@ impl Scene {
         let variation = curtain::variation(falling);
         let rain_per_m = falling.extinction_per_m * super::areas::liquid_share(falling);
         // In so thin a rain they would not show.
-        if variation * rain_per_m * curtain::OWN_LENGTHS_M[1] < LEAST_SHOWN || layer.extinction_per_m <= 0.0 {
+        let shown = variation * rain_per_m * curtain::OWN_LENGTHS_M[1];
+        if shown < LEAST_SHOWN || layer.extinction_per_m <= 0.0 {
             return Curtains::NONE;
         }
         // The variance of a cosine is a half.
-        let each = variation * (2.0 / CURTAIN_WAVES as f64).sqrt();
+        let each = variation * (1.0 - LEAST_SHOWN / shown) * (2.0 / CURTAIN_WAVES as f64).sqrt();
         let place = [0, 1].map(|i| self.map_m[i] - self.drift_m[i]);
         let at = DVec3::new(place[0], place[1], self.place.altitude_m + self.curtains_fallen_m);
         let phased = |k: DVec3, phase: f64| (k, (k.dot(at) + phase).rem_euclid(TAU));

@@ -1,13 +1,15 @@
 //! The water on the ground: as the weather reports it, or simulated over the timeline if the host asked for that.
 
+use std::time::{Duration, Instant};
+
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::Context;
 use crate::{
-    error::Result,
+    error::{Result, Status},
     ground::{
-        GroundWater,
+        GroundWater, SurfaceClass,
         water::{Forcing, STEP_S, depth_at_mm},
     },
     scene::WorldKind,
@@ -22,7 +24,8 @@ pub enum GroundModel {
     #[default]
     Reported,
     /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It begins at
-    /// simulation time 0 as the weather of that moment reports the ground.
+    /// simulation time 0 as the weather of that moment reports the ground. An update that moves time by more than a day begins it
+    /// anew, in the same way, a day before its end.
     Simulated,
 }
 
@@ -37,16 +40,18 @@ pub struct GroundAt {
     pub wetness: f64,
     /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
-    /// Whether standing water covers the place.
+    /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
+    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    pub surface_class: SurfaceClass,
 }
 
 /// Sunlight for evaporation is looked up this often, s: a multiple of the step.
 const SUN_EVERY_S: f64 = 300.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
-/// Of a longer leap in time only this much is simulated, s: no ground remembers longer.
-const LONGEST_S: f64 = 30.0 * 86_400.0;
+/// An update that moves time by more than this begins the state anew, this long before its end, s.
+const LONGEST_S: f64 = 86_400.0;
 
 /// The simulated water and what its next step needs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,23 +82,35 @@ impl GroundState {
 }
 
 impl Context {
-    /// Leads the simulated water to the last step that is over at `now_s`. Answers from when on the timeline must be kept.
-    pub(super) fn step_ground(&mut self, now_s: f64) -> Result<f64> {
+    /// Makes ready to lead the simulated water from the present to `time_s`.
+    pub(super) fn begin_ground(&mut self, time_s: f64) -> Result<()> {
         if self.desc.ground == GroundModel::Reported {
-            return Ok(now_s);
+            return Ok(());
         }
-        let mut state = match self.ground {
-            Some(state) => state,
-            None => self.first_ground(self.time_s)?,
+        let state = if time_s - self.time_s > LONGEST_S {
+            // Where the sun is looked at, so that leaps that end a little apart begin alike.
+            let begin_s = ((time_s - LONGEST_S) / SUN_EVERY_S).floor() * SUN_EVERY_S;
+            let state = self.first_ground(begin_s.max(self.time_s))?;
+            self.begin_terrain_anew();
+            state
+        } else {
+            self.ground.map_or_else(|| self.first_ground(self.time_s), Ok)?
         };
-        if now_s - state.time_s > LONGEST_S {
-            state = self.first_ground(now_s - LONGEST_S)?;
-        }
-        let terrain_from_s = self.terrain_from_s(state.time_s, now_s);
-        loop {
+        self.ground = Some(state);
+        Ok(())
+    }
+
+    /// Leads the simulated water on until the present, or until `most` since `begun` is over: one step at least. A terrain has no
+    /// part in steps before `terrain_from_s`.
+    pub(super) fn lead_ground(&mut self, begun: Instant, most: Duration, terrain_from_s: f64) -> Result<Status> {
+        let Some(mut state) = self.ground else { return Ok(Status::Ok) };
+        for steps in 0.. {
             let end_s = ((state.time_s / STEP_S).floor() + 1.0) * STEP_S;
-            if end_s > now_s {
+            if end_s > self.time_s {
                 break;
+            }
+            if steps > 0 && begun.elapsed() >= most {
+                return Ok(Status::Pending);
             }
             if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
                 state.sunlight_w_m2 = self.sunlight_w_m2(state.time_s)?;
@@ -106,9 +123,28 @@ impl Context {
             if from_s >= terrain_from_s {
                 self.step_terrain((from_s, seconds), &c, &forcing, &before)?;
             }
+            self.ground = Some(state);
         }
-        self.ground = Some(state);
-        Ok(state.time_s.min(now_s))
+        Ok(Status::Ok)
+    }
+
+    /// Where the steps up to the present end, s.
+    pub(super) fn steps_end_s(&self) -> f64 {
+        (self.time_s / STEP_S).floor() * STEP_S
+    }
+
+    /// What is before this has no part in any later step, s.
+    pub(super) fn stepped_to_s(&self) -> f64 {
+        self.ground.map_or(self.time_s, |state| state.time_s.min(self.time_s))
+    }
+
+    /// Simulation time of the simulated water, s: the present, or earlier as long as [`Context::update_within`] answers that steps
+    /// remain. The present if nothing is simulated.
+    pub fn state_time_s(&self) -> f64 {
+        match (&self.behind, self.ground) {
+            (Some(_), Some(state)) => state.time_s,
+            _ => self.time_s,
+        }
     }
 
     /// A state that begins at `time_s` as the weather reports the ground.
@@ -133,11 +169,12 @@ impl Context {
         Ok((self.scene_at(origin, time_s)?.ground.total_lux / LUX_PER_W_M2).round())
     }
 
-    /// The simulated water on level, open ground now; `None` if it is not simulated ([`GroundModel::Reported`]).
+    /// The simulated water on level, open ground at [`Context::state_time_s`]; `None` if it is not simulated
+    /// ([`GroundModel::Reported`]).
     pub fn ground_water(&self) -> Option<GroundWater> {
         match (self.desc.ground, self.ground) {
             (GroundModel::Reported, _) => None,
-            (GroundModel::Simulated, Some(state)) if self.time_s > state.time_s => {
+            (GroundModel::Simulated, Some(state)) if self.behind.is_none() && self.time_s > state.time_s => {
                 Some(self.ground_after(&state, self.time_s))
             }
             (GroundModel::Simulated, Some(state)) => Some(state.water()),
@@ -169,14 +206,14 @@ impl Context {
         }
     }
 
-    /// Water on the ground at `position`, now: on the host's terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of
+    /// Water on the ground at `position`, now, or while steps remain at [`Context::state_time_s`]: on the host's terrain ([`Context::set_ground_grid`]), up to 3 m above it, that of
     /// its cells; elsewhere by the hollows that are drawn, wherever the host's own ground has its own.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place.
     pub fn ground_at(&self, position: DVec3) -> Result<GroundAt> {
-        let frame = self.desc.world.frame_at(position);
-        frame.place.validate()?;
+        let frame = self.desc.world.place_at("position", position)?;
+        let surface_class = self.surface_class_at(position);
         if let Some((cell, puddles)) = self.terrain_at(position) {
             return Ok(GroundAt {
                 water_mm: cell.depth_mm(),
@@ -184,6 +221,7 @@ impl Context {
                 wetness: cell.wetness(),
                 puddles,
                 in_puddle: cell.standing_mm > 0.0,
+                surface_class,
             });
         }
         let reported = self.timeline.at(self.time_s).surface;
@@ -195,13 +233,15 @@ impl Context {
             None => kept,
         };
         let at = DVec2::from(crate::ground::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
-        let water_mm = depth_at_mm(&water, self.hollows.depth(at));
+        let hollow_mm = depth_at_mm(&water, self.hollows.depth(at));
+        let water_mm = if surface_class.has_hollows() { hollow_mm } else { water.film_mm };
         Ok(GroundAt {
             water_mm,
             film_mm: water.film_mm,
             wetness: cover.wetness,
             puddles: cover.puddles,
             in_puddle: water_mm > water.film_mm,
+            surface_class,
         })
     }
 }

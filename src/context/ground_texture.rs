@@ -43,7 +43,7 @@ impl Context {
         Ok(GroundTexture { texture: water, generation, revision, uv_from_world: rows })
     }
 
-    /// Water and heights of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.
+    /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.
     pub(crate) fn terrain_views(&self, wanted: bool) -> [Option<wgpu::TextureView>; 2] {
         let mut textures = self.terrain_textures();
         let filled = if wanted { self.fill(&mut textures) } else { textures.filled() };
@@ -56,7 +56,7 @@ impl Context {
             *textures = TerrainTextures::default();
             return None;
         };
-        let numbers = [self.ground_generation, self.ground_revision];
+        let numbers = [self.ground_generation, self.ground_revision, self.classes_revision];
         Some(textures.follow(&self.device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
     }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Context;
 use crate::{
-    error::Result,
+    error::{Error, Result},
     scene::Place,
     sky::{
         Planet,
@@ -69,6 +69,11 @@ const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 /// Reflectance of the land under the clouds, with which light goes back and forth.
 const LAND_ALBEDO: f64 = 0.2;
 
+/// A time at which universal time is out of the almanac's years.
+fn out_of_almanac(time_s: f64) -> Error {
+    Error::range("time_s", "a time at which the context's clock shows one of the years -2000 to 6000", time_s)
+}
+
 /// A light and what the clouds leave of it.
 pub(super) type UnderClouds = (Light, CloudLight);
 
@@ -76,18 +81,25 @@ impl Context {
     /// Sun and moon over `place` at simulation time `time_s`.
     pub(super) fn lights_over(&self, place: &Place, c: &Conditions, time_s: f64) -> Result<[UnderClouds; 2]> {
         let utc = self.utc_at(time_s);
-        let turned = Turned::new(&self.ephemeris.at(utc)?, utc, place);
+        let sky = self.ephemeris.at(utc).map_err(|_| out_of_almanac(time_s))?;
+        let turned = Turned::new(&sky, utc, place);
         let pressure = c.air.pressure_hpa * (-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m).exp();
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
-        let sun = self.sun_over(&turned.sun(), c, see);
-        let moon = self.moon_over(moon::lit(&turned), &sun.0, c, see);
+        let sun = self.sun_over(&turned.sun(), c, place.altitude_m, see);
+        let moon = self.moon_over(moon::lit(&turned), &sun.0, c, place.altitude_m, see);
         Ok([sun, moon])
     }
 
-    fn sun_over(&self, almanac: &SunPosition, c: &Conditions, see: impl Fn(DVec3) -> (DVec3, f64)) -> UnderClouds {
+    fn sun_over(
+        &self,
+        almanac: &SunPosition,
+        c: &Conditions,
+        altitude_m: f64,
+        see: impl Fn(DVec3) -> (DVec3, f64),
+    ) -> UnderClouds {
         let to_sun = self.given_sun.map_or(almanac.direction, |g| g.unit());
         let (apparent, flattening) = see(to_sun);
-        let clouds = c.cloud_light(to_sun.z, LAND_ALBEDO);
+        let clouds = c.cloud_light_at(to_sun.z, LAND_ALBEDO, altitude_m);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
         let sun = Light {
             direction: to_sun,
@@ -109,6 +121,7 @@ impl Context {
         mut at: MoonPosition,
         sun: &Light,
         c: &Conditions,
+        altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
         if let Some(given) = &self.given_moon {
@@ -127,7 +140,7 @@ impl Context {
         let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
         let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
         let above = apparent.z > -0.02;
-        let clouds = c.cloud_light(at.direction.z, LAND_ALBEDO);
+        let clouds = c.cloud_light_at(at.direction.z, LAND_ALBEDO, altitude_m);
         let moon = Light {
             direction: at.direction,
             apparent,

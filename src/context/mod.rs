@@ -11,11 +11,14 @@ mod ground_texture;
 mod lights;
 mod queries;
 mod rain;
+mod saved_settings;
 mod scene;
 mod sky;
 mod state;
 mod terrain;
+mod terrain_rain;
 mod terrain_saved;
+mod update;
 mod wind;
 
 use std::{
@@ -33,13 +36,14 @@ pub use rain::{RainAt, RainOn, RainSurface};
 pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;
 pub use terrain::GroundCell;
+pub(crate) use update::UPDATE_TIME;
 
 use crate::{
-    error::{Error, Result, Status, check_range},
+    error::{Error, Result, check_range},
     fog::Law,
     frame::{Exposure, Shared, ToneCurve},
     gpu::Device,
-    ground::{Hollows, texture::TerrainTextures},
+    ground::{Hollows, SurfaceClass, texture::TerrainTextures},
     rain::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
@@ -47,7 +51,7 @@ use crate::{
         ephemeris::Ephemeris,
         sun::{Utc, direction},
     },
-    weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with},
+    weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid},
 };
 
@@ -111,9 +115,6 @@ impl GivenDirection {
     }
 }
 
-/// Largest distance of simulation time from 0, s.
-const MAX_TIME_S: f64 = 1e10;
-
 /// The weather, the time and the place that all views of a simulator share.
 ///
 /// Thread rule: `&Context` from any number of threads, `&mut Context` exclusive.
@@ -140,10 +141,15 @@ pub struct Context {
     ephemeris: Ephemeris,
     hollows: Hollows,
     ground: Option<ground::GroundState>,
+    behind: Option<Box<update::Behind>>,
     host_ground: Option<Box<terrain::HostGround>>,
     ground_revision: u64,
     /// Another number for each grid.
     ground_generation: u64,
+    /// Incremented whenever the host says anew what its terrain is made of.
+    classes_revision: u64,
+    /// Of ground of which nothing else is said.
+    surface_class: SurfaceClass,
     terrain_textures: Mutex<TerrainTextures>,
     /// Counts what the host has told of areas and of standing shelter.
     told: u64,
@@ -153,7 +159,7 @@ impl Context {
     /// Makes a context on `device`, with the default weather, at time 0. Contexts of one device share `shared`.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field of `desc`.
+    /// [`crate::Status::InvalidArgument`] naming the field of `desc`.
     pub fn new(device: Arc<Device>, shared: Arc<Shared>, desc: ContextDesc) -> Result<Self> {
         desc.world.validate()?;
         desc.planet.check()?;
@@ -184,9 +190,12 @@ impl Context {
             ephemeris: Ephemeris::default(),
             hollows,
             ground: None,
+            behind: None,
             host_ground: None,
             ground_revision: 0,
             ground_generation: 0,
+            classes_revision: 0,
+            surface_class: SurfaceClass::Unspecified,
             terrain_textures: Mutex::default(),
             told: 0,
         })
@@ -215,7 +224,7 @@ impl Context {
     /// Sets the exposure of frames that bring none.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field.
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn set_exposure(&mut self, exposure: Exposure) -> Result<()> {
         exposure.validate()?;
         self.desc.exposure = exposure;
@@ -255,13 +264,9 @@ impl Context {
     /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the parameter.
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn set_fog_law(&mut self, law: Option<Law>) -> Result<()> {
-        match &law {
-            Some(Law::Layer(layer)) => layer.validate()?,
-            Some(Law::Compatibility(law)) => law.validate()?,
-            Some(Law::Clear) | None => {}
-        }
+        law.as_ref().map_or(Ok(()), Law::validate)?;
         self.fog_law = law;
         Ok(())
     }
@@ -289,10 +294,11 @@ impl Context {
 
     /// What keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes them away. What
     /// they show is taken over in a submission of its own, after what is submitted already: the host may then draw into them
-    /// again. At most [`crate::rain::MAX_OCCLUDER_MAPS`]. Best taken along [`RainAt::fall_velocity_m_s`].
+    /// again. At most [`crate::rain::MAX_OCCLUDER_MAPS`]. Best taken along [`RainAt::fall_velocity_m_s`]. Not part of a saved state: each
+    /// channel may have its own.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] or [`Status::Unsupported`] naming the map and its field, [`Status::DeviceLost`]; nothing
+    /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field, [`crate::Status::DeviceLost`]; nothing
     /// changes then.
     pub fn set_occluder_maps(&mut self, maps: &[OccluderMap<'_>]) -> Result<()> {
         let device = self.device.clone();
@@ -376,7 +382,7 @@ impl Context {
     /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for times out of range.
+    /// [`crate::Status::InvalidArgument`] for times out of range.
     pub fn set_clock(&mut self, utc: Utc, at_s: f64) -> Result<()> {
         check_range("time_s", at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         let zero = Utc(utc.0 - at_s);
@@ -388,7 +394,7 @@ impl Context {
     /// Puts the sun where the host says; `None` returns it to the almanac.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the angle.
+    /// [`crate::Status::InvalidArgument`] naming the angle.
     pub fn set_sun(&mut self, sun: Option<GivenDirection>) -> Result<()> {
         sun.map_or(Ok(()), |s| s.validate("sun"))?;
         self.given_sun = sun;
@@ -398,30 +404,11 @@ impl Context {
     /// Puts the moon where the host says (its phase follows from the sun's place); `None` returns it to the almanac.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the angle.
+    /// [`crate::Status::InvalidArgument`] naming the angle.
     pub fn set_moon(&mut self, moon: Option<GivenDirection>) -> Result<()> {
         moon.map_or(Ok(()), |m| m.validate("moon"))?;
         self.given_moon = moon;
         Ok(())
-    }
-
-    /// Moves simulation time to `time_s`, [-1e10, 1e10]. The same time again changes nothing.
-    ///
-    /// # Errors
-    /// [`Status::InvalidArgument`] if it is not finite or out of range, [`Status::WrongOrder`] if it lies before the
-    /// present; the state stays as it was.
-    pub fn update(&mut self, time_s: f64) -> Result<()> {
-        check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
-        if time_s < self.time_s {
-            let now = self.time_s;
-            return Err(Error::new(Status::WrongOrder, format!("time_s must be at least {now} s, got {time_s}")));
-        }
-        let keep_s = self.step_ground(time_s)?;
-        self.keep_carried(time_s)?;
-        self.time_s = time_s;
-        self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
-        self.timeline.advance_keeping(time_s, keep_s);
-        self.show_terrain()
     }
 
     /// Simulation time, s.
@@ -439,10 +426,10 @@ impl Context {
     /// every place answers alike.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
+    /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
     /// the timeline still knows ([`Timeline::known_from_s`]).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
-        self.desc.world.frame_at(position).place.validate()?;
+        self.desc.world.place_at("position", position)?;
         self.weather_at(time_s)
     }
 

@@ -53,12 +53,12 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
     /// [`Context::conditions_at`].
     pub fn between(&self, from: DVec3, to: DVec3, time_s: f64) -> Result<Between> {
-        let scene = self.scene_at(from, time_s)?;
-        self.desc.world.frame_at(to).place.validate()?;
+        let scene = self.scene_named("from", from, time_s)?;
+        self.desc.world.place_at("to", to)?;
         let offset = scene.world_to_enu * (to - from);
         let distance = offset.length();
         if distance < 1e-3 {
-            return Err(Error::range("to", "at least a millimetre from `from`", to));
+            return Err(Error::range("to", "at least a millimetre from the other end", to));
         }
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Context, fog::falling_top_m};
+use super::Context;
 use crate::{
     error::{Error, Result, check_range},
     glass::{Reach, SIZES},
@@ -129,11 +129,10 @@ impl Context {
     /// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the
     /// cloud that they fall from there are none. In rain areas ([`Context::set_rain_areas`]) they are theirs, mixed by their rims.
     fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
-        let place = self.desc.world.frame_at(position).place;
-        place.validate()?;
+        let place = self.desc.world.place_at("position", position)?.place;
         let c = self.weather_at(time_s)?;
         let mut ice = self.with_areas(position, time_s, c).precipitation;
-        if place.altitude_m > falling_top_m(&c) {
+        if place.altitude_m > c.falling_top_m() {
             (ice.ice_pellets_mm_h, ice.hail_mm_h) = (0.0, 0.0);
         }
         let stones = StoneSizes::new(&ice, factor_in(&c.air, place.altitude_m));

@@ -15,7 +15,7 @@ use crate::{
     rain::curtain,
     scene::{LocalFrame, Place},
     sky::{Disc, Lamp, Observer, Planet, spectral::luminance},
-    weather::{CloudLight, Conditions, slab_reflectance},
+    weather::{CloudLight, Conditions, slab_reflectance, smoothstep},
 };
 
 /// Light that falls on level ground at a place, lux a channel of linear Rec. 709. Under fog the sun's and the moon's
@@ -88,18 +88,13 @@ fn map(a: [f64; 3], b: [f64; 3], f: impl Fn(f64, f64) -> f64) -> [f64; 3] {
     [0, 1, 2].map(|i| f(a[i], b[i]))
 }
 
-fn smooth(lo: f64, hi: f64, x: f64) -> f64 {
-    let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// Optical depths above `altitude_m` straight up, per wavelength: of what scatters (gas, haze), and of ozone.
 fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let h = altitude_m.max(0.0);
     let column = |scale: f64| if scale > 0.0 { scale * (-h / scale).exp() } else { 0.0 };
     let (gas, haze) = (column(planet.rayleigh.scale_height_m), column(planet.mie.scale_height_m));
     let tent = &planet.absorption;
-    let above = smooth(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
+    let above = smoothstep(-tent.half_width_m, tent.half_width_m.max(1.0), tent.center_altitude_m - h);
     let scattering =
         [0, 1, 2].map(|i| planet.rayleigh.scattering_per_m[i] * gas + planet.mie.extinction_per_m[i] * haze);
     (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
@@ -126,7 +121,7 @@ fn clear_light(
     // From a height the horizon lies deeper and the sun sets later.
     let h = altitude_m.max(0.0);
     let dip = ((h * (h + 2.0 * planet.bottom_radius_m)).sqrt() / planet.bottom_radius_m).atan().to_degrees();
-    let up = smooth(-0.9, -0.25, elevation_deg + dip);
+    let up = smoothstep(-0.9, -0.25, elevation_deg + dip);
     let lux = map(spectrum, ozone, |l, t| l * (-t * mass).exp());
     let direct = map(lux, depth, |l, t| l * (-t * mass).exp() * up);
     let mu = elevation_deg.to_radians().sin().max(0.08);
@@ -137,7 +132,7 @@ fn clear_light(
     let (a, b) = (TWILIGHT_LN_LUX[i], TWILIGHT_LN_LUX[i + 1]);
     let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
     let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * spectrum[1]);
-    let t = smooth(-0.8, 5.0, elevation_deg);
+    let t = smoothstep(-0.8, 5.0, elevation_deg);
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
@@ -146,23 +141,15 @@ fn clear_light(
 /// sunlit planet, whatever the sun's height over the place.
 fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
     let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
-    let low = (1.0 - smooth(0.0, 30.0, elevation)) * smooth(-12.0, -4.0, elevation);
-    let dusk = 1.0 - smooth(-5.0, 1.0, elevation);
+    let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
+    let dusk = 1.0 - smoothstep(-5.0, 1.0, elevation);
     let ground = 0.18 * total / PI + (0.35 + low * (2.0 + 4.0 * dusk)) * sky / PI;
-    ground + (0.15 * direct / PI - ground).max(0.0) * smooth(10e3, 80e3, altitude_m)
-}
-
-/// Part of the sky hidden by cloud that one cannot see through: a thin layer counts for what it takes of the light.
-fn opaque_cover(c: &Conditions) -> f64 {
-    1.0 - c
-        .cloud_slabs()
-        .fold(1.0, |clear, slab| clear * (1.0 - slab.cover * (1.0 - (-0.25 * slab.optical_depth).exp())))
+    ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
 /// What the clouds leave of the light that the air below them scatters: their total transmission, on the mean.
-fn medium_share(left: &CloudLight, below: f64) -> f64 {
-    let share = (left.direct + left.diffuse).clamp(0.0, 1.0);
-    1.0 + (share - 1.0) * below
+fn medium_share(left: &CloudLight) -> f64 {
+    (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
 
 impl Scene {
@@ -204,15 +191,16 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as
     /// [`Context::conditions_at`].
     pub fn scene_at(&self, position: DVec3, time_s: f64) -> Result<Scene> {
-        let local = self.desc.world.frame_at(position);
-        local.place.validate()?;
+        self.scene_named("position", position, time_s)
+    }
+
+    /// As [`Context::scene_at`], where the host calls the position `name`.
+    pub(crate) fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
+        let local = self.desc.world.place_at(name, position)?;
         let conditions = self.weather_at(time_s)?;
         let planet = planet_under(&self.desc.planet, &conditions);
         let lights = self.lights_over(&local.place, &conditions, time_s)?;
-        let station_m = conditions.air.station_altitude_m;
-        let lowest = conditions.cloud_slabs().map(|s| s.base_m + station_m).fold(f64::INFINITY, f64::min);
-        let below = smooth(0.0, 300.0, lowest + 150.0 - local.place.altitude_m);
-        let above_fog = self.ground_light(&planet, &local.place, &conditions, &lights, below);
+        let above_fog = self.ground_light(&planet, &local.place, &conditions, &lights);
         let [(sun, under_sun), (moon, _)] = lights;
         let ground = if self.fog_law.is_some() {
             above_fog
@@ -226,7 +214,7 @@ impl Context {
         let drift_m =
             if patchy || curtained { self.wind_displacement(time_s)?.truncate().to_array() } else { [0.0; 2] };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
-        let deck_cover = smooth(0.55, 0.95, opaque_cover(&conditions)) * below;
+        let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
         Ok(Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
@@ -240,7 +228,7 @@ impl Context {
             night_floor_cd_m2: NIGHT_CD_M2,
             deck_cd_m2: above_fog.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
-            medium_share: medium_share(&under_sun, below),
+            medium_share: medium_share(&under_sun),
             ground,
             above_fog,
             conditions,
@@ -263,30 +251,17 @@ impl Context {
         }
     }
 
-    fn ground_light(
-        &self,
-        planet: &Planet,
-        place: &Place,
-        c: &Conditions,
-        lights: &[UnderClouds; 2],
-        below: f64,
-    ) -> GroundLight {
-        let tops = c.cloud_slabs().map(|s| s.top_m() + c.air.station_altitude_m);
-        let cloud_top_m = tops.fold(0.0, f64::max);
+    fn ground_light(&self, planet: &Planet, place: &Place, c: &Conditions, lights: &[UnderClouds; 2]) -> GroundLight {
+        let cloud_top_m = c.lit_top_m(place.altitude_m);
         let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
             let at =
                 |altitude_m| clear_light((planet, &self.color), altitude_m, elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);
             // What clouds pass on diffusely fell on their tops, through less air.
-            let (on_top, _) = at(place.altitude_m.max(cloud_top_m));
-            let share = |v: f64| 1.0 + (v - 1.0) * below;
+            let (on_top, _) = at(cloud_top_m);
             let level = light.direction.z.max(0.0);
-            let from_clouds = clouds.diffuse * below;
-            (
-                direct.map(|d| d * share(clouds.direct)),
-                map(on_top, sky, |d, s| s * share(clouds.sky) + d * level * from_clouds),
-            )
+            (direct.map(|d| d * clouds.direct), map(on_top, sky, |d, s| s * clouds.sky + d * level * clouds.diffuse))
         };
         let ((sun_lux, sun_sky), (moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
         let floor = NIGHT_CD_M2.map(|v| v / luminance(&NIGHT_CD_M2) * NIGHT_LUX);

@@ -13,13 +13,12 @@ use crate::{
     sky::{LightTable, Planet, SkyLibrary, SkyModel, SkySettings, SkyTables},
 };
 
-/// A fade's share per frame, whatever the time: it costs as much in a frame however long it lasts.
-const FADE_PER_FRAME: f32 = 1.0 / 16.0;
-
 /// Tables that follow the weather's air.
 pub(crate) struct FollowedSky {
     tables: SkyTables,
     cache: Option<PathBuf>,
+    /// The first planet, until its tables are in the cache.
+    first: Option<Planet>,
     frame_id: Option<u64>,
     light: Option<(u64, Arc<LightTable>)>,
 }
@@ -32,19 +31,38 @@ impl FollowedSky {
         cache: Option<PathBuf>,
     ) -> Result<Self> {
         let _entered = device.enter()?;
-        Ok(Self { tables: SkyTables::of_library(library, device, settings)?, cache, frame_id: None, light: None })
+        Ok(Self {
+            tables: SkyTables::of_library(library, device, settings)?,
+            cache,
+            first: None,
+            frame_id: None,
+            light: None,
+        })
     }
 
-    /// With a cache, the first planet comes from it or goes into it.
+    /// With a cache, the first planet comes from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         match &self.cache {
-            Some(cache) if self.tables.planet().is_none() => self.tables.begin_with(planet, cache),
-            _ => Ok(()),
+            Some(cache) if self.tables.planet().is_none() => self.tables.begin_with(planet, cache)?,
+            _ => return Ok(()),
+        }
+        self.first = Some(*planet).filter(|_| self.tables.planet().is_none());
+        Ok(())
+    }
+
+    /// With a cache, the tables of the first planet go into it once they are built. Later ones do not, since a changing
+    /// weather makes one after the other.
+    fn keep_first(&mut self) {
+        if let (Some(set), Some(first), Some(cache)) = (self.tables.shown_whole(), self.first, &self.cache)
+            && set.planet == first
+        {
+            self.tables.kit().keep(set, cache);
+            self.first = None;
         }
     }
 
-    /// Leads the tables after `planet` by `share` of a rebuild's work; whole at the first frame, and with a share of 1, where
-    /// the picture may not depend on earlier ones. Says whether anything was built.
+    /// Leads the tables after `planet` by as much work as `share` of a build with the default settings; a draft of them at the first frame, and whole with a
+    /// share of 1, where the picture may not depend on earlier ones. Says whether anything was built.
     pub fn follow(
         &mut self,
         device: &Device,
@@ -58,8 +76,9 @@ impl FollowedSky {
         }
         self.frame_id = Some(frame_id);
         self.begin(planet)?;
-        let share = if self.tables.is_fading() { share.max(FADE_PER_FRAME) } else { share };
+        let share = if share < 1.0 { self.tables.paced(share) } else { share };
         let progress = self.tables.update(encoder, planet, share)?;
+        self.keep_first();
         device.check()?;
         Ok(progress.work > 0.0)
     }
@@ -70,6 +89,7 @@ impl FollowedSky {
         if self.tables.planet().is_none() {
             let mut encoder = device.device.create_command_encoder(&Default::default());
             self.tables.update(&mut encoder, planet, 1.0)?;
+            self.keep_first();
             device.submit_and_wait(encoder)?;
         }
         let revision = self.tables.revision();

@@ -2,23 +2,23 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{Context, GroundModel};
+use super::{
+    Context, GroundModel,
+    terrain_rain::{Overs, Part, liquid},
+};
+use crate::ground::SurfaceClass;
 use crate::{
     error::Result,
     ground::{
         GroundGrid, GroundWater,
-        terrain::{CellWater, Terrain, TerrainWater},
+        terrain::{CellWater, RUN, Terrain, TerrainWater},
         water::{Forcing, STEP_S, Step},
     },
-    rain::{MAX_AREAS, Shaft, Shelter, drops::factor_in, shelter::sheltered, sizes::DropSizes},
+    rain::{Shelter, drops::factor_in, shelter::sheltered, sizes::DropSizes},
     scene::WorldFrame,
     weather::{Conditions, Falling, cover_under_rain},
 };
 
-/// Steps, and cells times steps, that a longer leap in time is simulated over: a day, and no more than some seconds of work. What
-/// was before is taken from level, open ground.
-const MOST_STEPS: f64 = 8640.0;
-const LONGEST_CELL_STEPS: f64 = 3e8;
 /// So far above the ground is what counts as its surface, m.
 const SURFACE_M: f64 = 0.02;
 
@@ -39,10 +39,12 @@ pub struct GroundCell {
 pub(super) struct HostGround {
     pub terrain: Terrain,
     /// Turns the host's axes at the grid's origin, whose altitude this is.
-    to_enu: DMat3,
-    altitude_m: f64,
-    /// Half of the grid's diagonal and its middle; lowest and highest node.
-    reach: (f64, DVec3),
+    pub to_enu: DMat3,
+    pub altitude_m: f64,
+    /// Where the grid lies, and each run of its cells.
+    pub whole: Part,
+    pub runs: Vec<Part>,
+    /// Lowest and highest node.
     range_m: (f64, f64),
     pub water: TerrainWater,
     /// Whether `water` is a state of its own by now; else it is what `shown` makes of it.
@@ -86,41 +88,17 @@ struct Glaze {
     shadow: Shadow,
 }
 
-/// The rain of an area over a grid.
-#[derive(Clone, Copy)]
-struct Over {
-    shaft: Shaft,
-    /// The same everywhere: share, and how much of it has left its cloud.
-    even: Option<(f64, f64)>,
-    liquid_mm_h: f64,
-}
-
-/// Areas over a grid, in their order.
-struct Overs {
-    list: [Option<Over>; MAX_AREAS],
-    even: bool,
-}
-
-impl Overs {
-    fn all(&self) -> impl Iterator<Item = &Over> {
-        self.list.iter().flatten()
-    }
-}
-
-/// Rain and drizzle, mm/h.
-fn liquid(f: &Falling) -> f64 {
-    f.rain_mm_h + f.drizzle_mm_h
-}
-
 impl HostGround {
     pub fn new(grid: GroundGrid, world: &WorldFrame) -> Self {
         let frame = world.frame_at(grid.origin);
         let terrain = Terrain::new(grid);
         let water = TerrainWater::new(&terrain, |_| GroundWater::default());
+        let (whole, runs) = Part::whole_and_runs(&terrain.grid, (&frame.world_to_enu, frame.place.altitude_m));
         Self {
             to_enu: frame.world_to_enu,
             altitude_m: frame.place.altitude_m,
-            reach: terrain.grid.reach(&frame.world_to_enu),
+            whole,
+            runs,
             range_m: terrain.grid.range(),
             terrain,
             water,
@@ -221,27 +199,10 @@ impl HostGround {
         Some([part(low.x, high.x, grid.nodes[0])?, part(low.y, high.y, grid.nodes[1])?])
     }
 
-    /// Share of an area's rain at a cell, and how much of it has left its cloud.
-    fn share(&self, over: &Over, cell: usize) -> (f64, f64) {
-        over.even.unwrap_or_else(|| {
-            let altitude = self.altitude_m + f64::from(self.terrain.grid.heights_m[cell]);
-            let p = self.terrain.grid.node(cell, &self.to_enu);
-            (over.shaft.share_at(p, &self.to_enu, altitude), over.shaft.begun(altitude))
-        })
-    }
-
-    /// Rain and drizzle at a cell where the weather has `own`, mm/h.
-    fn liquid(&self, overs: &Overs, own: f64, cell: usize) -> f64 {
-        overs.all().fold(own, |sum, over| {
-            let (share, begun) = self.share(over, cell);
-            sum * (1.0 - share) + over.liquid_mm_h * share * begun
-        })
-    }
-
     /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
     fn falls_m_s(&self, c: &Conditions, overs: &Overs) -> [f64; 3] {
         let mut heaviest = c.precipitation;
-        for over in overs.all().filter(|o| o.even.is_none_or(|(share, _)| share > 0.0)) {
+        for over in overs.all().filter(|over| over.reaches) {
             if liquid(&over.shaft.falling) > liquid(&heaviest) {
                 heaviest = over.shaft.falling;
             }
@@ -260,7 +221,7 @@ impl HostGround {
         }
         let step = Step::new(forcing, seconds);
         if !rains {
-            self.water.step(&self.terrain, &step, |_| 0.0);
+            self.water.step(&self.terrain, &step, |_| false, |_| 0.0);
             return true;
         }
         self.shade_rain(c, overs, shelters);
@@ -269,18 +230,17 @@ impl HostGround {
         // What melts falls everywhere alike.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
-        if overs.even {
-            let mm = (self.liquid(overs, own, 0) * liquid_stays + melting) * hours;
+        let fallen_mm = |liquid: f64| (liquid * liquid_stays + melting) * hours;
+        if overs.even() {
+            let mm = fallen_mm(self.liquid(overs, own, 0));
             let shadow = &self.shadow;
-            self.water.step(&self.terrain, &step, |cell| mm * shadow.share(cell));
+            self.water.step(&self.terrain, &step, |_| mm != 0.0, |cell| mm * shadow.share(cell));
         } else {
             let mut rates = std::mem::take(&mut self.rates);
-            rates.clear();
-            rates.extend((0..self.terrain.grid.len()).map(|cell| {
-                let mm = (self.liquid(overs, own, cell) * liquid_stays + melting) * hours;
-                mm * self.shadow.share(cell)
-            }));
-            self.water.step(&self.terrain, &step, |cell| rates[cell]);
+            self.liquids(overs, own, &mut rates);
+            rates.iter_mut().enumerate().for_each(|(cell, rate)| *rate = fallen_mm(*rate) * self.shadow.share(cell));
+            let rains = |run: usize| rates[run * RUN..].iter().take(RUN).any(|mm| *mm != 0.0);
+            self.water.step(&self.terrain, &step, rains, |cell| rates[cell]);
             self.rates = rates;
         }
         true
@@ -317,7 +277,7 @@ impl HostGround {
 
 impl Context {
     /// The host's terrain, over which wetness and puddles are found cell by cell; `None` leaves level ground everywhere. The grid
-    /// that is set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
+    /// whose heights are set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
     /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
     /// terrain's hollows. Takes some tenths of a second for the largest grids.
     ///
@@ -330,12 +290,20 @@ impl Context {
             return Ok(());
         };
         grid.validate()?;
-        self.desc.world.frame_at(grid.origin).place.validate()?;
-        if self.host_ground.as_ref().is_some_and(|held| held.terrain.grid == grid) {
+        self.desc.world.place_at("ground_grid.origin_m", grid.origin)?;
+        if let Some(held) = self.host_ground.as_mut().filter(|held| held.terrain.grid.has_heights_of(&grid)) {
+            if held.terrain.grid.classes != grid.classes {
+                held.terrain.grid.classes = grid.classes;
+                self.classes_revision += 1;
+            }
             return Ok(());
         }
         self.host_ground = Some(Box::new(HostGround::new(grid, &self.desc.world)));
-        self.ground_generation += 1;
+        (self.ground_generation, self.classes_revision) = (self.ground_generation + 1, self.classes_revision + 1);
+        let from_s = self.steps_end_s();
+        if let Some(behind) = &mut self.behind {
+            behind.terrain_from_s = from_s;
+        }
         self.show_terrain()
     }
 
@@ -363,6 +331,27 @@ impl Context {
         self.ground_revision
     }
 
+    /// What the ground is made of where neither the host's grid nor its image says so: [`SurfaceClass::Unspecified`], the
+    /// default, is natural ground. Part of the saved state.
+    pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
+        self.surface_class = class;
+    }
+
+    /// What ground is made of of which nothing else is said.
+    pub fn default_surface_class(&self) -> SurfaceClass {
+        self.surface_class
+    }
+
+    /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
+    pub(super) fn surface_class_at(&self, position: DVec3) -> SurfaceClass {
+        let cell = self.host_ground.as_ref().and_then(|held| {
+            let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
+            let nearest = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(held.terrain.grid.class(nearest.0))
+        });
+        cell.unwrap_or_default().or(self.surface_class)
+    }
+
     /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
     pub(super) fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
         let held = self.host_ground.as_ref()?;
@@ -380,34 +369,11 @@ impl Context {
         self.host_ground.as_ref().is_some_and(|held| !held.water.is_dry())
     }
 
-    fn overs(&self, held: &HostGround, time_s: f64, c: &Conditions) -> Result<Overs> {
-        let mut overs = Overs { list: [None; MAX_AREAS], even: true };
-        if self.areas.is_empty() {
-            return Ok(overs);
+    /// Lets the terrain's water begin at its next step as the ground is then.
+    pub(super) fn begin_terrain_anew(&mut self) {
+        if let Some(held) = &mut self.host_ground {
+            (held.begun, held.shown) = (false, None);
         }
-        let (reach, middle) = held.reach;
-        let altitude = |m: f64| held.altitude_m + m;
-        let mean = altitude(0.5 * (held.range_m.0 + held.range_m.1));
-        for (place, shaft) in overs.list.iter_mut().zip(self.shafts_at(time_s, c)?) {
-            let [least, most] = shaft.share_within(middle, &held.to_enu, mean, reach);
-            let begun = [held.range_m.0, held.range_m.1].map(|m| shaft.begun(altitude(m)));
-            let even = least == most && (most == 0.0 || begun[0] == begun[1]);
-            overs.even &= even;
-            let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
-            *place = Some(Over { shaft, even: even.then_some((most, begun[0])), liquid_mm_h });
-        }
-        Ok(overs)
-    }
-
-    /// Where a leap to `now_s` is so long that the terrain's water begins anew on the way: from then on it is stepped.
-    pub(super) fn terrain_from_s(&mut self, begun_s: f64, now_s: f64) -> f64 {
-        let Some(held) = &mut self.host_ground else { return f64::INFINITY };
-        let longest_s = (LONGEST_CELL_STEPS / held.terrain.grid.len() as f64).floor().min(MOST_STEPS) * STEP_S;
-        if now_s - begun_s <= longest_s {
-            return f64::NEG_INFINITY;
-        }
-        (held.begun, held.shown) = (false, None);
-        now_s - longest_s
     }
 
     /// Leads the terrain's water from `from_s` through a step, under the weather in its middle; `water` is that of level, open
@@ -476,18 +442,14 @@ impl Context {
         Ok(true)
     }
 
-    /// Takes up what a saved state had of the terrain; where it had none, the terrain that is set begins anew.
-    pub(super) fn take_up_terrain(&mut self, loaded: Option<HostGround>) -> Result<()> {
-        self.ground_revision += 1;
-        match (loaded, &mut self.host_ground) {
-            (Some(loaded), held) => {
-                let same = held.as_ref().is_some_and(|held| held.terrain.grid == loaded.terrain.grid);
-                self.ground_generation += u64::from(!same);
-                *held = Some(Box::new(loaded));
-            }
-            (None, Some(held)) => (held.begun, held.shown) = (false, None),
-            (None, None) => {}
-        }
-        self.show_terrain()
+    /// Exchanges the terrain for that of another state.
+    pub(super) fn swap_terrain(&mut self, other: &mut Option<Box<HostGround>>) {
+        let same = match (self.ground_grid(), other.as_ref().map(|held| &held.terrain.grid)) {
+            (Some(old), Some(new)) => old.has_heights_of(new),
+            (old, new) => old.is_none() && new.is_none(),
+        };
+        (self.ground_revision, self.classes_revision) = (self.ground_revision + 1, self.classes_revision + 1);
+        self.ground_generation += u64::from(!same);
+        std::mem::swap(&mut self.host_ground, other);
     }
 }

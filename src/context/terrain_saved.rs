@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::terrain::HostGround;
 use crate::{
-    ground::{GroundGrid, MAX_GRID_NODES, terrain::TerrainWater},
+    ground::{GroundGrid, MAX_GRID_NODES, SurfaceClass, terrain::TerrainWater},
     scene::WorldFrame,
 };
 
@@ -17,11 +17,14 @@ pub(super) struct SavedGround {
     cell_m: f64,
     nodes: [u32; 2],
     heights_m: String,
+    /// Numbers of the cells' classes; left out where nothing is said of any.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    classes: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<[String; 3]>,
 }
 
-fn words(values: impl Iterator<Item = u64>) -> String {
+pub(super) fn words(values: impl Iterator<Item = u64>) -> String {
     use std::fmt::Write;
     let mut text = String::new();
     let mut values = values.peekable();
@@ -38,7 +41,7 @@ fn words(values: impl Iterator<Item = u64>) -> String {
 }
 
 /// The values that [`words`] wrote, if there are `count`.
-fn values(text: &str, count: usize) -> Option<Vec<u64>> {
+pub(super) fn values(text: &str, count: usize) -> Option<Vec<u64>> {
     let mut values = Vec::new();
     for word in text.split_whitespace() {
         let (value, times) = word.split_once('*').unwrap_or((word, "1"));
@@ -58,6 +61,7 @@ impl SavedGround {
             cell_m: grid.cell_m,
             nodes: grid.nodes,
             heights_m: words(grid.heights_m.iter().map(|h| u64::from(h.to_bits()))),
+            classes: words(grid.classes.iter().map(|c| *c as u64)),
             water: held.begun.then(|| [column(0), column(1), held_by()]),
         }
     }
@@ -69,10 +73,14 @@ impl SavedGround {
         }
         let count = self.nodes[0] as usize * self.nodes[1] as usize;
         let heights_m = values(&self.heights_m, count)?.into_iter().map(|b| Some(f32::from_bits(b.try_into().ok()?)));
+        let classes = values(&self.classes, if self.classes.is_empty() { 0 } else { count })?.into_iter();
+        let classes = classes.map(|n| SurfaceClass::from_number("classes", n.try_into().ok()?).ok());
+        let classes = classes.collect::<Option<Vec<_>>>()?;
         let (origin, cell_m) = (DVec3::from(self.origin_m), self.cell_m);
-        let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m: heights_m.collect::<Option<_>>()? };
+        let heights_m = heights_m.collect::<Option<_>>()?;
+        let grid = GroundGrid { origin, cell_m, nodes: self.nodes, heights_m, classes };
         grid.validate().ok()?;
-        world.frame_at(origin).place.validate().ok()?;
+        world.place_at("origin", origin).ok()?;
         let mut held = HostGround::new(grid, world);
         if let Some([film, soaked, hollows]) = &self.water {
             let floats = |text: &str, count| Some(values(text, count)?.into_iter().map(f64::from_bits));

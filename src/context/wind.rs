@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Context;
 use crate::{
     error::Result,
-    wind::{Blowing, Drift, WindAt, WindGrid, WindGridKind},
+    wind::{Blowing, WindAt, WindGrid, WindGridKind},
 };
 
 impl Context {
@@ -24,8 +24,7 @@ impl Context {
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn wind_at(&self, position: DVec3, time_s: f64) -> Result<WindAt> {
-        let place = self.desc.world.frame_at(position).place;
-        place.validate()?;
+        let place = self.desc.world.place_at("position", position)?.place;
         let conditions = self.weather_at(time_s)?;
         let height_m = place.altitude_m - conditions.air.station_altitude_m;
         let wind = self.blowing(time_s)?.at_height(&conditions.wind, height_m);
@@ -44,7 +43,7 @@ impl Context {
 
     /// Sets a wind that varies in space; `None` leaves the weather's. It blows in [`Context::wind_at`] and on drops of
     /// [`RainModel::Integrated`](crate::rain::RainModel::Integrated); [`Context::wind_displacement`], and what goes with
-    /// it, know nothing of it. It is not saved with the context.
+    /// it, know nothing of it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -87,9 +86,5 @@ impl Context {
         let first = at(known_s);
         let since = at(to_s).drift.displacement_m - first.drift.displacement_m;
         (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
-    }
-
-    pub(super) fn drifted(&self) -> Drift {
-        self.drifted
     }
 }

@@ -4,10 +4,12 @@
 //! A trap in their names: texts about these laws call the **visibility** V "fog" (1 = clear, 0 = all fog), while
 //! shaders mix by the fog's share 1 - V. Here [`CompatibilityLaw::visibility`] is V, the transmittance.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, check_range};
 
 /// What a compatibility law takes as distance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum DistanceKind {
     /// From the camera's centre: turning on the spot changes nothing.
     #[default]
@@ -18,7 +20,7 @@ pub enum DistanceKind {
 }
 
 /// The curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Curve {
     /// V = (end - d)/(end - start), clamped: none before the start, all after the end.
     Linear {
@@ -40,7 +42,7 @@ pub enum Curve {
 }
 
 /// A curve with its distance and colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CompatibilityLaw {
     /// The curve.
     pub curve: Curve,

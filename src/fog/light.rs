@@ -66,14 +66,19 @@ pub struct Solution {
 const CONSERVATIVE: f64 = 1e-4;
 
 impl Slab {
-    /// Solves the two equations with their boundary conditions.
+    /// Solves the two equations with their boundary conditions, in f64.
     pub fn solve(&self) -> Solution {
+        self.solve_beside(1e-7)
+    }
+
+    /// As [`Slab::solve`], with terms that f32 can add up: they are 1 / `beside` times their sum at most.
+    pub(super) fn solve_beside(&self, beside: f64) -> Solution {
         let Self { depth, albedo: w, asymmetry: g, .. } = *self;
         let mut slab = *self;
         let k = (3.0 * (1.0 - w) * (1.0 - w * g)).sqrt();
         // Where the beam falls off exactly as the diffuse light does, the particular solution has a pole; beside it none.
-        if (1.0 - (k * slab.mu0).powi(2)).abs() < 1e-4 {
-            slab.mu0 *= 1.0 - 1e-4;
+        if (1.0 - (k * slab.mu0).powi(2)).abs() < beside {
+            slab.mu0 *= 1.0 - beside;
         }
         let mu0 = slab.mu0;
         let q = w * self.sun / (4.0 * PI);

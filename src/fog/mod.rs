@@ -45,6 +45,7 @@ pub mod reference;
 mod uniforms;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
@@ -119,7 +120,7 @@ impl ExtinctionBudget {
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
 /// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Profile {
     /// Constant between base and top with linear flanks, so that the optical depth has no kink.
     Slab {
@@ -127,9 +128,9 @@ pub enum Profile {
         base_m: f64,
         /// Where the upper flank is half-way, m.
         top_m: f64,
-        /// Height of the lower flank, m, \[0, 1e4\].
+        /// Height of the lower flank, m, \[0, 1e5\].
         base_softness_m: f64,
-        /// Height of the upper flank, m, \[0, 1e4\].
+        /// Height of the upper flank, m, \[0, 1e5\]: dust thins out to twice its scale height, 40 km at most.
         top_softness_m: f64,
     },
     /// Falls as exp(-(h - reference)/scale); not cut off above or below.
@@ -142,7 +143,7 @@ pub enum Profile {
 }
 
 /// How the layer's particles scatter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Phase {
     /// Water droplets of this mean diameter, micrometres, \[5, 50\] (Jendersie and d'Eon 2023); fog has 10 to 25.
     Droplets {
@@ -154,24 +155,34 @@ pub enum Phase {
         /// Mean cosine of the scattering angle.
         g: f64,
     },
+    /// Lobes so far between those of droplets and of Henyey and Greenstein's function: what a change of weather passes through.
+    Between {
+        /// Mean diameter of the droplets, micrometres, \[5, 50\].
+        diameter_um: f64,
+        /// Asymmetry of the other, \[-0.95, 0.95\].
+        g: f64,
+        /// 0 droplets, 1 the other.
+        share: f64,
+    },
 }
 
 /// Horizontal patches (METAR BCFG): the extinction is multiplied by 1 + amount (s - 1), where s is a smooth pattern of
 /// mean 1, fixed to the world, that reaches 0 between the patches.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patches {
     /// 0 = even layer, 1 = clear gaps between patches.
     pub amount: f64,
     /// Typical distance between patches, m, \[5, 1e5\].
     pub size_m: f64,
     /// Chooses the pattern.
+    #[serde(with = "seed_text")]
     pub seed: u64,
     /// How far the wind has carried the pattern (east, north), m.
     pub drift_m: [f64; 2],
 }
 
 /// A low layer of fog or mist.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FogLayer {
     /// Extinction at 550 nm inside the slab, or at the reference altitude, 1/m, \[0, 10\].
     pub extinction_per_m: f64,
@@ -214,8 +225,8 @@ impl FogLayer {
             Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
                 check_range("fog.base_m", base_m, -1e5, 1e6, "m")?;
                 check_range("fog.top_m", top_m, base_m, 1e6, "m")?;
-                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e4, "m")?;
-                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e4, "m")?;
+                check_range("fog.base_softness_m", base_softness_m, 0.0, 1e5, "m")?;
+                check_range("fog.top_softness_m", top_softness_m, 0.0, 1e5, "m")?;
             }
             Profile::Exponential { reference_m, scale_height_m } => {
                 check_range("fog.reference_m", reference_m, -1e5, 1e6, "m")?;
@@ -225,6 +236,11 @@ impl FogLayer {
         match self.phase {
             Phase::Droplets { diameter_um } => check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?,
             Phase::HenyeyGreenstein { g } => check_range("fog.g", g, -0.95, 0.95, "")?,
+            Phase::Between { diameter_um, g, share } => {
+                check_range("fog.diameter_um", diameter_um, 5.0, 50.0, "um")?;
+                check_range("fog.g", g, -0.95, 0.95, "")?;
+                check_range("fog.share", share, 0.0, 1.0, "")?;
+            }
         }
         if let Some(p) = &self.patches {
             check_range("fog.patches.amount", p.amount, 0.0, 1.0, "")?;
@@ -299,14 +315,14 @@ impl Viewpoint {
             return Err(Error::range("planet_radius_m", "above 1000 m, or infinite", self.planet_radius_m));
         }
         for v in self.map_m {
-            check_range("map_m", v, -1e12, 1e12, "m")?;
+            check_range("map_m", v, -2e12, 2e12, "m")?;
         }
         Ok(())
     }
 }
 
 /// Which fog is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// None.
     Clear,
@@ -314,4 +330,31 @@ pub enum Law {
     Layer(FogLayer),
     /// One of the older simulators' laws.
     Compatibility(CompatibilityLaw),
+}
+
+impl Law {
+    /// Refuses what is not a law, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        match self {
+            Self::Clear => Ok(()),
+            Self::Layer(layer) => layer.validate(),
+            Self::Compatibility(law) => law.validate(),
+        }
+    }
+}
+
+/// A number of 64 bits as text: TOML's end at 63.
+mod seed_text {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(seed: &u64, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(seed)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
+    }
 }

@@ -29,6 +29,14 @@ impl PhaseLobes {
                 w_draine: (-0.599_085 / (d - 0.641_583) - 0.665_888).exp(),
             },
             Phase::HenyeyGreenstein { g } => Self { g_hg: g, g_draine: 0.0, alpha: 0.0, w_draine: 0.0 },
+            Phase::Between { diameter_um, g, share } => {
+                let droplets = Self::new(&Phase::Droplets { diameter_um });
+                Self {
+                    g_hg: droplets.g_hg + (g - droplets.g_hg) * share,
+                    w_draine: droplets.w_draine * (1.0 - share),
+                    ..droplets
+                }
+            }
         }
     }
 
@@ -107,6 +115,7 @@ mod tests {
     fn phase_functions_integrate_to_one_and_to_their_moments() {
         let mut all: Vec<Phase> = [5.0, 10.0, 15.0, 30.0, 50.0].map(|d| Phase::Droplets { diameter_um: d }).to_vec();
         all.extend([-0.5, 0.0, 0.7, 0.85, 0.95].map(|g| Phase::HenyeyGreenstein { g }));
+        all.extend([0.0, 0.3, 0.9, 1.0].map(|share| Phase::Between { diameter_um: 15.0, g: 0.6, share }));
         for phase in all {
             let lobes = PhaseLobes::new(&phase);
             let [one, c1, c2] = integrals(&lobes);

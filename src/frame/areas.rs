@@ -11,6 +11,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer, is_kept,
         pass::{self, QuadsDesc},
+        recent::Recent,
     },
     rain::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS, WAVES},
     sky::SkyVolume,
@@ -67,12 +68,15 @@ pub(super) struct Kind {
     pub polygons: bool,
 }
 
+/// Pipelines held for a view: those of some weathers that change.
+const MOST_PIPELINES: usize = 16;
+
 /// The pass, made when there first are areas.
 pub(super) struct AreaPass {
     blocks: wgpu::Buffer,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
-    pipelines: Vec<(Kind, Vec<Constant>, wgpu::RenderPipeline)>,
+    pipelines: Recent<(Kind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
@@ -199,7 +203,7 @@ impl AreaPass {
             }),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             none: none.create_view(&Default::default()),
-            pipelines: Vec::new(),
+            pipelines: Recent::new(),
             bound: None,
         }
     }
@@ -241,7 +245,7 @@ impl AreaPass {
             polygons: blocks.columns.list.iter().any(|c| c.corners > 0),
         };
         self.bind(device, [frame, fog], depth, kind.multi);
-        let at = self.pipeline(device, shared, kind, columns.constants)?;
+        let pipeline = self.pipeline(device, shared, kind, columns.constants)?;
         let Some((_, group)) = &self.bound else { return Ok(()) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("rain areas"),
@@ -257,7 +261,7 @@ impl AreaPass {
             ..Default::default()
         });
         if count > 0 {
-            pass.set_pipeline(&self.pipelines[at].2);
+            pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, group, &[]);
             pass.set_bind_group(1, sky.bind_group(), &[]);
             pass.draw(0..4, 0..count);
@@ -295,34 +299,40 @@ impl AreaPass {
         self.bound = Some((depth.map(Layer::kept), group));
     }
 
-    /// The place of the pipeline for what is drawn, compiled at its first use.
-    fn pipeline(&mut self, device: &Arc<Device>, shared: &Shared, kind: Kind, constants: &[Constant]) -> Result<usize> {
-        if let Some(at) = self.pipelines.iter().position(|(k, c, _)| *k == kind && c == constants) {
-            return Ok(at);
-        }
-        let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
-        let composite = shared.composite()?;
-        let [_, sky, _] = composite.layouts(Sampling::Single);
-        let yes = |b: bool| f64::from(u8::from(b));
-        let mut all = constants.to_vec();
-        all.extend([
-            ("HAS_DEPTH", yes(kind.has_depth)),
-            ("OVERLAPS", yes(kind.overlaps)),
-            ("POLYGONS", yes(kind.polygons)),
-        ]);
-        let pipeline = pass::quads(
-            device,
-            &QuadsDesc {
-                label: "rain areas",
-                vertex: (&module, "shaft_vertex", &[]),
-                fragment: (&module, "shaft_fragment", &all),
-                layouts: &[Some(&self.layouts[usize::from(kind.multi)]), Some(sky)],
-                buffers: &[],
-                format: FORMAT,
-            },
-        );
-        self.pipelines.push((kind, constants.to_vec(), pipeline));
-        Ok(self.pipelines.len() - 1)
+    /// The pipeline for what is drawn, compiled at its first use.
+    fn pipeline(
+        &mut self,
+        device: &Arc<Device>,
+        shared: &Shared,
+        kind: Kind,
+        constants: &[Constant],
+    ) -> Result<wgpu::RenderPipeline> {
+        let columns = &self.layouts[usize::from(kind.multi)];
+        let make = || {
+            let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
+            let composite = shared.composite()?;
+            let [_, sky, _] = composite.layouts(Sampling::Single);
+            let yes = |b: bool| f64::from(u8::from(b));
+            let mut all = constants.to_vec();
+            all.extend([
+                ("HAS_DEPTH", yes(kind.has_depth)),
+                ("OVERLAPS", yes(kind.overlaps)),
+                ("POLYGONS", yes(kind.polygons)),
+            ]);
+            let pipeline = pass::quads(
+                device,
+                &QuadsDesc {
+                    label: "rain areas",
+                    vertex: (&module, "shaft_vertex", &[]),
+                    fragment: (&module, "shaft_fragment", &all),
+                    layouts: &[Some(columns), Some(sky)],
+                    buffers: &[],
+                    format: FORMAT,
+                },
+            );
+            Ok(((kind, constants.to_vec()), pipeline))
+        };
+        self.pipelines.get_or_make(|(k, c)| *k == kind && c == constants, make).cloned()
     }
 }
 

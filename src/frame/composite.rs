@@ -1,9 +1,6 @@
 //! The composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
 
-use std::{
-    collections::HashMap,
-    sync::{Arc, OnceLock},
-};
+use std::sync::Arc;
 
 use super::{
     Frame,
@@ -16,6 +13,7 @@ use crate::{
     gpu::{
         Device, Layer,
         pass::{self, FullscreenDesc},
+        recent::Recent,
     },
     ground::GroundUniform,
     rain::{Present, around_layout},
@@ -23,7 +21,7 @@ use crate::{
 };
 
 /// What distinguishes one compiled variant from another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Variant {
     pub stages: Stages,
     pub format: wgpu::TextureFormat,
@@ -31,6 +29,8 @@ pub(super) struct Variant {
     pub sampling: Sampling,
     pub has_depth: bool,
     pub has_mask: bool,
+    pub has_classes: bool,
+    pub has_normals: bool,
     /// What the fog must be able to draw, if there is any.
     pub fog: Option<FogVariant>,
     /// Kinds of depth that are read ([`ViewRays::depth_kinds`](crate::scene::ViewRays::depth_kinds)).
@@ -46,6 +46,11 @@ pub(super) struct Variant {
     pub sky: bool,
 }
 
+/// As an `override` constant.
+fn yes(b: bool) -> f64 {
+    f64::from(u8::from(b))
+}
+
 impl Variant {
     /// Without the parts of which nothing is drawn: cheaper than a branch on a software driver, which takes both ways.
     pub fn reduced(self, [air, fog, sky, _]: [f32; 4]) -> Self {
@@ -54,13 +59,23 @@ impl Variant {
 
     /// Those of [`Variant::constants`] that shaders of the veil alone have.
     pub fn veil_constants(&self) -> [(&'static str, f64); 10] {
-        let [_, _, _, _, _, march, fog, kinds, _, _, air, _, _, _, _, _, f0, f1, f2, f3, f4, f5] = self.constants();
-        [march, fog, kinds, air, f0, f1, f2, f3, f4, f5]
+        let [f0, f1, f2, f3, f4, f5] = self.fog.unwrap_or(FogVariant::ALL).constants();
+        [
+            ("SKY_MARCH", yes(self.march)),
+            ("FOG", yes(self.fog.is_some())),
+            ("DEPTH_KINDS", f64::from(self.depth_kinds)),
+            ("AIR", yes(self.air)),
+            f0,
+            f1,
+            f2,
+            f3,
+            f4,
+            f5,
+        ]
     }
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 22] {
-        let yes = |b: bool| f64::from(u8::from(b));
+    pub fn constants(&self) -> [(&'static str, f64); 24] {
         let [f0, f1, f2, f3, f4, f5] = self.fog.unwrap_or(FogVariant::ALL).constants();
         [
             ("BACKGROUND", yes(self.stages.has(Stages::BACKGROUND))),
@@ -79,6 +94,8 @@ impl Variant {
             ("MAPS", yes(self.around.maps)),
             ("LAMPS", yes(self.around.lamps)),
             ("TERRAIN", yes(self.terrain)),
+            ("HAS_CLASSES", yes(self.has_classes)),
+            ("HAS_NORMALS", yes(self.has_normals)),
             f0,
             f1,
             f2,
@@ -89,17 +106,19 @@ impl Variant {
     }
 }
 
+/// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and weathers. On
+/// a software driver one may take more than 10 MB.
+const MOST_PIPELINES: usize = 32;
+
 /// Pipelines of the composition, shared by the views of a device.
 pub(super) struct Composite {
     /// Of group 0, by [`Sampling`].
     layouts: [wgpu::BindGroupLayout; 3],
     layout_sky: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
-    pipelines: HashMap<Variant, wgpu::RenderPipeline>,
+    pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
     none: wgpu::TextureView,
     reads_samples: bool,
-    /// Made when first needed: wgpu's OpenGL backend can adopt multisampled textures but not make them.
-    none_multi: OnceLock<wgpu::TextureView>,
 }
 
 fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry {
@@ -139,25 +158,22 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
             uniform(6, size_of::<GroundUniform>()),
             texture_entry(7, false),
             texture_entry(8, false),
+            texture_entry(9, false),
+            texture_entry(10, false),
         ],
     })
 }
 
 /// A 1 x 1 texture that stands for a depth or mask the host does not give.
-fn none(device: &wgpu::Device, samples: u32) -> wgpu::TextureView {
-    let usage = if samples > 1 {
-        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT
-    } else {
-        wgpu::TextureUsages::TEXTURE_BINDING
-    };
+fn none(device: &wgpu::Device) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("none"),
         size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
         mip_level_count: 1,
-        sample_count: samples,
+        sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Rgba8Unorm,
-        usage,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
     texture.create_view(&Default::default())
@@ -171,10 +187,9 @@ impl Composite {
             layouts: Sampling::ALL.map(|sampling| layout(&device.device, sampling)),
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
-            pipelines: HashMap::new(),
-            none: none(&device.device, 1),
+            pipelines: Recent::new(),
+            none: none(&device.device),
             reads_samples: multi,
-            none_multi: OnceLock::new(),
         }
     }
 
@@ -189,24 +204,22 @@ impl Composite {
     }
 
     /// The bind group of one view's uniforms, the copy of the host's colour and its other textures, the drops before them and
-    /// water and heights of the host's terrain.
+    /// water and surface of the host's terrain.
     pub fn bind(
         &self,
         device: &Device,
         [frame, fog, ground]: [&wgpu::Buffer; 3],
         copy: &wgpu::Texture,
         host: &Frame<'_>,
-        [drops, cells, heights]: [Option<&wgpu::TextureView>; 3],
+        [drops, cells, surface]: [Option<&wgpu::TextureView>; 3],
     ) -> wgpu::BindGroup {
         let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);
-        let mask_view = host.mask_layer().map(Layer::view);
-        let no_depth = if sampling == Sampling::Multi {
-            self.none_multi.get_or_init(|| none(&device.device, 4))
-        } else {
-            &self.none
-        };
+        let [mask_view, classes, normals] =
+            [host.mask_layer(), host.classes_layer(), host.normals_layer()].map(|l| l.map(Layer::view));
+        // Not read where there is no depth. wgpu's OpenGL backend can adopt multisampled textures but not make them.
+        let no_depth = if sampling == Sampling::Multi { &color_view } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -221,7 +234,9 @@ impl Composite {
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
                 entry(5, drops.unwrap_or(&self.none)),
                 entry(7, cells.unwrap_or(&self.none)),
-                entry(8, heights.unwrap_or(&self.none)),
+                entry(8, surface.unwrap_or(&self.none)),
+                entry(9, classes.as_ref().unwrap_or(&self.none)),
+                entry(10, normals.as_ref().unwrap_or(&self.none)),
             ],
         })
     }
@@ -231,11 +246,11 @@ impl Composite {
     /// # Errors
     /// A missing shader file.
     pub fn pipeline(&mut self, device: &Arc<Device>, variant: Variant) -> Result<&wgpu::RenderPipeline> {
-        if !self.pipelines.contains_key(&variant) {
-            let layouts = self.layouts(variant.sampling);
-            let pipeline = pass::fullscreen(
-                device,
-                &FullscreenDesc {
+        let layouts = [&self.layouts[variant.sampling as usize], &self.layout_sky, &self.layout_around];
+        self.pipelines.get_or_make(
+            |made| *made == variant,
+            || {
+                let desc = FullscreenDesc {
                     shader: variant.sampling.shader([
                         "frame/composite_single.wgsl",
                         "frame/composite_multi.wgsl",
@@ -250,10 +265,24 @@ impl Composite {
                     }],
                     constants: &variant.constants(),
                     samples: variant.samples,
-                },
-            )?;
-            self.pipelines.insert(variant, pipeline);
+                };
+                Ok((variant, pass::fullscreen(device, &desc)?))
+            },
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gpu::shader;
+
+    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more.
+    #[test]
+    fn a_frame_reads_thirteen_textures() {
+        for name in ["frame/composite_single.wgsl", "frame/composite_multi.wgsl", "frame/composite_resolved.wgsl"] {
+            let text = shader::assemble(name).unwrap();
+            let bound = text.lines().filter(|l| l.starts_with("@group") && l.contains(": texture_")).count();
+            assert_eq!(bound, 13, "{name}");
         }
-        Ok(&self.pipelines[&variant])
     }
 }

@@ -148,9 +148,8 @@ impl View {
     pub(super) fn draw_lens(&mut self, frame: &Frame<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
         let Some(layer) = frame.color_layer() else { return Ok(()) };
         let color = layer.texture;
-        self.hold_copy(color);
+        self.take_picture(layer, to)?;
         let (Some(glass), Some(copy)) = (&mut self.glass, &self.copy) else { return Ok(()) };
-        layer.copy(to.encoder, copy);
         let plain = !is_float(color.format()) && !color.format().is_srgb();
         let toned = toned && frame.color_space == ColorSpace::SceneLinear;
         let lens = LensFrame {

@@ -110,7 +110,7 @@ pub struct Report {
     pub frame_id: u64,
     /// Full-screen draws recorded for this frame_id so far.
     pub passes: u32,
-    /// Tables rebuilt for this frame_id so far; 0 when only the camera turned.
+    /// Tables built, refined or faded for this frame_id so far; 0 when only the camera turned and the sky has its final quality.
     pub tables_rebuilt: u32,
     /// Display units per cd/m^2 that were applied.
     pub exposure: f64,
@@ -133,6 +133,8 @@ pub struct RainReport {
     pub drops: u32,
     /// Drops that each drop stood for: 1 unless more fell than [`crate::rain::RainSettings::most_drops`]; 0 without any.
     pub drop_weight: f64,
+    /// The contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of what was drawn; 0 where nothing fell.
+    pub contrast_gain: f64,
     /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
     pub splashes_left_out_per_m2_s: f64,
     /// Likewise the smallest stones that did not hop.
@@ -176,6 +178,12 @@ impl<'a> Recording<'a> {
     /// Whether this call is measured.
     pub fn is_measured(&self) -> bool {
         self.watch.is_some()
+    }
+
+    /// Submits what was recorded so far.
+    pub fn flush(&mut self) {
+        let next = self.device.device.create_command_encoder(&Default::default());
+        self.device.submit(std::mem::replace(self.encoder, next));
     }
 
     /// What was recorded since the last effect is `effect`'s: where it is measured, it is submitted and waited for. If

@@ -4,9 +4,11 @@
 //! that neighbour each other in one call are fused into one full-screen draw.
 
 mod areas;
+mod check;
 mod composite;
 mod froxels;
 mod lens;
+mod light;
 mod measure;
 mod planned;
 mod rain;
@@ -16,9 +18,11 @@ mod surface;
 mod target;
 pub mod tone;
 mod uniform;
+mod unit;
 mod view;
 
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
+pub use light::FrameLight;
 pub use measure::{Costs, Effect, RainReport, Report};
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
@@ -38,13 +42,17 @@ use crate::{
 pub struct FrameFlags(pub u32);
 
 impl FrameFlags {
-    /// The camera jumped: nothing of earlier frames may show.
+    /// The camera jumped: nothing of earlier frames may show. Tables of the sky are whole, as without history.
     pub const CUT: Self = Self(1);
-    /// Draw the pure function of (seed, time, view): no history at all.
+    /// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if
+    /// they are not yet.
     pub const NO_HISTORY: Self = Self(2);
     /// Measure what each effect costs ([`Report::costs`]). The stages are drawn one by one and each is waited for, so such
     /// a frame is slower, and its picture may differ by rounding. For [`View::record`] only.
     pub const MEASURE: Self = Self(16);
+
+    /// [`Frame::normals`] are in the axes of the camera: x right, y up, z towards the viewer; without it in the host's world.
+    pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
 
     /// Whether any flag of `other` is set.
     pub fn has(self, other: Self) -> bool {
@@ -61,6 +69,10 @@ pub struct ImageLayers {
     pub depth: u32,
     /// Of [`Frame::mask`].
     pub mask: u32,
+    /// Of [`Frame::surface_classes`].
+    pub surface_classes: u32,
+    /// Of [`Frame::normals`].
+    pub normals: u32,
 }
 
 /// One frame of a host: where it looks from, what it drew, and what its numbers mean.
@@ -79,6 +91,13 @@ pub struct Frame<'a> {
     pub depth: Option<&'a wgpu::Texture>,
     /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
     pub mask: Option<&'a wgpu::Texture>,
+    /// What each pixel shows is made of: red is the number of a [`SurfaceClass`](crate::ground::SurfaceClass) over 255, 0 where
+    /// the host's terrain or the context's default says it. Of one sample; needs TEXTURE_BINDING.
+    pub surface_classes: Option<&'a wgpu::Texture>,
+    /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]): (n + 1) / 2 in
+    /// normalised formats, n in float formats. What is no unit vector, as zeros and ones are, leaves it to the host's terrain and
+    /// depth. Of one sample; needs TEXTURE_BINDING.
+    pub normals: Option<&'a wgpu::Texture>,
     /// Which layers of array textures the images are, as for the eyes of a stereo pair. Default: the first of each.
     pub layers: ImageLayers,
     /// What the numbers in `color` mean.
@@ -106,6 +125,8 @@ impl<'a> Frame<'a> {
             depth,
             mask: None,
             layers: ImageLayers::default(),
+            surface_classes: None,
+            normals: None,
             color_space: ColorSpace::SceneLinear,
             cd_m2_per_unit: 1.0,
             exposure: None,
@@ -127,9 +148,27 @@ impl<'a> Frame<'a> {
         self.mask.map(|texture| Layer { texture, index: self.layers.mask })
     }
 
+    fn classes_layer(&self) -> Option<Layer<'a>> {
+        self.surface_classes.map(|texture| Layer { texture, index: self.layers.surface_classes })
+    }
+
+    fn normals_layer(&self) -> Option<Layer<'a>> {
+        self.normals.map(|texture| Layer { texture, index: self.layers.normals })
+    }
+
+    /// All images by name.
+    fn image_layers(&self) -> [(&'static str, Option<Layer<'a>>); 5] {
+        [
+            ("color", self.color_layer()),
+            ("depth", self.depth_layer()),
+            ("mask", self.mask_layer()),
+            ("surface_classes", self.classes_layer()),
+            ("normals", self.normals_layer()),
+        ]
+    }
+
     fn validate(&self) -> Result<()> {
-        for (name, layer) in [("color", self.color_layer()), ("depth", self.depth_layer()), ("mask", self.mask_layer())]
-        {
+        for (name, layer) in self.image_layers() {
             if let Some(l) = layer.filter(|l| l.index >= l.texture.depth_or_array_layers()) {
                 let accepted = format!("below its texture's {} layers", l.texture.depth_or_array_layers());
                 return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));

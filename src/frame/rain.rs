@@ -157,7 +157,7 @@ impl Rain {
     }
 
     /// What drops or cones of the weather's own rain hide where all are drawn, as an extinction (their discs: half of theirs,
-    /// the rest is diffraction), the distance up to which they do, and the share of it that is drawn.
+    /// the rest is diffraction; times the contrast's gain), the distance up to which they do, and the share of it that is drawn.
     pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> ([f32; 2], f32) {
         let falling = scene.conditions.precipitation;
         let reach = self.reach(context);
@@ -167,7 +167,8 @@ impl Rain {
         let rain = self.near(device, scene, &falling);
         let share =
             if rain > 0.0 { (f64::from(self.shares[0]) * rain + ice / reach) / (rain + ice / reach) } else { 1.0 };
-        ([rain + ice / reach, reach].map(|v| v as f32), share as f32)
+        let hidden = self.settings.contrast_gain * (rain + ice / reach);
+        ([hidden, reach].map(|v| v as f32), share as f32)
     }
 
     /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
@@ -231,7 +232,8 @@ impl Rain {
     fn set_near(&mut self, device: &Device, context: &Context, scene: &Scene) {
         let falling = scene.conditions.precipitation;
         self.field.near_m = self.reach(context);
-        let share = f64::from(self.shares[0]);
+        // No veil gives way to more than all of it, which is twice what its drops' discs hide.
+        let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
         self.field.own_near = share * self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
             let shaft = *self.field.columns[i].shaft();
@@ -331,6 +333,7 @@ impl Rain {
             position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
             velocity_m_s: scene.world_to_enu * frame.camera_velocity_m_s,
             exposure_s: self.settings.shutter_s,
+            gain: self.settings.contrast_gain,
         }
     }
 
@@ -393,7 +396,7 @@ impl Rain {
             let there = self.falling_at(device, scene);
             local.iter_mut().for_each(|l| l.set_cones(there.extinction_per_m));
             let all = ConeUniform::new(block.seed, &there, &shot, &air, &carried);
-            all.behind((hidden_m(self.shells()), near), share)
+            all.behind((hidden_m(self.shells()), near), share * self.settings.contrast_gain)
         });
         let around = context.wind_grid().map(|g| {
             let to_enu = context.world().frame_at(g.origin).world_to_enu;
@@ -431,6 +434,7 @@ impl Rain {
         Ok(RainReport {
             drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),
             drop_weight: if drops { classes.weight } else { 0.0 },
+            contrast_gain: self.settings.contrast_gain,
             splashes_left_out_per_m2_s: if drops { splashes.left_out_per_m2_s } else { 0.0 },
             stones_left_out_per_m2_s: stones.map_or(0.0, |s| s.left_out_per_m2_s),
         })

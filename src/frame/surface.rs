@@ -1,6 +1,8 @@
 //! What a frame draws of weather on surfaces: nothing while it is dry.
 
-use super::{Frame, rain::has_maps};
+use glam::DMat3;
+
+use super::{Frame, FrameFlags, rain::has_maps};
 use crate::{
     context::{Context, Scene},
     error::Result,
@@ -39,6 +41,15 @@ pub(super) fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
     }
 }
 
+/// From the axes of the host's normals to east, north, up, and how its numbers are read: in normalised formats they are half the
+/// normal and a half.
+fn normals(frame: &Frame<'_>, scene: &Scene) -> (DMat3, [f32; 2]) {
+    let from_eye = scene.world_to_enu * frame.camera.rotation().transpose();
+    let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { scene.world_to_enu };
+    let signed = frame.normals.is_some_and(|n| super::uniform::is_float(n.format()));
+    (turned, if signed { [1.0, 0.0] } else { [2.0, -1.0] })
+}
+
 /// The block of `shaders/ground/uniform.wgsl`.
 pub(super) fn uniform(
     frame: &Frame<'_>,
@@ -71,6 +82,8 @@ pub(super) fn uniform(
         depth_rounding: frame.depth.map_or([0.0; 2], rounding),
         most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,
         terrain: context.drawn_terrain(),
+        surface_class: context.default_surface_class(),
+        normals: normals(frame, scene),
         wind_m_s: sheltered.then(|| context.carrying_wind(context.time_s())).transpose()?,
     };
     Ok(seen.uniform())

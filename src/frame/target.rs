@@ -33,7 +33,8 @@ impl Stages {
     pub const PARTICLES: Self = Self(16);
     /// Water on the windscreen.
     pub const LENS: Self = Self(32);
-    /// Exposure, tone curve, display encoding and dither of the whole picture.
+    /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Nothing in the other colour spaces, where the
+    /// host has done that.
     pub const TONE: Self = Self(64);
     /// Everything at once.
     pub const ALL: Self = Self(127);
@@ -41,6 +42,11 @@ impl Stages {
     /// Whether any stage of `other` is in the set.
     pub fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
+    }
+
+    /// Whether any of them may draw into the target.
+    pub(super) fn draw(self) -> bool {
+        self.without(Self::PREPARE) != Self(0)
     }
 
     /// This set without `other`.
@@ -93,8 +99,12 @@ pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
              Rg11b10Ufloat, Rgba16Float, Rgba32Float"
         )));
     }
-    let needed = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-    check_usage("color", texture, needed)
+    check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)
+}
+
+/// Whether wgpu can copy `color`; else its host copies it between submissions.
+pub(super) fn can_copy(color: &wgpu::Texture) -> bool {
+    color.usage().contains(wgpu::TextureUsages::COPY_SRC)
 }
 
 /// Checks that a depth texture can be read and matches the colour target.
@@ -146,14 +156,49 @@ pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
             texture.format()
         )));
     }
+    check_of_one_sample("mask", texture, color)
+}
+
+/// Checks the optional classes of what the pixels show.
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Bgra8Unorm) {
+        return Err(Error::unsupported(format!(
+            "surface_classes format {:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm",
+            texture.format()
+        )));
+    }
+    check_of_one_sample("surface_classes", texture, color)
+}
+
+/// Checks the optional normals.
+///
+/// # Errors
+/// As [`check_color`].
+pub(super) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    let format = texture.format();
+    if !matches!(format, F::Rgba8Unorm | F::Bgra8Unorm | F::Rgb10a2Unorm | F::Rgba16Float | F::Rgba32Float) {
+        return Err(Error::unsupported(format!(
+            "normals format {format:?}; supported: Rgba8Unorm, Bgra8Unorm, Rgb10a2Unorm, Rgba16Float, Rgba32Float"
+        )));
+    }
+    check_of_one_sample("normals", texture, color)
+}
+
+/// Checks that a texture that is read beside colour has its size and one sample.
+fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
         return Err(Error::range(
-            "mask",
+            name,
             &format!("as large as color, {} x {}, one sample", color.width(), color.height()),
             format!("{} x {}, {} samples", texture.width(), texture.height(), texture.sample_count()),
         ));
     }
-    check_usage("mask", texture, wgpu::TextureUsages::TEXTURE_BINDING)
+    check_usage(name, texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
 /// A texture like the host's colour, to read while the host's is written.
@@ -172,6 +217,14 @@ pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::
         usage,
         view_formats: &[],
     })
+}
+
+/// Whether `copy` serves as [`color_copy`] of `color`.
+pub(super) fn is_copy_of(copy: &wgpu::Texture, color: &wgpu::Texture) -> bool {
+    copy.usage().contains(wgpu::TextureUsages::COPY_DST)
+        && (copy.width(), copy.height()) == (color.width(), color.height())
+        && copy.format() == color.format()
+        && copy.sample_count() == color.sample_count()
 }
 
 fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages) -> Result<()> {

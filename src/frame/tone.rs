@@ -1,6 +1,8 @@
 //! From luminance to the display, in f64: the truth of `shaders/frame/tone.wgsl`, and the exposure that all channels
 //! of a simulator share.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Error, Result, check_range};
 
 /// How luminance becomes display values.
@@ -36,7 +38,7 @@ impl ToneCurve {
 }
 
 /// How bright the picture is taken: one value for all channels of a simulator, never measured per view.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Exposure {
     /// From the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel and machine.
     /// `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].

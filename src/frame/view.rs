@@ -5,10 +5,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use glam::{DMat4, DVec3};
-
 use super::{
     Frame, FrameFlags,
+    check::rays,
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
@@ -16,19 +15,20 @@ use super::{
     rain::Rain,
     shared::Shared,
     surface,
-    target::{ColorSpace, Sampling, Stages, can_be_apart, check_color, check_depth, check_mask, color_copy},
+    target::{ColorSpace, Sampling, Stages, can_be_apart, can_copy, color_copy, is_copy_of},
     uniform::{FrameUniform, uniform},
+    unit::UnitWatch,
 };
 use crate::{
     context::{Context, Scene},
-    error::{Error, Result, Status},
+    error::{Error, Result},
     fog::{FogKind, FogUniform, FogVariant},
     glass::Glass,
     gpu::{Device, KeptLayer, Layer, is_kept},
     ground::GroundUniform,
     plan::{Planner, Present},
     rain::{Around, RainSettings},
-    scene::{Camera, ViewRays},
+    scene::ViewRays,
     sky::SkyVolume,
 };
 
@@ -38,10 +38,12 @@ struct Bound {
     color: KeptLayer,
     depth: Option<KeptLayer>,
     mask: Option<KeptLayer>,
+    surface_classes: Option<KeptLayer>,
+    normals: Option<KeptLayer>,
     own: OwnViews,
 }
 
-/// The drops before the picture, water and heights of the host's terrain.
+/// The drops before the picture, water and surface of the host's terrain.
 type OwnViews = [Option<wgpu::TextureView>; 3];
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -61,7 +63,8 @@ pub struct View {
     pub(super) planner: Planner,
     planned_for: Option<u64>,
     light_scale: f32,
-    recorded: Stages,
+    unit: UnitWatch,
+    pub(super) recorded: Stages,
     pub(super) report: Report,
     /// What the last measured call took, its wait for earlier work included.
     last_call: Option<Duration>,
@@ -108,6 +111,7 @@ impl View {
             planner,
             planned_for: None,
             light_scale: 0.0,
+            unit: UnitWatch::default(),
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
             last_call: None,
@@ -152,6 +156,8 @@ impl View {
     /// twice or late, [`Status::DeviceLost`]. After an error nothing was drawn by this call.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
+        self.check_call(frame, stages)?;
+        self.check_images(frame, stages)?;
         let _entered = device.enter()?;
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
@@ -196,6 +202,13 @@ impl View {
                  timestamps",
             ));
         }
+        if frame.color.is_some_and(|c| !can_copy(c)) {
+            return Err(Error::unsupported(
+                "color without COPY_SRC where the host submits: the picture is read between submissions; use record",
+            ));
+        }
+        self.check_call(frame, stages)?;
+        self.check_images(frame, stages)?;
         let device = self.device.clone();
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
     }
@@ -207,19 +220,15 @@ impl View {
         stages: Stages,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        Stages::from_bits(stages.0)?;
-        self.check_order(frame.frame_id, stages)?;
-        frame.camera.validate()?;
-        let scene = context.scene_at(frame.camera.position, context.time_s())?;
+        let scene = context.scene_named("frame.camera.position", frame.camera.position, context.time_s())?;
+        let rays = stages.draw().then(|| rays(frame, &scene)).transpose()?;
         // What does not fall is not drawn, nor what is dry.
         let asked = stages;
         self.rain.look(context, &scene, frame.camera.position)?;
         let stages = if self.rain.shows() { stages } else { stages.without(Stages::PARTICLES) };
         let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
         let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
-        let drawn = stages.without(Stages::PREPARE) != Stages(0);
-        let rays = if drawn { Some(self.check_targets(frame, asked, &scene)?) } else { None };
-        self.check_lens(frame, stages)?;
+        let rays = rays.filter(|_| stages.draw());
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
@@ -267,53 +276,6 @@ impl View {
         Ok(())
     }
 
-    fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
-        if frame_id != self.report.frame_id || self.recorded == Stages(0) {
-            return Ok(());
-        }
-        let last = 31 - self.recorded.0.leading_zeros();
-        let first = stages.0.trailing_zeros();
-        if first <= last {
-            return Err(Error::new(
-                Status::WrongOrder,
-                format!(
-                    "stages {:#x} of frame_id {frame_id} come after {:#x}: each stage once, in rising order of its bit",
-                    stages.0, self.recorded.0
-                ),
-            ));
-        }
-        Ok(())
-    }
-
-    /// Checks everything a draw needs before anything is recorded.
-    fn check_targets(&self, frame: &Frame<'_>, stages: Stages, scene: &Scene) -> Result<ViewRays> {
-        let color = frame.color.ok_or_else(|| Error::range("color", "a texture for stages that draw", "none"))?;
-        check_color(color)?;
-        if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
-            return Err(Error::unsupported(
-                "color.samples above 1: this device cannot shade per sample; resolve first",
-            ));
-        }
-        if let Some(depth) = frame.depth {
-            check_depth(depth, color)?;
-        }
-        if let Some(mask) = frame.mask {
-            check_mask(mask, color)?;
-        }
-        frame.validate()?;
-        if stages.has(Stages::TONE) && stages != Stages::ALL && frame.color_space != ColorSpace::SceneLinear {
-            return Err(Error::range(
-                "stages",
-                "without TONE for a host whose colour is tone-mapped already (color_space is not scene-linear)",
-                format!("{:#x}", stages.0),
-            ));
-        }
-        // The camera's axes are turned to the local east-north-up, in which the shaders work.
-        let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
-        let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
-        ViewRays::new(&local, &frame.depth_mapping)
-    }
-
     fn draw(
         &mut self,
         context: &Context,
@@ -335,6 +297,8 @@ impl View {
             sampling: Sampling::of(color, frame.depth),
             has_depth: frame.depth.is_some(),
             has_mask: frame.mask.is_some(),
+            has_classes: frame.surface_classes.is_some(),
+            has_normals: frame.normals.is_some(),
             // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
             fog: (fog.kind != FogKind::Clear)
                 .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
@@ -376,8 +340,9 @@ impl View {
         if drops.is_none() {
             variant.stages = variant.stages.without(Stages::PARTICLES);
         }
-        let [water, heights] = context.terrain_views(variant.stages.has(Stages::SURFACE));
-        self.bind(frame, layer, [drops, water, heights])?;
+        let [water, terrain] = context.terrain_views(variant.stages.has(Stages::SURFACE));
+        self.hold_copy(color)?;
+        self.bind(frame, layer, [drops, water, terrain])?;
         let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
         if self.rain.shows() {
             (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
@@ -410,10 +375,12 @@ impl View {
             let block = surface::uniform(frame, color, context, scene, &fog)?;
             self.device.queue.write_buffer(&self.ground, 0, bytemuck::bytes_of(&block));
         }
-        let Some((_, group, target)) = &self.bound else { return Ok(()) };
-        if let Some(copy) = &self.copy {
-            layer.copy(to.encoder, copy);
+        self.take_picture(layer, to)?;
+        if variant.stages.has(Stages::MEDIUM) {
+            let white = scene.ground.total_lux / std::f64::consts::PI;
+            self.unit.watch(&self.device, to.encoder, frame, (white, self.recorded.has(Stages::BACKGROUND)));
         }
+        let Some((_, group, target)) = &self.bound else { return Ok(()) };
         let mut composite = self.shared.composite()?;
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
@@ -471,40 +438,62 @@ impl View {
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
-    /// Makes the colour copy anew if it is not like the host's colour.
-    pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) {
-        let fits = self.copy.as_ref().is_some_and(|c| {
-            (c.width(), c.height()) == (color.width(), color.height())
-                && c.format() == color.format()
-                && c.sample_count() == color.sample_count()
+    /// Makes the colour copy anew if it does not serve the host's colour.
+    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<()> {
+        let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
+        let fits = self.copy.as_ref().is_some_and(|c| match &reading {
+            Some(reading) => c == reading,
+            None => is_copy_of(c, color),
         });
         if !fits {
             // The old one is bound there.
             self.bound = None;
-            self.copy = Some(color_copy(&self.device.device, color));
+            self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
             self.report.bytes = self.bytes();
         }
+        Ok(())
     }
 
-    /// Makes the colour copy and the bind group anew if the host's textures are others than last time.
+    /// Brings the colour copy up to date with all that was recorded.
+    pub(super) fn take_picture(&mut self, color: Layer<'_>, to: &mut Recording<'_>) -> Result<()> {
+        self.hold_copy(color.texture)?;
+        if !can_copy(color.texture) {
+            to.flush();
+            return self.device.refresh(color.texture);
+        }
+        if let Some(copy) = &self.copy {
+            color.copy(to.encoder, copy);
+        }
+        Ok(())
+    }
+
+    /// Makes the bind group anew if the host's textures are others than last time.
     fn bind(&mut self, frame: &Frame<'_>, color: Layer<'_>, own: OwnViews) -> Result<()> {
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
             color == b.color
                 && is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())
+                && is_kept(frame.classes_layer(), b.surface_classes.as_ref())
+                && is_kept(frame.normals_layer(), b.normals.as_ref())
                 && b.own == own
         });
         if same {
             return Ok(());
         }
-        self.hold_copy(color.texture);
         let Some(copy) = &self.copy else { return Ok(()) };
         let blocks = [&self.uniform, &self.fog, &self.ground];
         let group =
             self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
         let target = color.view();
-        let [depth, mask] = [frame.depth_layer(), frame.mask_layer()].map(|l| l.map(Layer::kept));
-        let bound = Bound { color: color.kept(), depth, mask, own };
+        let kept = |layer: Option<Layer<'_>>| layer.map(Layer::kept);
+        let bound = Bound {
+            color: color.kept(),
+            depth: kept(frame.depth_layer()),
+            mask: kept(frame.mask_layer()),
+            surface_classes: kept(frame.classes_layer()),
+            normals: kept(frame.normals_layer()),
+            own,
+        };
         self.bound = Some((bound, group, target));
         Ok(())
     }

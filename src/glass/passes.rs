@@ -1,6 +1,6 @@
 //! GPU resources of the glass: pipelines that all views share, a view's lattice, and the lens over a picture.
 
-use std::{collections::HashMap, sync::Arc};
+use std::sync::Arc;
 
 use super::{
     LensFrame,
@@ -13,6 +13,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer, is_kept,
         pass::{self, FullscreenDesc},
+        recent::Recent,
     },
 };
 
@@ -25,12 +26,15 @@ const SMALLER: u32 = 8;
 const SMALLEST: u32 = 4;
 
 /// What tells one lens pipeline from another.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct LensVariant {
     pub format: wgpu::TextureFormat,
     pub encoded: bool,
     pub has_mask: bool,
 }
+
+/// Lenses held: one for each format that views are drawn in.
+const MOST_LENSES: usize = 16;
 
 /// Pipelines and layouts, one set a device.
 pub(crate) struct GlassKit {
@@ -43,7 +47,7 @@ pub(crate) struct GlassKit {
     shrink_layout: wgpu::BindGroupLayout,
     shrink: [wgpu::RenderPipeline; 3],
     lens_layout: wgpu::BindGroupLayout,
-    lenses: HashMap<LensVariant, wgpu::RenderPipeline>,
+    lenses: Recent<LensVariant, wgpu::RenderPipeline, MOST_LENSES>,
     sampler: wgpu::Sampler,
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
@@ -180,7 +184,7 @@ impl GlassKit {
             declare: cells("glass/declare.wgsl", "declare")?,
             mapped: None,
             shrink: [shrink(SMALLER, 0.0)?, shrink(SMALLER, 1.0)?, shrink(SMALLEST, 0.0)?],
-            lenses: HashMap::new(),
+            lenses: Recent::new(),
             sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("glass"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -196,19 +200,22 @@ impl GlassKit {
     }
 
     fn lens(&mut self, device: &Arc<Device>, variant: LensVariant) -> Result<&wgpu::RenderPipeline> {
-        if !self.lenses.contains_key(&variant) {
-            let yes = |b: bool| f64::from(u8::from(b));
-            let desc = FullscreenDesc {
-                shader: "glass/lens.wgsl",
-                entry: "look_through",
-                layouts: &[&self.lens_layout],
-                targets: &[variant.format.into()],
-                constants: &[("ENCODED", yes(variant.encoded)), ("HAS_MASK", yes(variant.has_mask))],
-                samples: 1,
-            };
-            self.lenses.insert(variant, pass::fullscreen(device, &desc)?);
-        }
-        Ok(&self.lenses[&variant])
+        let layout = &self.lens_layout;
+        self.lenses.get_or_make(
+            |made| *made == variant,
+            || {
+                let yes = |b: bool| f64::from(u8::from(b));
+                let desc = FullscreenDesc {
+                    shader: "glass/lens.wgsl",
+                    entry: "look_through",
+                    layouts: &[layout],
+                    targets: &[variant.format.into()],
+                    constants: &[("ENCODED", yes(variant.encoded)), ("HAS_MASK", yes(variant.has_mask))],
+                    samples: 1,
+                };
+                Ok((variant, pass::fullscreen(device, &desc)?))
+            },
+        )
     }
 }
 

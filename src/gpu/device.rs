@@ -1,8 +1,11 @@
 //! The device: one queue, its caps, its faults, and the way into a host's context.
 
-use std::sync::{
-    Arc, Mutex, MutexGuard, PoisonError,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    collections::HashMap,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
 };
 
 use crate::error::{Error, Result, Status};
@@ -51,6 +54,17 @@ pub trait HostBinding: Send + Sync {
     fn enter(&self) -> Result<()>;
     /// Called after the last one; must not fail.
     fn leave(&self);
+    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself; [`HostBinding::refresh`] fills it.
+    fn reading(&self, _color: &wgpu::Texture) -> Option<wgpu::Texture> {
+        None
+    }
+    /// Brings [`HostBinding::reading`] of `color` up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// A copy that the host's context refuses.
+    fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
+        Ok(())
+    }
     /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
     fn closing(&self);
     /// Called once, still entered, when the device's own objects are gone.
@@ -125,9 +139,12 @@ pub struct Device {
     pub device: wgpu::Device,
     /// Its one queue.
     pub queue: wgpu::Queue,
+    /// Shaders by name: reading one takes longer than making a pipeline of it.
+    shaders: Mutex<HashMap<String, wgpu::ShaderModule>>,
     caps: Caps,
     faults: Arc<Faults>,
     submission: Mutex<()>,
+    submissions: AtomicU64,
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
@@ -213,9 +230,11 @@ impl Device {
             adapter,
             device,
             queue,
+            shaders: Mutex::default(),
             caps,
             faults,
             submission,
+            submissions: AtomicU64::new(0),
             binding,
             _exit: exit,
         };
@@ -239,6 +258,19 @@ impl Device {
             binding.enter()?;
         }
         Ok(Entered(self.binding.as_deref()))
+    }
+
+    /// The texture in which a host's `color` can be read, where wgpu cannot copy it itself.
+    pub(crate) fn reading(&self, color: &wgpu::Texture) -> Option<wgpu::Texture> {
+        self.binding.as_ref().and_then(|b| b.reading(color))
+    }
+
+    /// Brings [`Device::reading`] of `color` up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// A copy that the host's context refuses.
+    pub(crate) fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
+        self.binding.as_ref().map_or(Ok(()), |b| b.refresh(color))
     }
 
     /// Whether the native device is gone.
@@ -270,18 +302,30 @@ impl Device {
     /// # Errors
     /// [`Status::Internal`] if an include is missing.
     pub fn shader(&self, name: &str) -> Result<wgpu::ShaderModule> {
+        let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = shaders.get(name) {
+            return Ok(known.clone());
+        }
         let text = super::shader::assemble(name)?;
-        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let made = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(text.into()),
-        }))
+        });
+        shaders.insert(name.to_owned(), made.clone());
+        Ok(made)
     }
 
     /// Submits. One thread at a time: what a Vulkan host stages for its own submission goes with no other.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();
+        self.submissions.fetch_add(1, Ordering::Relaxed);
         self.queue.submit([commands]);
+    }
+
+    /// How often work was submitted here so far.
+    pub fn submissions(&self) -> u64 {
+        self.submissions.load(Ordering::Relaxed)
     }
 
     /// The right to submit, until the answer is dropped.

@@ -9,6 +9,7 @@
 pub mod gl;
 pub mod pass;
 pub mod readback;
+pub(crate) mod recent;
 pub mod shader;
 pub mod surface;
 // ash does not build for Apple hosts here: there the backend is Metal.

@@ -35,7 +35,7 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
         immediate_size: 0,
     });
     let compilation_options = wgpu::PipelineCompilationOptions { constants: desc.constants, ..Default::default() };
-    let targets: Vec<_> = desc.targets.iter().cloned().map(Some).collect();
+    let targets: Vec<_> = desc.targets.iter().cloned().map(|t| Some(compiled_once(device, t))).collect();
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.entry),
         layout: Some(&layout),
@@ -57,6 +57,17 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
         multiview_mask: None,
         cache: None,
     }))
+}
+
+/// A target whose pipeline llvmpipe compiles once instead of twice. It makes a second version of the shader for blocks of
+/// pixels that a triangle covers wholly, unless the target blends; a blend that replaces draws the same.
+fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
+    let features = target.format.guaranteed_format_features(device.device.features()).flags;
+    let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
+    match target.blend {
+        None if can => wgpu::ColorTargetState { blend: Some(wgpu::BlendState::REPLACE), ..target },
+        _ => target,
+    }
 }
 
 /// What a pipeline of quads is made of: strips of four corners an instance, premultiplied and blended over what is there.

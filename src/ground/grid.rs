@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::SurfaceClass;
 use crate::error::{Error, Result, check_range};
 
 /// Most nodes of a grid east and north.
@@ -24,6 +25,8 @@ pub struct GroundGrid {
     pub nodes: [u32; 2],
     /// Heights above the origin, m, within 1e5; eastern neighbours beside each other, then northern.
     pub heights_m: Vec<f32>,
+    /// What each cell is made of, in the order of the heights; empty: nothing is said of any.
+    pub classes: Vec<SurfaceClass>,
 }
 
 impl GroundGrid {
@@ -44,6 +47,10 @@ impl GroundGrid {
         if self.heights_m.len() != count {
             let wanted = format!("{count}, one a node");
             return Err(Error::range("ground_grid.heights_m' count", &wanted, self.heights_m.len()));
+        }
+        if !self.classes.is_empty() && self.classes.len() != count {
+            let wanted = format!("0, or {count}, one a node");
+            return Err(Error::range("ground_grid.classes' count", &wanted, self.classes.len()));
         }
         match self.heights_m.iter().position(|h| h.is_nan() || h.abs() > MOST_M) {
             None => Ok(()),
@@ -73,12 +80,28 @@ impl GroundGrid {
         self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
     }
 
-    /// Half of its diagonal, m, and its middle in the host's world.
-    pub(crate) fn reach(&self, to_enu: &DMat3) -> (f64, DVec3) {
-        let half = 0.5 * self.cell_m * DVec2::new(f64::from(self.nodes[0] - 1), f64::from(self.nodes[1] - 1));
-        let (low, high) = self.range();
-        let middle = half.extend(0.5 * (low + high));
-        (middle.with_z(0.5 * (high - low)).length(), self.origin + to_enu.transpose() * middle)
+    /// Whether another has the same heights at the same places, whatever it is made of.
+    pub(crate) fn has_heights_of(&self, other: &Self) -> bool {
+        let place = |g: &Self| (g.origin, g.cell_m, g.nodes);
+        place(self) == place(other) && self.heights_m == other.heights_m
+    }
+
+    /// What a cell is made of.
+    pub(crate) fn class(&self, cell: usize) -> SurfaceClass {
+        self.classes.get(cell).copied().unwrap_or_default()
+    }
+
+    /// Slope at a node, rise over run to the east and the north: over both neighbours, at the border over one.
+    pub(crate) fn slope(&self, node: usize) -> [f64; 2] {
+        let columns = self.nodes[0] as usize;
+        let place = [node % columns, node / columns];
+        [0, 1].map(|axis| {
+            let stride = if axis == 0 { 1 } else { columns };
+            let before = usize::from(place[axis] > 0);
+            let after = usize::from(place[axis] + 1 < self.nodes[axis] as usize);
+            let rise = f64::from(self.heights_m[node + after * stride] - self.heights_m[node - before * stride]);
+            rise / ((before + after) as f64 * self.cell_m)
+        })
     }
 
     /// Lowest and highest node, m.
@@ -117,7 +140,7 @@ mod tests {
 
     fn grid() -> GroundGrid {
         let heights_m = (0..12).map(|i| (i % 4) as f32 * 0.5 + (i / 4) as f32).collect();
-        GroundGrid { origin: DVec3::new(10.0, 20.0, 30.0), cell_m: 2.0, nodes: [4, 3], heights_m }
+        GroundGrid { origin: DVec3::new(10.0, 20.0, 30.0), cell_m: 2.0, nodes: [4, 3], heights_m, classes: Vec::new() }
     }
 
     #[test]
@@ -132,6 +155,15 @@ mod tests {
             assert_eq!(grid.on_terrain(p, DMat3::IDENTITY), None, "{p}");
         }
         assert_eq!(grid.node(6, &DMat3::IDENTITY), DVec3::new(14.0, 22.0, 32.0));
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_heights() {
+        let grid = grid();
+        for node in 0..12 {
+            let slope = grid.slope(node);
+            assert!((slope[0] - 0.25).abs() < 1e-12 && (slope[1] - 0.5).abs() < 1e-12, "{node}: {slope:?}");
+        }
     }
 
     #[test]
@@ -154,6 +186,7 @@ mod tests {
             (torn(f32::INFINITY), "heights_m[7] must be finite"),
             (torn(-2e5), "heights_m[7] must be finite"),
             (short, "heights_m' count must be 12"),
+            (GroundGrid { classes: vec![SurfaceClass::Soil; 11], ..grid() }, "classes' count must be 0, or 12"),
         ] {
             let e = bad.validate().unwrap_err();
             assert!(e.message.contains(&format!("ground_grid.{name}")), "{name}: {}", e.message);

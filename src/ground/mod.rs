@@ -3,15 +3,18 @@
 //! **Drawn** onto the host's picture from its depth ([`Stages::SURFACE`](crate::frame::Stages::SURFACE)): what is wet is
 //! darker (Angstrom 1925; Lekner & Dorf 1988) and mirrors sky, sun and moon (Fresnel, n = 1.333) off a rough film; standing
 //! water fills the hollows of a pattern that is fixed to the host's world, level and smooth but for the rings of drops.
-//! Which way a surface faces comes from the depths round a pixel: level ground gets all of it, walls less, undersides
-//! nothing. Costs one sky lookup a pixel and nothing where it is dry.
+//! Which way a surface faces comes from the host's image of normals, else from its terrain, else from the depths round a pixel,
+//! whose error bounds the mirror: level ground gets all of it, walls less, undersides nothing. What the ground is made of
+//! ([`SurfaceClass`]) comes from an image, else from the terrain's cells, else from the context: film and puddles belong to what is
+//! paved. Costs one sky lookup a pixel and nothing where it is dry.
 //!
 //! Right for a host that hands over scene-linear luminance: the ground's albedo then follows from its luminance and the
 //! light on it (a surface in shadow is taken for a darker one and loses up to a sixth too much). In the display's spaces the
 //! shown colour is taken for the albedo, darkened, and the mirrored light added through the tone curve. Mirrors see the sky
-//! and level ground, no objects; the film is that of asphalt whatever it lies on.
+//! and level ground, no objects.
 
 mod basins;
+mod class;
 mod grid;
 mod hollows;
 mod pools;
@@ -21,6 +24,7 @@ pub(crate) mod texture;
 mod uniform;
 pub mod water;
 
+pub use class::SurfaceClass;
 pub use grid::{GroundGrid, MAX_GRID_NODES};
 pub use hollows::Hollows;
 pub(crate) use hollows::pattern_axes;

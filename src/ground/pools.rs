@@ -119,17 +119,15 @@ impl Pools {
         (0..self.held.len()).filter(whole).map(|i| self.held[i]).sum()
     }
 
-    /// Level of the water in each hollow, mm; negative infinity for one that is only its parts.
-    pub fn levels(&self, basins: &Basins, levels: &mut [f64]) {
-        for basin in (0..self.held.len()).rev() {
-            levels[basin] = if self.is_part(basins, basin) {
-                levels[basins.list[basin].parent as usize]
-            } else if self.held[basin] >= 0.0 {
-                basins.level(basin, self.held[basin]).0
-            } else {
-                f64::NEG_INFINITY
-            };
-        }
+    /// The larger hollow whose water a hollow's is a part of.
+    pub fn whole_of(&self, basins: &Basins, basin: usize) -> Option<usize> {
+        self.is_part(basins, basin).then(|| basins.list[basin].parent as usize)
+    }
+
+    /// Level of the water in a hollow that is no part, mm; negative infinity for one that is only its parts.
+    pub fn level(&self, basins: &Basins, basin: usize) -> f64 {
+        let held = self.held[basin];
+        if held >= 0.0 { basins.level(basin, held).0 } else { f64::NEG_INFINITY }
     }
 }
 
@@ -137,6 +135,16 @@ impl Pools {
 mod tests {
     use super::*;
     use crate::ground::basins::tests::rough;
+
+    fn levels(pools: &Pools, basins: &Basins) -> Vec<f64> {
+        let level = |mut basin: usize| {
+            while let Some(whole) = pools.whole_of(basins, basin) {
+                basin = whole;
+            }
+            pools.level(basins, basin)
+        };
+        (0..basins.list.len()).map(level).collect()
+    }
 
     fn two_pits() -> Basins {
         let mut row = vec![0.0f32; 9];
@@ -151,15 +159,14 @@ mod tests {
         let deep: Vec<usize> = (0..basins.list.len()).filter(|i| basins.list[*i].capacity > 0.0).collect();
         let [a, b, whole] = deep[..] else { panic!("{basins:?}") };
         let mut pools = Pools::new(&basins);
-        let mut levels = vec![0.0; basins.list.len()];
         // To the saddle the deep pit holds 400; 60 go over to the other, which is then .06 m deep.
         assert_eq!(pools.pour(&basins, a as u32, 460.0), 0.0);
-        pools.levels(&basins, &mut levels);
+        let levels = self::levels(&pools, &basins);
         assert!((levels[a] + 100.0).abs() < 1e-3 && (levels[b] + 140.0).abs() < 1e-3, "{levels:?}");
         assert_eq!(levels[whole], f64::NEG_INFINITY);
         // Then both are one, whoever gets it: 4 cells, 80 more raise it by 10 mm with the saddle's.
         assert_eq!(pools.pour(&basins, b as u32, 40.0 + 40.0), 0.0);
-        pools.levels(&basins, &mut levels);
+        let levels = self::levels(&pools, &basins);
         assert!(deep.iter().all(|i| (levels[*i] + 90.0).abs() < 1e-3), "{levels:?}");
         // 400 in all go in above the saddle; what is more leaves.
         assert!((pools.pour(&basins, a as u32, 1000.0) - 640.0).abs() < 1e-3);

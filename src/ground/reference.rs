@@ -50,6 +50,31 @@ pub fn seen_area(slope: f64, cosine: f64) -> f64 {
     (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()
 }
 
+/// Luminance that a lamp of illuminance 1 makes on rough water, per Fresnel share (Cox & Munk 1954, eq. 5, with the shadows of
+/// facets on each other): `up` is the surface's normal, `facet` the one that mirrors the lamp's middle into the eye, `disc2` =
+/// (radius of the lamp / 4)^2, rad^2.
+pub fn glitter(slope: f64, disc2: f64, up: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
+    let (c, lit, seen) = (up.dot(facet), up.dot(to_lamp), up.dot(to_eye));
+    let area = seen_area(slope, seen) * seen_area(slope, lit);
+    if c <= 0.0 || lit <= 0.0 || area <= 1e-6 {
+        return 0.0;
+    }
+    let tilt = facet / c - up;
+    let along = tilt.dot((to_eye - up * seen).normalize_or_zero()).powi(2);
+    let across = (tilt.length_squared() - along).max(0.0);
+    let opening = facet.dot(to_eye).max(1e-3);
+    let [s, t] = [disc2, disc2 / (opening * opening)].map(|d| d + slope * slope);
+    let density = libm::exp(-0.5 * (along / s + across / t)) / ((s * t).sqrt() * 2.0 * PI * c.powi(4));
+    density * lit / (4.0 * area)
+}
+
+/// What is left of a mirror of this slope where its normal may be off by `error`, rad: all up to half of what its roughness hides,
+/// nothing from twice as much on.
+pub fn mirror_left(error: f64, slope: f64) -> f64 {
+    let x = ((error - 0.5 * slope) / (1.5 * slope)).clamp(0.0, 1.0);
+    1.0 - x * x * (3.0 - 2.0 * x)
+}
+
 /// Drops larger than [`RING_DIAMETER_MM`] that land on a square metre of level ground in a second.
 pub fn ring_drops_per_m2_s(sizes: &DropSizes) -> f64 {
     let slowest = sizes.speed_m_s(RING_DIAMETER_MM);

@@ -15,6 +15,8 @@ use super::{
     water::{PORES_MM, Step, Surface, wetness_of},
 };
 
+/// Cells that are gone through together, or passed over together where nothing falls, flows or dries.
+pub(crate) const RUN: usize = 64;
 /// Depth of water where there is none and no hollow's level is known, mm: as far as puddles' edges run out between cells.
 const BARE_MM: f32 = -50.0;
 
@@ -72,9 +74,19 @@ pub(crate) struct TerrainWater {
     /// Depths as in [`CellWater::standing_mm`].
     standing: Vec<f32>,
     dry: bool,
-    /// Room for a step: what pits get, levels of the hollows now and before.
+    /// Of each run of cells, whether a step without rain may change any: one with a film, or with wet pores above water.
+    awake: Vec<bool>,
+    /// Level of the water in each hollow, and what it held when that was found.
+    levels: Vec<Level>,
+    /// Room for a step: what pits get.
     inflow: Vec<f64>,
-    levels: [Vec<f64>; 2],
+}
+
+/// Level of the water in a hollow, mm, and what this held then; none for one whose level is another's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Level {
+    mm: f64,
+    of: Option<f64>,
 }
 
 impl TerrainWater {
@@ -109,9 +121,14 @@ impl TerrainWater {
             top,
             pools,
             inflow: vec![0.0; hollows],
-            levels: [vec![0.0; hollows], vec![f64::INFINITY; hollows]],
+            levels: vec![Level { mm: f64::INFINITY, of: None }; hollows],
+            awake: Vec::new(),
         };
         new.level(&terrain.basins);
+        let cells = new.top.iter().zip(&new.standing);
+        let stirs = |([film, soaked], standing): (&[f64; 2], &f32)| *film > 0.0 || (*soaked > 0.0 && *standing <= 0.0);
+        let stirring: Vec<bool> = cells.map(stirs).collect();
+        new.awake = stirring.chunks(RUN).map(|run| run.contains(&true)).collect();
         new
     }
 
@@ -125,29 +142,44 @@ impl TerrainWater {
         self.dry
     }
 
-    /// Leads it through a step in which so many millimetres fall on each cell.
-    pub fn step(&mut self, terrain: &Terrain, step: &Step, rain_mm: impl Fn(usize) -> f64) -> Flows {
+    /// Leads it through a step in which so many millimetres fall on each cell, none on the cells of a run on which it does not
+    /// rain. Runs where nothing falls, flows or dries are passed over, which changes no bit.
+    pub fn step(
+        &mut self,
+        terrain: &Terrain,
+        step: &Step,
+        rains: impl Fn(usize) -> bool,
+        rain_mm: impl Fn(usize) -> f64,
+    ) -> Flows {
         let basins = &terrain.basins;
         let mut flows = Flows::default();
         let mut wet = false;
         // Neighbours mostly have the same water and the same rain.
         let mut last: Option<([f64; 2], f64, bool, Surface)> = None;
-        for (cell, top) in self.top.iter_mut().enumerate() {
-            let (rain, under) = (rain_mm(cell), self.standing[cell] > 0.0);
-            let next = match &last {
-                Some((same, fell, below, next)) if same == top && *fell == rain && *below == under => *next,
-                _ if under => step.below_water(top[0], top[1], rain),
-                _ => step.surface(top[0], top[1], rain),
-            };
-            last = Some((*top, rain, under, next));
-            *top = [next.film_mm, next.soaked_mm];
-            wet |= next.film_mm > 0.0 || next.soaked_mm > 0.0;
-            flows.rain += rain;
-            flows.evaporated += next.evaporated_mm;
-            match basins.drains_to[cell] {
-                OUT => flows.drained += next.ran_off_mm,
-                pit => self.inflow[pit as usize] += next.ran_off_mm,
+        for (run, tops) in self.top.chunks_mut(RUN).enumerate() {
+            if !self.awake[run] && !rains(run) {
+                continue;
             }
+            let mut stirs = false;
+            for (cell, top) in (run * RUN..).zip(tops) {
+                let (rain, under) = (rain_mm(cell), self.standing[cell] > 0.0);
+                let next = match &last {
+                    Some((same, fell, below, next)) if same == top && *fell == rain && *below == under => *next,
+                    _ if under => step.below_water(top[0], top[1], rain),
+                    _ => step.surface(top[0], top[1], rain),
+                };
+                last = Some((*top, rain, under, next));
+                *top = [next.film_mm, next.soaked_mm];
+                stirs |= next.film_mm > 0.0 || (next.soaked_mm > 0.0 && !under);
+                flows.rain += rain;
+                flows.evaporated += next.evaporated_mm;
+                match basins.drains_to[cell] {
+                    OUT => flows.drained += next.ran_off_mm,
+                    pit => self.inflow[pit as usize] += next.ran_off_mm,
+                }
+            }
+            self.awake[run] = stirs;
+            wet |= stirs;
         }
         for (pit, water) in self.inflow.iter_mut().enumerate().filter(|(_, v)| **v > 0.0) {
             flows.drained += self.pools.pour(basins, pit as u32, std::mem::take(water));
@@ -166,18 +198,28 @@ impl TerrainWater {
 
     /// Brings the depths up to date with what the hollows hold.
     fn level(&mut self, basins: &Basins) {
-        let [now, before] = &mut self.levels;
-        self.pools.levels(basins, now);
-        for hollow in 0..now.len() {
-            if now[hollow] == before[hollow] {
+        // Wholes come after their parts, which take their level.
+        for hollow in (0..self.levels.len()).rev() {
+            let before = self.levels[hollow];
+            let now = match self.pools.whole_of(basins, hollow) {
+                Some(whole) => Level { mm: self.levels[whole].mm, of: None },
+                None if before.of == Some(self.pools.held[hollow]) => continue,
+                None => Level { mm: self.pools.level(basins, hollow), of: Some(self.pools.held[hollow]) },
+            };
+            self.levels[hollow] = now;
+            if now.mm == before.mm {
                 continue;
             }
             for (cell, height_mm) in basins.own_cells(hollow) {
-                let depth = (now[hollow] - height_mm) as f32;
-                self.standing[cell] = if depth.is_finite() { depth } else { BARE_MM };
+                let depth = (now.mm - height_mm) as f32;
+                let depth = if depth.is_finite() { depth } else { BARE_MM };
+                if depth <= 0.0 && self.standing[cell] > 0.0 {
+                    // What the water leaves begins to dry.
+                    self.awake[cell / RUN] = true;
+                }
+                self.standing[cell] = depth;
             }
         }
-        self.levels.swap(0, 1);
     }
 
     /// Water of a cell.
@@ -232,7 +274,8 @@ mod tests {
     };
 
     fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> Terrain {
-        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m };
+        let grid =
+            GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m, classes: Vec::new() };
         grid.validate().unwrap();
         Terrain::new(grid)
     }
@@ -252,7 +295,7 @@ mod tests {
             // Two showers of other rains in the east and west, with roofs; then wind and sun.
             let (step, mm) = rain(if i % 1200 < 500 { 9.0 } else { 0.0 }, if i % 1200 < 500 { 0.02 } else { 0.6 });
             let over = |cell: usize| if cell % 48 < 20 { mm } else { mm * ((cell / 48) % 4) as f64 / 3.0 };
-            let flows = water.step(&terrain, &step, over);
+            let flows = water.step(&terrain, &step, |_| true, over);
             fallen += flows.rain;
             gone += flows.evaporated + flows.leaked + flows.drained;
             let held = water.total(&terrain);
@@ -276,7 +319,7 @@ mod tests {
         let (wet, mm) = rain(20.0, 0.0);
         let mut first = Vec::new();
         for _ in 0..360 {
-            water.step(&terrain, &wet, |_| mm);
+            water.step(&terrain, &wet, |_| true, |_| mm);
             if first.is_empty() {
                 first = under(&water);
             }
@@ -296,7 +339,7 @@ mod tests {
         let (dry, _) = rain(0.0, 0.5);
         let (mut hours, mut left) = (0.0, full);
         while !water.is_dry() && hours < 400.0 {
-            water.step(&terrain, &dry, |_| 0.0);
+            water.step(&terrain, &dry, |_| false, |_| 0.0);
             hours += STEP_S / 3600.0;
             let now = under(&water);
             // The last of the film still runs in for a while.
@@ -305,6 +348,45 @@ mod tests {
         }
         assert!((40.0..200.0).contains(&hours), "{hours} h");
         assert_eq!(water.puddles(), 0.0);
+    }
+
+    /// Hours of showers and sun on rough ground: to the bit what going through all cells and hollows gives, in less time.
+    #[test]
+    fn passing_over_what_rests_changes_no_bit_and_saves_most_of_the_time() {
+        let (columns, rows) = (256, 256);
+        let terrain = terrain(columns, rows, rough(columns as usize, rows as usize, 8));
+        let dry = || TerrainWater::new(&terrain, |_| GroundWater::default());
+        let (mut water, mut every) = (dry(), dry());
+        // A shower over a third of the ground, then eleven hours of sun.
+        let mut seconds = [[0.0f64; 2]; 12];
+        for i in 0..4320 {
+            let hour = i / 360;
+            let (step, mm) = rain(if hour == 0 { 9.0 } else { 0.0 }, if hour == 0 { 0.02 } else { 0.6 });
+            let rains = |run: usize| mm > 0.0 && run.is_multiple_of(4);
+            let falls = |cell: usize| if rains(cell / RUN) { mm } else { 0.0 };
+            let begun = std::time::Instant::now();
+            water.step(&terrain, &step, rains, falls);
+            let passed = begun.elapsed().as_secs_f64();
+            every.awake.fill(true);
+            every.levels.iter_mut().for_each(|level| level.of = None);
+            let begun = std::time::Instant::now();
+            every.step(&terrain, &step, |_| true, falls);
+            seconds[hour][0] += passed;
+            seconds[hour][1] += begun.elapsed().as_secs_f64();
+            if i % 60 == 0 {
+                assert!(water.top == every.top && water.standing == every.standing, "step {i}");
+                assert!(water.held() == every.held() && water.is_dry() == every.is_dry(), "step {i}");
+            }
+        }
+        let ms = |[passed, all]: [f64; 2]| format!("{:.3} of {:.3} ms", passed / 0.36, all / 0.36);
+        println!(
+            "a step of 256^2 in the shower {}, an hour later {}, at last {}",
+            ms(seconds[0]),
+            ms(seconds[2]),
+            ms(seconds[11])
+        );
+        assert!(!water.is_dry(), "puddles are left");
+        assert!(seconds[11][0] < 0.5 * seconds[11][1], "{seconds:?}");
     }
 
     #[test]

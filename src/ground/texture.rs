@@ -43,11 +43,13 @@ pub(crate) fn uv_from_world(grid: &GroundGrid, to_enu: DMat3) -> [DVec4; 2] {
 #[derive(Clone, Debug)]
 pub(crate) struct Filled {
     pub water: wgpu::Texture,
-    /// For drawing: of the water and of the heights.
+    surface: wgpu::Texture,
+    /// For drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
-    /// Of the grid, and of the water.
+    /// Of the grid, of the water, and of what the ground is made of.
     pub generation: u64,
     pub revision: u64,
+    classes: u64,
 }
 
 /// Keeps the textures of a context's terrain; there are none before somebody asks.
@@ -57,6 +59,7 @@ pub(crate) struct TerrainTextures {
     /// Whether the water was written since it was last handed to the host.
     pub written: bool,
     texels: Vec<[u16; 4]>,
+    surface: Vec<[f32; 4]>,
 }
 
 impl TerrainTextures {
@@ -65,15 +68,20 @@ impl TerrainTextures {
         self.filled.as_ref()
     }
 
-    /// Uploads what has changed: heights and water of another grid, or the water alone.
+    /// Uploads what has changed: surface and water of another grid, or one of them alone.
     pub fn follow(
         &mut self,
         device: &Device,
         (terrain, water, ice): (&Terrain, &TerrainWater, impl Fn(usize) -> f32),
-        [generation, revision]: [u64; 2],
+        [generation, revision, classes]: [u64; 3],
     ) -> &Filled {
         let filled = self.filled.take().filter(|f| f.generation == generation);
         let mut filled = filled.unwrap_or_else(|| Filled::new(device, &terrain.grid, generation));
+        if filled.classes != classes {
+            surface_texels(&terrain.grid, &mut self.surface);
+            write(device, &filled.surface, bytemuck::cast_slice(&self.surface), 16);
+            filled.classes = classes;
+        }
         if filled.revision != revision {
             water.texels(ice, &mut self.texels);
             write(device, &filled.water, bytemuck::cast_slice(&self.texels), 8);
@@ -84,7 +92,7 @@ impl TerrainTextures {
 }
 
 impl Filled {
-    /// Textures of a grid, with its heights and no water yet.
+    /// Textures of a grid, still empty.
     fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
         use wgpu::{TextureFormat as F, TextureUsages as U};
         let [width, height] = grid.nodes;
@@ -100,11 +108,19 @@ impl Filled {
                 view_formats: &[],
             })
         };
-        let (water, heights) = (texture("terrain water", F::Rgba16Float), texture("terrain heights", F::R32Float));
-        write(device, &heights, bytemuck::cast_slice(&grid.heights_m), 4);
-        let views = [&water, &heights].map(|t| t.create_view(&Default::default()));
-        Self { water, views, generation, revision: u64::MAX }
+        let (water, surface) = (texture("terrain water", F::Rgba16Float), texture("terrain surface", F::Rgba32Float));
+        let views = [&water, &surface].map(|t| t.create_view(&Default::default()));
+        Self { water, surface, views, generation, revision: u64::MAX, classes: u64::MAX }
     }
+}
+
+/// Of each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of its class.
+fn surface_texels(grid: &GroundGrid, texels: &mut Vec<[f32; 4]>) {
+    texels.clear();
+    texels.extend(grid.heights_m.iter().enumerate().map(|(node, height)| {
+        let [east, north] = grid.slope(node);
+        [east as f32, north as f32, *height, f32::from(grid.class(node) as u8)]
+    }));
 }
 
 fn write(device: &Device, texture: &wgpu::Texture, bytes: &[u8], texel: u32) {
@@ -127,6 +143,7 @@ mod tests {
             cell_m: 2.0,
             nodes: [5, 3],
             heights_m: (0..15).map(|i| i as f32).collect(),
+            classes: Vec::new(),
         };
         let turned = DMat3::from_rotation_z(0.7);
         let rows = uv_from_world(&grid, turned);

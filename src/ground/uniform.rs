@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    GroundGrid, Hollows,
+    GroundGrid, Hollows, SurfaceClass,
+    class::{CLASSES, SurfaceLook},
     hollows::{PERIOD_M, WAVES, pattern_axes},
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
 };
@@ -72,6 +73,10 @@ pub(crate) struct GroundUniform {
     pub terrain_last: [f32; 2],
     pub terrain_rim: f32,
     pub terrain_near: f32,
+    pub normal_x: [f32; 4],
+    pub normal_y: [f32; 4],
+    pub normal_z: [f32; 4],
+    pub looks: [SurfaceLook; CLASSES],
     pub waves: [[f32; 4]; WAVES],
 }
 
@@ -101,6 +106,10 @@ pub(crate) struct Seen<'a> {
     pub wind_m_s: Option<DVec3>,
     /// The host's terrain, and what turns the host's axes at its origin.
     pub terrain: Option<(&'a GroundGrid, DMat3)>,
+    /// Of ground of which nothing else is said.
+    pub surface_class: SurfaceClass,
+    /// From the axes of the host's image of normals to east, north, up, and what its numbers are multiplied by and added to that.
+    pub normals: (DMat3, [f32; 2]),
 }
 
 /// Cells within which a terrain gives way to the world's ground.
@@ -155,6 +164,9 @@ impl Seen<'_> {
         let [u, v] = axes.map(|a| (scene.world_to_enu * a).as_vec3().to_array());
         let f = |c: [f64; 3]| c.map(|v| v as f32);
         let (rows, last, cell_m) = self.terrain_rows();
+        let (turned, decode) = &self.normals;
+        let normals =
+            [0, 1, 2].map(|i| turned.row(i).extend(decode.get(i).map_or(0.0, |d| f64::from(*d))).as_vec4().to_array());
         GroundUniform {
             to_lamp: lamp.apparent.as_vec3().to_array(),
             soaked: soaked as f32,
@@ -196,8 +208,19 @@ impl Seen<'_> {
             terrain_last: last.map(|v| v as f32),
             terrain_rim: (0.25 * last[0].min(last[1])).min(TERRAIN_RIM) as f32,
             terrain_near: (NEAR_TERRAIN[0] + NEAR_TERRAIN[1] * cell_m) as f32,
+            normal_x: normals[0],
+            normal_y: normals[1],
+            normal_z: normals[2],
+            looks: self.looks(),
             waves: self.hollows.seen_from(at),
         }
+    }
+
+    /// Of each class; the default's stands first. Nobody has marked what only the default says: it may be a hill.
+    fn looks(&self) -> [SurfaceLook; CLASSES] {
+        let mut looks = SurfaceClass::ALL.map(SurfaceClass::look);
+        looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.look() };
+        looks
     }
 
     /// The rows of the block, the last node, and the size of a cell.
@@ -266,7 +289,11 @@ mod tests {
                 terrain_z,
                 terrain_last,
                 terrain_rim,
-                terrain_near
+                terrain_near,
+                normal_x,
+                normal_y,
+                normal_z,
+                looks
             ]
         );
     }
@@ -277,6 +304,8 @@ mod tests {
         let cells = (PERIOD_M / RING_CELL_M) as u32;
         for line in [
             format!("const HOLLOW_WAVES: u32 = {WAVES}u;"),
+            format!("const SURFACE_CLASSES: u32 = {CLASSES}u;"),
+            format!("const VEGETATION: u32 = {}u;", SurfaceClass::Vegetation as u8),
             format!("const RING_CELL: f32 = {RING_CELL_M};"),
             format!("const RING_CELLS: u32 = {cells}u;"),
             format!("const RING_SLOT: f32 = {RING_SLOT_S};"),

@@ -205,8 +205,9 @@ struct Gauging {
     streaks: Option<Streaks>,
 }
 
-/// Least and largest share of a rebuild of the sky's tables that one frame pays: finer strips are not cut.
-const SHARE: (f64, f64) = (1.0 / 48.0, 1.0 / 16.0);
+/// Least and largest share of a build of the sky's tables with the default settings that one frame pays. Finer strips are
+/// not cut; and the largest keeps a frame of 640 x 360 within half as much again on the software driver.
+const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
 
 /// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
 const FADE_STEP: f64 = 0.005;
@@ -214,7 +215,7 @@ const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
 pub(crate) struct Planner {
     budget: Budget,
-    /// Work of building the sky's tables, in pixels with none of the parts.
+    /// Work of building the sky's default tables, in pixels with none of the parts.
     rebuild: f64,
     gauge: Option<Gauge>,
     estimator: Estimator,
@@ -235,9 +236,9 @@ pub(crate) struct Planner {
 
 impl Planner {
     pub fn new(sky: &SkySettings) -> Self {
-        let (work, price) = (crate::sky::candidates::work(sky), Price::default());
+        let (work, price) = (crate::sky::candidates::work, Price::default());
         Self {
-            rebuild: work.rebuild.at(&price) / work.pixel.at(&price),
+            rebuild: work(&SkySettings::default()).rebuild.at(&price) / work(sky).pixel.at(&price),
             budget: Budget::default(),
             gauge: None,
             estimator: Estimator::new(0),
@@ -390,7 +391,7 @@ impl Planner {
         self.plan.gave_way = gave_way;
     }
 
-    /// The share of a rebuild of the sky's tables that a frame has time for.
+    /// The share of a build of the sky's default tables that a frame has time for.
     pub fn share_of_tables(&self) -> f32 {
         let frame = self.governor.ms(&self.all.without(self.absent()));
         let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 
 use super::parts::{PARTS, Part};
 use crate::{
-    error::{Error, Result, Status},
+    error::{Error, Result, Status, toml_fault},
     sky::{SkyModel, SkySettings},
 };
 
@@ -39,7 +39,7 @@ pub(crate) fn read(bytes: &[u8], sky: &SkySettings) -> Result<[bool; PARTS]> {
         return Err(fault(&format!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
     let text = std::str::from_utf8(bytes).map_err(|e| fault(&format!(": {e}")))?;
-    let whole: Table = toml::from_str(text).map_err(|e| fault(&format!(": {e}")))?;
+    let whole: Table = toml::from_str(text).map_err(|e| fault(&format!(": {}", toml_fault(text, &e))))?;
     // First: what else a plan of another version holds is not known.
     let version = whole.get("version");
     if version != Some(&Value::from(i64::from(VERSION))) {

@@ -111,7 +111,7 @@ impl ConeUniform {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
             let middle = 0.5 * (near + far);
             // A streak is a little wider than a pixel, or than a drop.
-            let texel = (1.1 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
+            let texel = (0.7 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
             let tiles = (std::f64::consts::TAU / (f64::from(SIDE) * texel)).round().max(1.0);
             let length = (relative.length() * shot.exposure_s + mean.diameter_m) / middle;
             let number =
@@ -135,8 +135,8 @@ impl ConeUniform {
         c
     }
 
-    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls is as faint
-    /// as `share` says.
+    /// Where so large a share of the drops nearer than `distance_m` is drawn one by one, and all of what falls hides `share` times
+    /// what it does.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
             let nearer = BANDS_M[j] < 0.99 * distance_m;

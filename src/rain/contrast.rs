@@ -2,9 +2,11 @@
 //!
 //! Streaks are thrown at random, so the variance of what they hide from pixel to pixel is the sum of their squared covers
 //! (Campbell 1909). A drop of diameter D at distance r, drawn L long and w wide (its own width, or what is left of a pixel), hides
-//! on the mean its disc over L w of it, across as a parabola; as many as n a volume r^2 dr make
-//! 1.2 n disc^2 / ((L + w) w) dr. With w = D near the eye and w = a r beyond, its integral has a closed form: each doubling of the
-//! distance adds as much as the one before.
+//! on the mean its disc over L w of it, across as the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of
+//! their mean; as many as n a volume r^2 dr make 1.08 n disc^2 / ((L + w) w) dr. With w = D near the eye and w = a r beyond, its
+//! integral has a closed form: each doubling of the distance adds as much as the one before.
+//!
+//! A contrast gain g makes of a streak that hides c one that hides 1 - (1 - c)^g.
 
 use glam::{DVec2, DVec3};
 
@@ -18,8 +20,13 @@ const LEAST_PIXELS: f64 = 1.2;
 const CONES_MISS: f64 = 0.3;
 
 /// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span an angle
-/// (rad) and before which drops move `along_m` across the line of sight during the exposure.
-pub fn cover_variance(classes: &Classes, pixel_angle: f64, along_m: f64, (near_m, far_m): (f64, f64)) -> f64 {
+/// (rad) and before which drops move `along_m` across the line of sight during the exposure, with a contrast gain.
+pub fn cover_variance(
+    classes: &Classes,
+    pixel_angle: f64,
+    (along_m, gain): (f64, f64),
+    (near_m, far_m): (f64, f64),
+) -> f64 {
     let a = (LEAST_PIXELS * pixel_angle).max(1e-9);
     let l = along_m.max(1e-4);
     let of = |(diameter_mm, speed, flux): (f64, f64, f64)| {
@@ -28,10 +35,19 @@ pub fn cover_variance(classes: &Classes, pixel_angle: f64, along_m: f64, (near_m
         // Up to here it is wider than a pixel.
         let wide = (d / a).clamp(near_m, far_m);
         let antiderivative = |r: f64| libm::log(r / (l + a * r)) / (a * l);
-        let sum = (wide - near_m) / ((l + d) * d) + antiderivative(far_m) - antiderivative(wide);
-        1.2 * flux / speed * disc * disc * sum
+        let beyond = antiderivative(far_m) - antiderivative(wide);
+        // Of those that are drawn wider than they are, the one in the middle of the doublings stands for all.
+        let w = a * (wide * far_m).sqrt();
+        let sum = (wide - near_m) / ((l + d) * d) * gained(d / (l + d), gain).powi(2)
+            + beyond * gained(d * d / ((l + w) * w), gain).powi(2);
+        1.08 * flux / speed * disc * disc * sum
     };
     classes.flux.iter().filter(|c| c.1 > 0.0).map(|c| of(*c)).sum()
+}
+
+/// How many times as much a streak hides that hides `cover` without a gain.
+fn gained(cover: f64, gain: f64) -> f64 {
+    if gain == 1.0 { 1.0 } else { (1.0 - (1.0 - cover.min(1.0)).powf(gain)) / cover }
 }
 
 /// Angles between line of sight and drops at which the variance is tabulated.
@@ -71,7 +87,7 @@ impl Streaks {
         let pixel = shot.rays.pixel_angle(shot.height);
         let deviations = std::array::from_fn(|i| {
             let sine = i as f64 / (ANGLES - 1) as f64;
-            cover_variance(classes, pixel, sine * travel, COUNTED_M).sqrt()
+            cover_variance(classes, pixel, (sine * travel, shot.gain), COUNTED_M).sqrt()
         });
         let axis = relative.normalize_or(DVec3::NEG_Z);
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, light, tone, lamps }

@@ -13,6 +13,7 @@
 use glam::DVec3;
 
 use super::Classes;
+pub(super) use crate::weather::smoothstep;
 
 /// Shells of the lattice.
 pub const SHELLS: usize = 4;
@@ -117,12 +118,6 @@ pub struct Drop {
     pub diameter_m: f64,
     /// Share of it that its shell shows at this distance, 0 to 1.
     pub share: f64,
-}
-
-/// 0 at `a`, 1 at `b`, level at both.
-pub(super) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// Share of its drops that `shell` shows at `distance_m`: it takes over from the smaller shell and hands on to the larger.

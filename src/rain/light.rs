@@ -27,6 +27,17 @@ pub fn phase(c: f64) -> f64 {
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
 }
 
+/// The share of what surrounds a drop above the horizon in what it shows along a ray that rises by a sine `z`.
+///
+/// Most of a drop's disc shows what lies near the ray's own direction, upside down: half of the disc turns rays by less than 26
+/// degrees, its rim by 83. So a drop a little above the horizon shows more sky than ground already. Fitted to rays that are refracted and
+/// reflected by Snell's and Fresnel's laws, with which it agrees within 0.01 (`tests/rain/photometry.rs`). As `sky_share` of
+/// `shaders/rain/phase.wgsl`.
+pub fn sky_share(z: f64) -> f64 {
+    let level = 1.0 - z.abs().min(1.0);
+    0.5 + z.signum() * 0.4415 * (1.0 - level * level * level.sqrt())
+}
+
 impl DropLight {
     /// Of a scene: the mean of its sky and of its ground. In steady rain that is within 1 % of the light of the veil, so that no
     /// ring shows where the veil takes over from drops.
@@ -52,7 +63,7 @@ impl DropLight {
 
     /// Radiance of a drop seen along the unit vector `d`, without lamps.
     pub fn radiance(&self, d: DVec3) -> DVec3 {
-        self.below.lerp(self.above, 0.5 + 0.5 * d.z) + self.sun * (phase(d.dot(self.to_sun)) / (4.0 * PI))
+        self.below.lerp(self.above, sky_share(d.z)) + self.sun * (phase(d.dot(self.to_sun)) / (4.0 * PI))
     }
 }
 

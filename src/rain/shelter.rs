@@ -41,9 +41,14 @@ impl Planes {
         Ok(Self { all, count: planes.len() })
     }
 
+    /// Those that there are, as they were given.
+    pub fn as_slice(&self) -> &[[f64; 4]] {
+        &self.all[..self.count]
+    }
+
     /// Normals and distances.
     fn each(&self) -> impl ExactSizeIterator<Item = (DVec3, f64)> + Clone {
-        self.all[..self.count].iter().map(|&[x, y, z, d]| (DVec3::new(x, y, z), d))
+        self.as_slice().iter().map(|&[x, y, z, d]| (DVec3::new(x, y, z), d))
     }
 }
 

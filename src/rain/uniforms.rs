@@ -34,7 +34,7 @@ pub(crate) struct RainUniform {
     pub weight: f32,
     pub y_sign: f32,
     pub shells: u32,
-    pub pad: f32,
+    pub gain: f32,
     pub camera: [f32; 3],
     pub pad2: f32,
     pub cell: [[u32; 4]; SHELLS],
@@ -96,6 +96,8 @@ pub(crate) struct Shot<'a> {
     /// Of the camera.
     pub velocity_m_s: DVec3,
     pub exposure_s: f64,
+    /// Contrast gain of what falls.
+    pub gain: f64,
 }
 
 /// The air that the drops fall in.
@@ -128,7 +130,7 @@ impl RainUniform {
             weight: classes.weight as f32,
             y_sign: shot.y_sign,
             shells: SHELLS as u32,
-            pad: 0.0,
+            gain: shot.gain as f32,
             camera: v(shot.velocity_m_s),
             pad2: 0.0,
             cell: std::array::from_fn(|s| {
@@ -176,6 +178,7 @@ mod tests {
                 weight,
                 y_sign,
                 shells,
+                gain,
                 camera,
                 cell,
                 shell,

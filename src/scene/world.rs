@@ -2,12 +2,20 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::error::{Result, check_range};
+use crate::error::{Error, Result, check_range};
 
 /// Semi-major axis of the WGS 84 ellipsoid, m (NIMA TR8350.2, 2000).
 const WGS84_A: f64 = 6_378_137.0;
 /// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
 const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
+
+/// Lowest and highest altitude of a place, m.
+const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
+/// By so much the altitude of a position may lie outside and count as at the end, m: at 1e9 m coordinates are rounded to a
+/// ten-millionth of a metre, and what is computed of them to some more.
+const ROUNDING_M: f64 = 1e-3;
+/// Farthest position from the world's origin, m.
+const FARTHEST_M: f64 = 1e12;
 
 /// A place on the Earth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +36,7 @@ impl Place {
     pub fn validate(&self) -> Result<()> {
         check_range("latitude_deg", self.latitude_deg, -90.0, 90.0, "deg")?;
         check_range("longitude_deg", self.longitude_deg, -360.0, 360.0, "deg")?;
-        check_range("altitude_m", self.altitude_m, -1e4, 1e9, "m")
+        check_range("altitude_m", self.altitude_m, ALTITUDES_M[0], ALTITUDES_M[1], "m")
     }
 
     /// Earth-centred coordinates on WGS 84, m.
@@ -129,7 +137,27 @@ impl WorldFrame {
         check_range("grid_bearing_deg", self.grid_bearing_deg, -360.0, 360.0, "deg")
     }
 
-    /// Up, north, altitude and place at `position` of the host's world.
+    /// Up, north, altitude and place at a position of the host's world that the host names `name`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] by that name if the position is not finite, farther than 1e12 m from the world's origin, or
+    /// not at an altitude in \[-1e4, 1e9\] m.
+    pub fn place_at(&self, name: &str, position: DVec3) -> Result<LocalFrame> {
+        if !(position.is_finite() && position.length() <= FARTHEST_M) {
+            return Err(Error::range(name, "finite and within 1e12 m of the world's origin", position));
+        }
+        let mut local = self.frame_at(position);
+        let [lowest, highest] = ALTITUDES_M;
+        let altitude = local.place.altitude_m;
+        if !(lowest - ROUNDING_M..=highest + ROUNDING_M).contains(&altitude) {
+            let accepted = format!("at an altitude in [{lowest}, {highest}] m above the sea");
+            return Err(Error::range(name, &accepted, format!("{altitude} m at {position}")));
+        }
+        local.place.altitude_m = altitude.clamp(lowest, highest);
+        Ok(local)
+    }
+
+    /// Up, north, altitude and place at `position` of the host's world, whatever it is.
     pub fn frame_at(&self, position: DVec3) -> LocalFrame {
         match self.kind {
             WorldKind::Flat => {

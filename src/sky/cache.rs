@@ -1,9 +1,11 @@
 //! Finished tables on disk, under a hash of the planet, the settings and the shaders that made them.
 //!
-//! Off unless the host names a directory. A file that is short, damaged, of another version or of another key is passed
-//! over and the tables are built anew; nothing is ever read half.
+//! Off unless the host names a directory. A file that is of another length, damaged, of another version or of another key, that holds
+//! a number that is none, or that is no file but a link or a pipe, is passed over and the tables are built anew; nothing is ever
+//! read half.
 
 use std::fs;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use bytemuck::{bytes_of, cast_slice};
@@ -47,12 +49,30 @@ pub(crate) fn path(directory: &Path, key: u64) -> PathBuf {
     directory.join(format!("sky-{key:016x}.tables"))
 }
 
+/// Whether all texels, half floats, are finite.
+fn are_finite(table: &[u8]) -> bool {
+    const ENDLESS: u16 = 0x7c00;
+    table.as_chunks::<2>().0.iter().all(|half| u16::from_ne_bytes(*half) & ENDLESS != ENDLESS)
+}
+
+/// Bytes of a file of tables.
+fn file_size(settings: &SkySettings) -> u64 {
+    let table = |name: &Name| {
+        let (width, height) = name.result_size(settings);
+        8 + u64::from(width) * u64::from(height) * 8
+    };
+    Name::RESULTS.iter().map(table).sum::<u64>() + (MAGIC.len() + 8 + 8) as u64
+}
+
 /// Writes tables (in the order of [`Name::RESULTS`]) so that a reader sees the old file or the whole new one.
 ///
 /// # Errors
-/// [`Status::Io`] naming the file.
+/// [`Status::Io`] naming the file, or for tables that no reader would take.
 pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<PathBuf> {
     let target = path(directory, key);
+    if !tables.iter().all(|table| are_finite(table)) {
+        return Err(Error::new(Status::Io, format!("{}: the tables hold what is no number", target.display())));
+    }
     let mut file = MAGIC.to_vec();
     file.extend(key.to_le_bytes());
     for table in tables {
@@ -64,7 +84,10 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
     let part = directory.join(format!("sky-{key:016x}.{}.part", std::process::id()));
     let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", target.display()));
     fs::create_dir_all(directory).map_err(failed)?;
-    let written = fs::write(&part, &file).and_then(|()| fs::rename(&part, &target));
+    // What lies there under this name is left over, or leads elsewhere: it is never written into.
+    let _ = fs::remove_file(&part);
+    let made = fs::File::options().write(true).create_new(true).open(&part);
+    let written = made.and_then(|mut to| to.write_all(&file)).and_then(|()| fs::rename(&part, &target));
     if written.is_err() {
         let _ = fs::remove_file(&part);
     }
@@ -83,8 +106,9 @@ fn forget_oldest(directory: &Path) -> std::io::Result<()> {
         let entry = entry?;
         let name = entry.file_name();
         let is_ours = name.to_str().is_some_and(|n| n.starts_with("sky-") && n.ends_with(".tables"));
-        if is_ours {
-            files.push((entry.metadata()?.modified()?, entry.path()));
+        let about = entry.metadata()?;
+        if is_ours && !about.is_dir() {
+            files.push((about.modified()?, entry.path()));
         }
     }
     files.sort();
@@ -95,16 +119,29 @@ fn forget_oldest(directory: &Path) -> std::io::Result<()> {
 /// Reads tables of a key; `None` if there is no file.
 ///
 /// # Errors
-/// [`Status::Io`] naming the file, if it cannot be read or is not whole.
+/// [`Status::Io`] naming the file, if it cannot be read, is none, or is not whole.
 pub(crate) fn read(directory: &Path, key: u64, settings: &SkySettings) -> Result<Option<Vec<Vec<u8>>>> {
     let path = path(directory, key);
-    match fs::read(&path) {
-        Ok(file) => match parse(&file, key, settings) {
-            Some(tables) => Ok(Some(tables)),
-            None => Err(Error::new(Status::Io, format!("{} is damaged", path.display()))),
-        },
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(Error::new(Status::Io, format!("{}: {e}", path.display()))),
+    let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", path.display()));
+    let unfit = |what: &str| Error::new(Status::Io, format!("{} {what}", path.display()));
+    // Asked before it is opened: a pipe never ends, and a link leads anywhere.
+    let about = match fs::symlink_metadata(&path) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        about => about.map_err(failed)?,
+    };
+    if !about.is_file() {
+        return Err(unfit("is a link or no file"));
+    }
+    let size = file_size(settings);
+    if about.len() != size {
+        return Err(unfit(&format!("is damaged: {} bytes in place of {size}", about.len())));
+    }
+    let mut file = Vec::with_capacity(size as usize + 1);
+    fs::File::open(&path).and_then(|from| from.take(size + 1).read_to_end(&mut file)).map_err(failed)?;
+    match parse(&file, key, settings) {
+        Some(tables) if tables.iter().all(|table| are_finite(table)) => Ok(Some(tables)),
+        Some(_) => Err(unfit("is damaged: it holds what is no number")),
+        None => Err(unfit("is damaged")),
     }
 }
 
@@ -158,6 +195,61 @@ mod tests {
         assert!(read(&directory, key, &settings).is_err());
         fs::write(&file, b"").unwrap();
         assert!(read(&directory, key, &settings).is_err());
+        fs::remove_dir_all(&directory).unwrap();
+    }
+
+    #[test]
+    fn foreign_huge_and_endless_files_links_and_texels_that_are_no_numbers_are_refused() {
+        let directory = std::env::temp_dir().join(format!("welkin-sky-cache-odd-{}", std::process::id()));
+        let settings = SkySettings::default();
+        let size = |n: &Name| (n.result_size(&settings).0 * n.result_size(&settings).1 * 8) as usize;
+        let tables: Vec<Vec<u8>> = Name::RESULTS.iter().map(|n| vec![0x11; size(n)]).collect();
+        let refused = |key: u64, why: &str| {
+            let e = read(&directory, key, &settings).unwrap_err();
+            assert!(e.status == Status::Io && e.message.contains(why), "{why}: {}", e.message);
+        };
+        let file = write(&directory, 1, &tables).unwrap();
+        assert!(read(&directory, 1, &settings).unwrap().is_some());
+        // Another key's file under this name.
+        fs::copy(&file, path(&directory, 2)).unwrap();
+        refused(2, "damaged");
+        // NaN and infinity, under a checksum that fits.
+        for (bits, at) in [(0x7e00_u16, 0), (0x7c00, 5000), (0xfc00, 77), (0xffff, 1)] {
+            let mut odd = tables.clone();
+            odd[1][2 * at..2 * at + 2].copy_from_slice(&bits.to_ne_bytes());
+            assert!(write(&directory, 3, &odd).unwrap_err().message.contains("no number"));
+            let mut whole = fs::read(&file).unwrap();
+            let second = MAGIC.len() + 8 + 8 + tables[0].len() + 8 + 2 * at;
+            whole[second..second + 2].copy_from_slice(&bits.to_ne_bytes());
+            let end = whole.len() - 8;
+            let sum = fnv(SEED, &whole[..end]);
+            whole[end..].copy_from_slice(&sum.to_le_bytes());
+            fs::write(&file, &whole).unwrap();
+            refused(1, "no number");
+            write(&directory, 1, &tables).unwrap();
+        }
+        // A file of a terabyte, which is not read into memory, and a directory.
+        let huge = fs::File::create(path(&directory, 4)).unwrap();
+        huge.set_len(1 << 40).unwrap();
+        refused(4, "in place of");
+        fs::create_dir(path(&directory, 5)).unwrap();
+        refused(5, "no file");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::symlink;
+            symlink(&file, path(&directory, 6)).unwrap();
+            refused(6, "link");
+            symlink("/dev/zero", path(&directory, 7)).unwrap();
+            refused(7, "link");
+            // What a link leads to is not written into.
+            let precious = directory.join("precious");
+            fs::write(&precious, b"the user's own").unwrap();
+            symlink(&precious, path(&directory, 8)).unwrap();
+            symlink(&precious, directory.join(format!("sky-{:016x}.{}.part", 8, std::process::id()))).unwrap();
+            write(&directory, 8, &tables).unwrap();
+            assert!(read(&directory, 8, &settings).unwrap().is_some());
+            assert_eq!(fs::read(&precious).unwrap(), b"the user's own");
+        }
         fs::remove_dir_all(&directory).unwrap();
     }
 

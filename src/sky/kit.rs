@@ -10,10 +10,11 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use super::Planet;
 use super::cache;
+use super::level::{Detail, Level, STRIP_SHARE, Strip, strips};
 use super::passes::{Builder, FadePasses, PartPass, Table};
-use super::recipe::{Name, Pass, passes};
+use super::recipe::{Name, passes};
 use super::set::TableSet;
-use super::settings::SkySettings;
+use super::settings::{SkyModel, SkySettings};
 use super::volume::{ObserverLayouts, ObserverPasses};
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
@@ -39,19 +40,14 @@ impl SkyLibrary {
     }
 }
 
-/// A part of a pass: rows of its target.
-#[derive(Clone, Copy, Debug)]
-struct Strip {
-    pass: usize,
-    first_row: u32,
-    rows: u32,
-    cost: f64,
-}
-
-/// A pass is cut into strips of at most this share of a whole build.
-const STRIP_SHARE: f64 = 1.0 / 48.0;
 /// Share of a whole build in one submission: none may keep a GPU from the host's own work for long.
 const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
+
+/// Builds of less than so much work, in cells of a march, need no draft: 0.2 s on the software driver.
+const DRAFT_FROM: f64 = 4e6;
+/// A build may be so much faster and slower, in shares of its work, than one of the default settings: what a frame pays
+/// is the same but for very large tables.
+const PACE: (f64, f64) = (0.5, 5.0);
 
 /// Tables that only a build under way needs.
 struct Scratch(Vec<(Name, Table)>);
@@ -65,6 +61,11 @@ impl Ticket {
     /// The planet that is built.
     pub fn planet(&self) -> &Planet {
         &self.set.planet
+    }
+
+    /// How finely.
+    pub fn detail(&self) -> Detail {
+        self.set.detail
     }
 }
 
@@ -90,7 +91,7 @@ struct Build {
 struct Work {
     builds: Vec<Build>,
     finished: Vec<Weak<TableSet>>,
-    spare: Option<Scratch>,
+    spare: [Option<Scratch>; 2],
     count: u64,
 }
 
@@ -99,7 +100,7 @@ fn drawn<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a 
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
-/// What one step of a build came to, as shares of a whole one.
+/// What one step of a build came to: its work as a share of a whole build, and the share of this one that is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub work: f64,
@@ -116,11 +117,9 @@ pub(crate) struct Kit {
     /// Stands for tables that a model does not have.
     pub nothing: Table,
     observers: OnceLock<ObserverPasses>,
-    passes: Vec<Pass>,
-    /// Of one triple.
-    strips: Vec<Strip>,
-    /// Of all triples.
-    total_cost: f64,
+    whole: Level,
+    /// Where it saves anything.
+    draft: Option<Level>,
     /// Where there are several triples.
     parts: Option<PartPass>,
     work: Mutex<Work>,
@@ -128,25 +127,46 @@ pub(crate) struct Kit {
 
 impl Kit {
     fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
-        let passes = passes(settings);
-        let (strips, cost) = strips(settings, &passes);
+        let whole = Level::new(device, settings, None);
+        let draft = settings.draft();
+        // Where pixels march through the tables, they read them at the settings' sizes.
+        let drafts = whole.total_cost >= DRAFT_FROM && settings.model != SkyModel::BruteForce;
+        let strip_cost = STRIP_SHARE * whole.total_cost / f64::from(settings.layers());
         let parts = if settings.layers() > 1 { Some(PartPass::new(device)?) } else { None };
         let kit = Self {
             device: device.clone(),
             settings: *settings,
-            builder: Builder::new(device, settings, &passes)?,
-            fades: FadePasses::new(device)?,
+            builder: Builder::new(device, settings, &whole.passes)?,
+            fades: FadePasses::new(device, settings)?,
             observer_layouts: ObserverLayouts::new(device),
             nothing: Table::new(device, "sky nothing", (1, 1)),
             observers: OnceLock::new(),
-            passes,
-            strips,
-            total_cost: cost * f64::from(settings.layers()),
+            draft: drafts.then(|| Level::new(device, &draft, Some(strip_cost))),
+            whole,
             parts,
             work: Mutex::default(),
         };
         device.check()?;
         Ok(kit)
+    }
+
+    /// How tables of this detail are built.
+    pub fn level(&self, detail: Detail) -> &Level {
+        match detail {
+            Detail::Draft => self.draft.as_ref().unwrap_or(&self.whole),
+            Detail::Whole => &self.whole,
+        }
+    }
+
+    /// Work of a whole build with the default settings over that of one here.
+    pub fn pace(&self) -> f64 {
+        let default = SkySettings::default();
+        (strips(&default, &passes(&default), None).1 / self.whole.total_cost).clamp(PACE.0, PACE.1)
+    }
+
+    /// Whether drafts are worth building.
+    pub fn drafts(&self) -> bool {
+        self.draft.is_some()
     }
 
     fn lock(&self) -> MutexGuard<'_, Work> {
@@ -167,24 +187,28 @@ impl Kit {
         self.lock().count
     }
 
-    /// Finished tables of a checked planet, or a claim on its build, which may be another's.
+    /// Finished tables of a checked planet, or a claim on its build, which may be another's. Whole tables that are finished
+    /// stand for a draft.
     ///
     /// # Errors
     /// GPU faults.
-    pub fn claim(&self, planet: &Planet) -> Result<Claim> {
+    pub fn claim(&self, planet: &Planet, detail: Detail) -> Result<Claim> {
+        let detail = if self.drafts() { detail } else { Detail::Whole };
         let mut work = self.lock();
         self.sweep(&mut work);
-        let finished = work.finished.iter().filter_map(Weak::upgrade).find(|s| s.planet == *planet);
-        if let Some(set) = finished {
+        let finished =
+            |d| work.finished.iter().filter_map(Weak::upgrade).find(|s| s.planet == *planet && s.detail == d);
+        if let Some(set) = finished(Detail::Whole).or_else(|| finished(detail)) {
             return Ok(Claim::Finished(set));
         }
-        let known = work.builds.iter().find(|b| b.set.planet == *planet).and_then(|b| b.ticket.upgrade());
+        let is_it = |b: &&Build| b.set.planet == *planet && b.set.detail == detail;
+        let known = work.builds.iter().find(is_it).and_then(|b| b.ticket.upgrade());
         if let Some(ticket) = known {
             return Ok(Claim::Building(ticket));
         }
-        let set = Arc::new(TableSet::new(self, planet)?);
+        let set = Arc::new(TableSet::new(self, planet, detail)?);
         let ticket = Arc::new(Ticket { set: set.clone() });
-        let scratch = work.spare.take().unwrap_or_else(|| self.scratch());
+        let scratch = work.spare[detail as usize].take().unwrap_or_else(|| self.scratch(detail));
         let build = self.build_of(Arc::downgrade(&ticket), set, scratch);
         work.builds.push(build);
         Ok(Claim::Building(ticket))
@@ -193,38 +217,28 @@ impl Kit {
     /// Takes back the scratch of builds that nobody wants any more.
     fn sweep(&self, work: &mut Work) {
         while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
-            work.spare = Some(work.builds.swap_remove(i).scratch);
+            let build = work.builds.swap_remove(i);
+            work.spare[build.set.detail as usize] = Some(build.scratch);
         }
     }
 
-    fn scratch(&self) -> Scratch {
-        let make = |n: &Name| (*n, Table::new(&self.device, &format!("sky {n:?}"), n.size(&self.settings)));
+    fn scratch(&self, detail: Detail) -> Scratch {
+        let settings = &self.level(detail).settings;
+        let make = |n: &Name| (*n, Table::new(&self.device, &format!("sky {n:?}"), n.size(settings)));
         let of_a_triple = if self.parts.is_some() { &Name::OF_A_TRIPLE[..] } else { &[] };
         Scratch(Name::SCRATCH.iter().chain(of_a_triple).map(make).collect())
     }
 
     fn build_of(&self, ticket: Weak<Ticket>, set: Arc<TableSet>, scratch: Scratch) -> Build {
         let view = |name: Name| drawn(&set, &scratch, name).map_or(&self.nothing.view, |t| &t.view);
-        let reads = self.passes.iter().map(|p| self.builder.tables_group(&self.device, p.reads.map(view))).collect();
+        let level = self.level(set.detail);
+        let reads = level.passes.iter().map(|p| self.builder.tables_group(&self.device, p.reads.map(view))).collect();
         let triple = |air: &wgpu::Buffer| {
             let added = self.parts.as_ref().map(|p| p.group(&self.device, view(Name::Lights), air));
-            (self.builder.shared_group(&self.device, air), added)
+            (self.builder.shared_group(&self.device, &level.blocks, air), added)
         };
         let triples = set.airs.iter().map(triple).collect();
         Build { ticket, set, scratch, triples, reads, next: 0 }
-    }
-
-    /// Strips of all triples.
-    fn strip_count(&self) -> usize {
-        self.strips.len() * self.settings.layers() as usize
-    }
-
-    /// Cost of the first `count` of them, as a share of all.
-    fn share_of(&self, count: usize) -> f64 {
-        let (whole, rest) = (count / self.strips.len(), count % self.strips.len());
-        let triple = self.total_cost / f64::from(self.settings.layers());
-        let cost = whole as f64 * triple + self.strips[..rest].iter().map(|s| s.cost).sum::<f64>();
-        cost / self.total_cost
     }
 
     /// Submits strips up to `share` of a whole build; the tables when the last one is submitted.
@@ -235,10 +249,11 @@ impl Kit {
             // Another who wanted it has finished it.
             return Ok((Step { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
         };
+        let level = self.level(ticket.set.detail);
         let first = work.builds[i].next;
-        let mut rest = share * self.total_cost * (1.0 + 1e-6);
-        while rest > 0.0 && work.builds[i].next < self.strip_count() {
-            let part = rest.min(SUBMISSION_SHARE * self.total_cost);
+        let mut rest = share * self.whole.total_cost * (1.0 + 1e-6);
+        while rest > 0.0 && work.builds[i].next < level.strip_count() {
+            let part = rest.min(SUBMISSION_SHARE * self.whole.total_cost);
             let at_least_one = work.builds[i].next == first;
             let cost = self.submit_some(&mut work.builds[i], part, at_least_one)?;
             if cost == 0.0 {
@@ -247,24 +262,33 @@ impl Kit {
             rest -= cost;
         }
         let next = work.builds[i].next;
-        let done = self.share_of(next);
-        let step = Step { work: done - self.share_of(first), done };
-        if next < self.strip_count() {
+        let (before, now) = (level.cost_of(first), level.cost_of(next));
+        let step = Step { work: (now - before) / self.whole.total_cost, done: now / level.total_cost };
+        if next < level.strip_count() {
             return Ok((step, None));
         }
         let build = work.builds.swap_remove(i);
-        work.spare = Some(build.scratch);
-        work.count += 1;
+        work.spare[build.set.detail as usize] = Some(build.scratch);
+        work.count += u64::from(build.set.detail == Detail::Whole);
         work.finished.retain(|s| s.strong_count() > 0);
         work.finished.push(Arc::downgrade(&build.set));
         Ok((Step { done: 1.0, ..step }, Some(build.set)))
     }
 
+    /// Share of a build that is done.
+    pub fn done(&self, ticket: &Ticket) -> f64 {
+        let level = self.level(ticket.detail());
+        let work = self.lock();
+        let build = work.builds.iter().find(|b| Arc::ptr_eq(&b.set, &ticket.set));
+        build.map_or(1.0, |b| level.cost_of(b.next) / level.total_cost)
+    }
+
     /// Submits strips worth at most `budget`, or the next one if `at_least_one` is asked; answers their cost.
     fn submit_some(&self, build: &mut Build, budget: f64, at_least_one: bool) -> Result<f64> {
+        let level = self.level(build.set.detail);
         let (mut cost, mut end) = (0.0, build.next);
-        while end < self.strip_count() {
-            let strip = &self.strips[end % self.strips.len()];
+        while end < level.strip_count() {
+            let strip = &level.strips[end % level.strips.len()];
             if cost + strip.cost > budget && !(at_least_one && end == build.next) {
                 break;
             }
@@ -283,12 +307,13 @@ impl Kit {
 
     /// Records strips up to `end`, those of one pass in one render pass; a triple that is done joins the others.
     fn record(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, end: usize) {
-        let count = self.strips.len();
+        let level = self.level(build.set.detail);
+        let count = level.strips.len();
         let mut next = build.next;
         while next < end {
             let triple = next / count;
             let last = end.min((triple + 1) * count);
-            self.record_strips(encoder, build, triple, &self.strips[next % count..=(last - 1) % count]);
+            self.record_strips(encoder, build, triple, &level.strips[next % count..=(last - 1) % count]);
             if last.is_multiple_of(count) {
                 self.record_part(encoder, build, triple);
             }
@@ -297,9 +322,10 @@ impl Kit {
     }
 
     fn record_strips(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize, strips: &[Strip]) {
+        let level = self.level(build.set.detail);
         for strips in strips.chunk_by(|a, b| a.pass == b.pass) {
             let index = strips[0].pass;
-            let pass = &self.passes[index];
+            let pass = &level.passes[index];
             let Some(pipeline) = self.builder.pipeline(pass.kind) else { continue };
             let view = |name: &Name| {
                 drawn(&build.set, &build.scratch, *name).map(|t| wgpu::RenderPassColorAttachment {
@@ -316,10 +342,10 @@ impl Kit {
                 ..Default::default()
             });
             recorded.set_pipeline(pipeline);
-            recorded.set_bind_group(0, &build.triples[triple].0, &[self.builder.job_offset(index)]);
+            recorded.set_bind_group(0, &build.triples[triple].0, &[level.blocks.job_offset(index)]);
             recorded.set_bind_group(1, &build.reads[index], &[]);
             let rows: u32 = strips.iter().map(|s| s.rows).sum();
-            recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&self.settings).0, rows);
+            recorded.set_scissor_rect(0, strips[0].first_row, pass.draws[0].size(&level.settings).0, rows);
             recorded.draw(0..3, 0..1);
         }
     }
@@ -389,12 +415,24 @@ impl Kit {
     /// # Errors
     /// As [`Kit::claim`].
     pub fn claim_or_load(&self, planet: &Planet, cache: Option<&Path>) -> Result<Claim> {
-        Ok(match (self.claim(planet)?, cache) {
+        Ok(match (self.claim(planet, Detail::Whole)?, cache) {
             (Claim::Building(ticket), Some(directory)) => {
                 self.load(planet, directory)?.map_or(Claim::Building(ticket), Claim::Finished)
             }
             (claim, _) => claim,
         })
+    }
+
+    /// Whole tables that are finished, or lie in the cache's file.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn finished_or_kept(&self, planet: &Planet, cache: &Path) -> Result<Option<Arc<TableSet>>> {
+        let finished = self.lock().finished.iter().filter_map(Weak::upgrade).find(|s| s.planet == *planet);
+        match finished.filter(|s| s.detail == Detail::Whole) {
+            Some(set) => Ok(Some(set)),
+            None => self.load(planet, cache),
+        }
     }
 
     /// Tables from the cache's file; what is wrong with it is logged.
@@ -405,7 +443,7 @@ impl Kit {
         let read = cache::key(planet, &self.settings).and_then(|key| cache::read(directory, key, &self.settings));
         match read {
             Ok(Some(tables)) => {
-                let set = Arc::new(TableSet::new(self, planet)?);
+                let set = Arc::new(TableSet::new(self, planet, Detail::Whole)?);
                 set.fill(&self.device, &tables);
                 self.lock().finished.push(Arc::downgrade(&set));
                 Ok(Some(set))
@@ -431,43 +469,6 @@ impl Kit {
             .and_then(|tables| cache::write(directory, cache::key(&set.planet, &self.settings)?, &tables));
         if let Err(e) = written {
             log::warn!("the sky's tables are not kept: {}", e.message);
-        }
-    }
-}
-
-/// Cuts the passes into strips; also the cost of all.
-fn strips(settings: &SkySettings, passes: &[Pass]) -> (Vec<Strip>, f64) {
-    let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_cost(settings);
-    let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();
-    let mut out = Vec::new();
-    for (pass, p) in passes.iter().enumerate() {
-        let height = p.draws[0].size(settings).1;
-        let each = ((STRIP_SHARE * total / row_cost(p)) as u32).clamp(1, height);
-        for first_row in (0..height).step_by(each as usize) {
-            let rows = each.min(height - first_row);
-            out.push(Strip { pass, first_row, rows, cost: row_cost(p) * f64::from(rows) });
-        }
-    }
-    (out, total)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::settings::SkyModel;
-    use super::*;
-
-    #[test]
-    fn strips_cover_every_pass_and_are_small() {
-        for (_, model) in SkyModel::NAMES {
-            let s = SkySettings::with_model(model);
-            let list = passes(&s);
-            let (strips, total) = strips(&s, &list);
-            assert!(strips.iter().all(|x| x.cost <= total / 32.0), "{model:?}");
-            assert!((strips.iter().map(|x| x.cost).sum::<f64>() / total - 1.0).abs() < 1e-9);
-            for (i, p) in list.iter().enumerate() {
-                let rows: u32 = strips.iter().filter(|x| x.pass == i).map(|x| x.rows).sum();
-                assert_eq!(rows, p.draws[0].size(&s).1);
-            }
         }
     }
 }

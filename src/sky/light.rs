@@ -37,6 +37,25 @@ impl LightTable {
         Ok(Self { air, suns: width / LIGHT_TILES as usize, altitudes: height, values })
     }
 
+    /// The same light in a table of other sizes.
+    pub(crate) fn resized(self, suns: usize, altitudes: usize) -> Self {
+        if (self.suns, self.altitudes) == (suns, altitudes) {
+            return self;
+        }
+        let place = |i: usize, n: usize, of: usize| {
+            let x = (i * (of - 1)) as f32 / (n - 1) as f32;
+            let first = (x as usize).min(of - 2);
+            (first, x - first as f32)
+        };
+        let tiles = LIGHT_TILES as usize;
+        let mut values = Vec::with_capacity(suns * tiles * altitudes);
+        for (row, k) in (0..altitudes).flat_map(|j| (0..tiles * suns).map(move |k| (j, k))) {
+            let (x, y) = (place(k % suns, suns, self.suns), place(row, altitudes, self.altitudes));
+            values.push(self.between(k / suns, x, y));
+        }
+        Self { suns, altitudes, values, ..self }
+    }
+
     /// Between this and another of the same sizes.
     pub(crate) fn mix(&self, other: &Self, t: f32) -> Self {
         let between = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|c| a[c] + (b[c] - a[c]) * t);
@@ -69,7 +88,11 @@ impl LightTable {
         let share = (altitude_m as f32 / self.air.thickness_m).clamp(0.0, 1.0);
         let y = share.sqrt() * (self.altitudes - 1) as f32;
         let (i, j) = ((x as usize).min(self.suns - 2), (y as usize).min(self.altitudes - 2));
-        let (fx, fy) = (x - i as f32, y - j as f32);
+        self.between(tile, (i, x - i as f32), (j, y - j as f32))
+    }
+
+    /// Between four values of a tile, each way from the first by a share of the step.
+    fn between(&self, tile: usize, (i, fx): (usize, f32), (j, fy): (usize, f32)) -> [f32; 3] {
         let at = |i: usize, j: usize| self.values[(j * LIGHT_TILES as usize + tile) * self.suns + i];
         let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
         std::array::from_fn(|k| (a[k] * (1.0 - fx) + b[k] * fx) * (1.0 - fy) + (c[k] * (1.0 - fx) + d[k] * fx) * fy)

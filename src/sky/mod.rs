@@ -12,7 +12,7 @@
 //! tables and the work of building them.
 //!
 //! ```text
-//! tables.update(&mut encoder, &planet, 1.0 / 16.0)?;          // follows a changing air by parts
+//! tables.update(&mut encoder, &planet, 1.0 / 80.0)?;          // a draft at once, whole tables by parts
 //! volume.prepare(&mut encoder, &tables, &observer)?;          // draws only if altitude, sun or air changed
 //! // pipelines: layouts [own, volume.layout()], constants tables.pipeline_constants()
 //! pass.set_bind_group(1, volume.bind_group(), &[]);
@@ -53,6 +53,7 @@ pub mod candidates;
 pub mod celestial;
 pub(crate) mod ephemeris;
 mod kit;
+mod level;
 pub mod light;
 pub mod moon;
 pub mod observer;

@@ -131,11 +131,38 @@ pub(crate) struct Builder {
     shared_layout: wgpu::BindGroupLayout,
     tables_layout: wgpu::BindGroupLayout,
     pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
+    pub sampler: wgpu::Sampler,
+}
+
+/// What the builds of one detail share: sizes, directions to sum over, and what each pass is to do.
+pub(crate) struct Blocks {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
     jobs: wgpu::Buffer,
     job_stride: u32,
-    pub sampler: wgpu::Sampler,
+}
+
+impl Blocks {
+    pub fn new(device: &Device, settings: &SkySettings, passes: &[Pass]) -> Self {
+        let job_stride = device.device.limits().min_uniform_buffer_offset_alignment.max(16);
+        let mut jobs = vec![0; job_stride as usize * passes.len()];
+        for (i, pass) in passes.iter().enumerate() {
+            let job = JobUniform { order: pass.order, last: pass.last.into(), unused: [0; 2] };
+            let at = job_stride as usize * i;
+            jobs[at..at + 16].copy_from_slice(bytes_of(&job));
+        }
+        Self {
+            dims: uniform_buffer(device, "sky dims", bytes_of(&DimsUniform::of(settings))),
+            rule: uniform_buffer(device, "sky rule", bytemuck::cast_slice(&rule(settings))),
+            jobs: uniform_buffer(device, "sky jobs", &jobs),
+            job_stride,
+        }
+    }
+
+    /// Offset of pass `index` among the jobs.
+    pub fn job_offset(&self, index: usize) -> u32 {
+        self.job_stride * index as u32
+    }
 }
 
 impl Builder {
@@ -150,23 +177,7 @@ impl Builder {
                 pipelines.push((pass.kind, pipeline(device, settings, pass, &layouts)?));
             }
         }
-        let job_stride = device.device.limits().min_uniform_buffer_offset_alignment.max(16);
-        let mut jobs = vec![0; job_stride as usize * passes.len()];
-        for (i, pass) in passes.iter().enumerate() {
-            let job = JobUniform { order: pass.order, last: pass.last.into(), unused: [0; 2] };
-            let at = job_stride as usize * i;
-            jobs[at..at + 16].copy_from_slice(bytes_of(&job));
-        }
-        Ok(Self {
-            pipelines,
-            dims: uniform_buffer(device, "sky dims", bytes_of(&DimsUniform::of(settings))),
-            rule: uniform_buffer(device, "sky rule", bytemuck::cast_slice(&rule(settings))),
-            jobs: uniform_buffer(device, "sky jobs", &jobs),
-            job_stride,
-            sampler: linear_sampler(device),
-            shared_layout,
-            tables_layout,
-        })
+        Ok(Self { pipelines, sampler: linear_sampler(device), shared_layout, tables_layout })
     }
 
     /// The pipeline of a kind that is among the passes given to `new`.
@@ -174,18 +185,13 @@ impl Builder {
         self.pipelines.iter().find(|(k, _)| *k == kind).map(|(_, p)| p)
     }
 
-    /// Offset of pass `index` among the jobs.
-    pub fn job_offset(&self, index: usize) -> u32 {
-        self.job_stride * index as u32
-    }
-
     /// Uniforms and sampler of a build, for an air.
-    pub fn shared_group(&self, device: &Device, air: &wgpu::Buffer) -> wgpu::BindGroup {
-        let job = wgpu::BufferBinding { buffer: &self.jobs, offset: 0, size: wgpu::BufferSize::new(16) };
+    pub fn shared_group(&self, device: &Device, blocks: &Blocks, air: &wgpu::Buffer) -> wgpu::BindGroup {
+        let job = wgpu::BufferBinding { buffer: &blocks.jobs, offset: 0, size: wgpu::BufferSize::new(16) };
         let resources = [
             air.as_entire_binding(),
-            self.dims.as_entire_binding(),
-            self.rule.as_entire_binding(),
+            blocks.dims.as_entire_binding(),
+            blocks.rule.as_entire_binding(),
             wgpu::BindingResource::Sampler(&self.sampler),
             wgpu::BindingResource::Buffer(job),
         ];
@@ -208,30 +214,37 @@ pub(crate) fn fade_blend() -> wgpu::BlendState {
     wgpu::BlendState { color: over, alpha: over }
 }
 
-/// Shows a table out of two, faded.
+/// Shows tables out of two, faded.
 pub(crate) struct FadePasses {
     layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
+    /// Of light, from tables of any size.
+    light: wgpu::RenderPipeline,
+    /// Texel by texel.
+    texels: wgpu::RenderPipeline,
 }
 
 impl FadePasses {
-    pub fn new(device: &Device) -> Result<Self> {
+    pub fn new(device: &Device, settings: &SkySettings) -> Result<Self> {
         let layout = layout(device, "sky fade", &[Slot::Table]);
         let target = wgpu::ColorTargetState {
             format: TABLE_FORMAT,
             blend: Some(fade_blend()),
             write_mask: wgpu::ColorWrites::ALL,
         };
-        let desc = FullscreenDesc {
-            shader: "sky/copy.wgsl",
-            entry: "copy",
-            layouts: &[&layout],
-            targets: &[target],
-            constants: &[],
-            samples: 1,
+        let sizes = [("SUNS", f64::from(settings.suns)), ("ALTITUDES", f64::from(settings.altitudes))];
+        let make = |entry, constants| {
+            let desc = FullscreenDesc {
+                shader: "sky/copy.wgsl",
+                entry,
+                layouts: &[&layout],
+                targets: std::slice::from_ref(&target),
+                constants,
+                samples: 1,
+            };
+            fullscreen(device, &desc)
         };
-        let pipeline = fullscreen(device, &desc)?;
-        Ok(Self { layout, pipeline })
+        let (light, texels) = (make("light", &sizes)?, make("copy", &[])?);
+        Ok(Self { layout, light, texels })
     }
 
     /// How a table is read.
@@ -239,35 +252,52 @@ impl FadePasses {
         bind(device, &self.layout, &[tex(table)])
     }
 
-    /// Draws table `first` into `target`, and a share of the other over it.
-    pub fn show(
+    /// Draws the light `first` into `target`, and a share of the other over it.
+    pub fn show_light(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         first: &wgpu::BindGroup,
         other: Option<(&wgpu::BindGroup, f32)>,
     ) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("sky fade"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        let mut over = |group, share: f32| {
-            let t = f64::from(share.clamp(0.0, 1.0));
-            pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
-            pass.set_bind_group(0, group, &[]);
-            pass.draw(0..3, 0..1);
-        };
-        over(first, 1.0);
-        if let Some((group, share)) = other {
-            over(group, share);
-        }
+        draw_over(encoder, &self.light, target, [Some((first, 1.0)), other]);
+    }
+
+    /// Draws into `target` what lies between two tables of its size.
+    pub fn between(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        [first, other]: [&wgpu::BindGroup; 2],
+        share: f32,
+    ) {
+        draw_over(encoder, &self.texels, target, [Some((first, 1.0)), Some((other, share))]);
+    }
+}
+
+/// Draws shares of tables over a target.
+fn draw_over(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::RenderPipeline,
+    view: &wgpu::TextureView,
+    tables: [Option<(&wgpu::BindGroup, f32)>; 2],
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("sky fade"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    for (group, share) in tables.into_iter().flatten() {
+        let t = f64::from(share.clamp(0.0, 1.0));
+        pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
     }
 }
 

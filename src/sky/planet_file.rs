@@ -4,13 +4,13 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::planet::{FIELDS, Field, Planet, file_error};
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result, Status, shown};
 
 /// Parses and checks a whole planet file.
 pub(super) fn parse(text: &str) -> Result<Planet> {
     let root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or(0, |s| s.start);
-        file_error(text, at, Status::Parse, &format!("not TOML: {}", e.message()))
+        file_error(text, at, Status::Parse, &format!("not TOML: {}", shown(e.message())))
     })?;
     refuse_unknown(text, root.get_ref(), "")?;
     let mut planet = Planet::earth();
@@ -29,14 +29,14 @@ fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> 
         match (is_section, value.get_ref()) {
             (true, DeValue::Table(inner)) => refuse_unknown(text, inner, name)?,
             (true, _) => {
-                let message = format!("`{name}` must be a section, [{name}]");
+                let message = format!("`{0}` must be a section, [{0}]", shown(name));
                 return Err(file_error(text, value.span().start, Status::Parse, &message));
             }
             (false, _) if FIELDS.iter().any(|f| f.section == section && f.key == name) => {}
             (false, _) => {
                 let place = if section.is_empty() { "at the top".to_owned() } else { format!("in [{section}]") };
                 let known: Vec<&str> = FIELDS.iter().filter(|f| f.section == section).map(|f| f.key).collect();
-                let message = format!("unknown key `{name}` {place}; known: {}", known.join(", "));
+                let message = format!("unknown key `{}` {place}; known: {}", shown(name), known.join(", "));
                 return Err(file_error(text, key.span().start, Status::Parse, &message));
             }
         }

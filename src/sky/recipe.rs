@@ -102,6 +102,16 @@ impl Pass {
             Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.2 * directions,
         }
     }
+
+    /// Time of one texel, in that of a cell of a march, as measured on the software driver: slices of a build are cut by
+    /// it, so that each frame pays the same.
+    pub fn texel_time(&self, s: &SkySettings) -> f64 {
+        match self.kind {
+            Kind::Scatter => 0.24 * self.texel_cost(s),
+            Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.34 * self.texel_cost(s),
+            _ => self.texel_cost(s),
+        }
+    }
 }
 
 /// The passes of a model.

@@ -1,15 +1,19 @@
 //! The finished tables of one planet, which all that show it share.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{
+    Arc, OnceLock,
+    atomic::{AtomicU64, Ordering},
+};
 
 use bytemuck::{bytes_of, cast_slice};
 
 use super::Planet;
 use super::kit::Kit;
+use super::level::Detail;
 use super::light::LightTable;
 use super::passes::{Table, uniform_buffer};
 use super::recipe::Name;
-use super::settings::MOST_WAVELENGTHS;
+use super::settings::{MOST_WAVELENGTHS, SkySettings};
 use super::spectral::parts;
 use super::uniforms::AirUniform;
 use crate::error::Result;
@@ -18,6 +22,9 @@ use crate::gpu::Device;
 /// One planet's tables, and how observers and fades read them.
 pub(crate) struct TableSet {
     pub planet: Planet,
+    pub detail: Detail,
+    /// Another number for each set.
+    pub id: u64,
     /// The air at each triple of wavelengths.
     pub airs: Vec<wgpu::Buffer>,
     /// Group 0 of the observers' passes.
@@ -34,9 +41,11 @@ impl TableSet {
     ///
     /// # Errors
     /// For a planet whose wavelengths are no set.
-    pub fn new(kit: &Kit, planet: &Planet) -> Result<Self> {
+    pub fn new(kit: &Kit, planet: &Planet, detail: Detail) -> Result<Self> {
+        static SETS: AtomicU64 = AtomicU64::new(0);
         let device = &kit.device;
-        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.result_size(&kit.settings)));
+        let level = kit.level(detail);
+        let table = |n: &Name| (*n, Table::new(device, &format!("sky {n:?}"), n.result_size(&level.settings)));
         let results: Vec<_> = Name::RESULTS.iter().map(table).collect();
         let air = uniform_buffer(device, "sky air", bytes_of(&AirUniform::of(planet)));
         let mut each = AirUniform::of_parts(&parts(planet, kit.settings.wavelengths)?);
@@ -50,7 +59,14 @@ impl TableSet {
         let sources = [of(Name::Sources), of(Name::OnceGas), of(Name::OnceHaze)];
         Ok(Self {
             planet: *planet,
-            observer_group: kit.observer_layouts.planet_group(device, &kit.builder, [&air, &all], sources),
+            detail,
+            id: SETS.fetch_add(1, Ordering::Relaxed),
+            observer_group: kit.observer_layouts.planet_group(
+                device,
+                [&air, &level.blocks.dims, &all],
+                &kit.builder.sampler,
+                sources,
+            ),
             light_group: kit.fades.group(device, of(Name::Lights)),
             airs,
             results,
@@ -81,13 +97,14 @@ impl TableSet {
         }
     }
 
-    /// The light on the CPU; read back when it is first asked for, which waits for the GPU.
-    pub fn read_light(&self, device: &Device) -> Result<Arc<LightTable>> {
+    /// The light on the CPU, of the size that `settings` say; read back when it is first asked for, which waits for the GPU.
+    pub fn read_light(&self, device: &Device, settings: &SkySettings) -> Result<Arc<LightTable>> {
         if let Some(known) = self.light.get() {
             return Ok(known.clone());
         }
-        let read = Arc::new(LightTable::read(device, self.result(Name::Lights), AirUniform::of(&self.planet))?);
-        Ok(self.light.get_or_init(|| read).clone())
+        let read = LightTable::read(device, self.result(Name::Lights), AirUniform::of(&self.planet))?;
+        let sized = Arc::new(read.resized(settings.suns as usize, settings.altitudes as usize));
+        Ok(self.light.get_or_init(|| sized).clone())
     }
 }
 

@@ -137,6 +137,22 @@ impl SkySettings {
         Self { model, ..Self::default() }
     }
 
+    /// The same sky from small tables over the planet, a twentieth of the work with the default numbers: what is shown until
+    /// the tables of these settings are built. Light scattered once, which the observer's tables march, stays as fine.
+    pub(crate) fn draft(&self) -> Self {
+        Self {
+            orders: self.orders.min(4),
+            suns: self.suns.min(32),
+            altitudes: self.altitudes.min(14),
+            zeniths: self.zeniths.min(9),
+            azimuths: self.azimuths.min(6),
+            rule_zeniths: self.rule_zeniths.min(5),
+            rule_azimuths: self.rule_azimuths.min(8),
+            build_panels: self.build_panels.min(2),
+            ..*self
+        }
+    }
+
     /// Triples of wavelengths.
     pub(crate) fn layers(&self) -> u32 {
         self.wavelengths / 3

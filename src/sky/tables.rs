@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::Planet;
 use super::kit::{Claim, Kit, SkyLibrary, Ticket};
+use super::level::Detail;
 use super::light::LightTable;
 use super::passes::Table;
 use super::recipe::Name;
@@ -17,18 +18,28 @@ use crate::gpu::Device;
 
 enum State {
     Idle,
-    /// A build of the planet to show next.
-    Building(Arc<Ticket>),
-    /// The tables to show next, and their share in what is shown.
+    /// A build of the tables to show next, and in how many calls it has been led on.
+    Building(Arc<Ticket>, u32),
+    /// The tables to show next, and their share in what is shown; 0 in the call that lets observers draw them.
     Fading(Arc<TableSet>, f32),
+    /// Built by the last call.
+    Built(Arc<TableSet>),
 }
+
+/// One call in so many leaves a build alone, so that observers may follow sun and height in it.
+const REST: u32 = 8;
+/// A fade's share per call, whatever the time: it costs as much in a frame however long it lasts.
+const FADE: f32 = 1.0 / 16.0;
+/// Airs whose optical depth differs by more than this share need a draft before the whole tables: it errs by less.
+const FAR: f64 = 0.03;
 
 /// What [`SkyTables::update`] did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablesProgress {
     /// Work submitted by this call, as a share of a whole build; 0 where another has built the planet.
     pub work: f32,
-    /// Share of the way to the last planet given: 0.5 when its tables are built, 1 when they are shown.
+    /// Share of the way to the whole tables of the last planet given: 0 while a draft of it is made, 0.5 when they are
+    /// built, 1 when they are shown.
     pub done: f32,
 }
 
@@ -45,6 +56,8 @@ pub struct SkyTables {
     shown: Option<Arc<TableSet>>,
     state: State,
     revision: u64,
+    /// Whether the last call worked on tables, or faded some in.
+    busy: bool,
 }
 
 impl SkyTables {
@@ -64,7 +77,7 @@ impl SkyTables {
         let kit = library.kit(device, settings)?;
         let light = Table::new(device, "sky light", Name::Lights.size(settings));
         device.check()?;
-        Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0 })
+        Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0, busy: false })
     }
 
     /// The settings of these tables.
@@ -92,11 +105,14 @@ impl SkyTables {
         [("SKY_MARCH", f64::from(u8::from(self.settings().model == SkyModel::BruteForce)))]
     }
 
-    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/48 is not
-    /// cut). The first planet, and any at `fraction` 1, is built and shown at once. Else a changed planet is built beside
-    /// what is shown over 1/fraction calls, and then fades in over as many; a planet given meanwhile comes after it.
+    /// Follows `planet`, with at most `fraction` of the work of a whole build in this call (about: a strip of 1/1024 is not
+    /// cut). At `fraction` 1 its tables are built and shown at once. Else the first planet is shown at once as a draft, and
+    /// so is, faded in over sixteen calls, one whose air is another than that shown; the whole tables are built beside what
+    /// is shown over 8/7 of 1/fraction calls, every eighth of which rests, and fade in like the draft. A planet that is
+    /// given meanwhile comes after them, or ends their build if they were far from it.
     ///
-    /// What is built is submitted by this call; what is shown of it is recorded into `encoder`, to be submitted after.
+    /// What is shown depends on the calls alone, on nothing that is timed. What is built is submitted by this call; what is
+    /// shown of it is recorded into `encoder`, to be submitted after.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a planet or fraction out of range; GPU faults.
@@ -109,52 +125,108 @@ impl SkyTables {
         if !(fraction > 0.0 && fraction <= 1.0) {
             return Err(Error::range("fraction", "in (0, 1]", fraction));
         }
-        let at_once = fraction >= 1.0 || self.shown.is_none();
-        let next = match &self.state {
-            State::Idle => self.planet(),
-            State::Building(ticket) => Some(ticket.planet()),
-            State::Fading(set, _) => Some(&set.planet),
-        };
-        if next != Some(planet) && (at_once || matches!(self.state, State::Idle)) {
-            planet.check()?;
-            self.state = match self.kit.claim(planet)? {
-                Claim::Finished(set) => State::Fading(set, 0.0),
-                Claim::Building(ticket) => State::Building(ticket),
-            };
+        self.busy = false;
+        if fraction >= 1.0 {
+            let work = self.show_at_once(encoder, planet, Detail::Whole)?;
+            return Ok(TablesProgress { work, done: 1.0 });
         }
-        let work = self.build_some(if at_once { 2.0 } else { fraction })?;
-        if at_once {
-            if let State::Fading(set, _) = &self.state {
-                let set = set.clone();
-                self.show(encoder, set);
+        if self.shown.is_none() {
+            let work = self.show_at_once(encoder, planet, Detail::Draft)?;
+            return Ok(TablesProgress { work, done: self.done(planet) });
+        }
+        self.choose(planet)?;
+        let work = self.step(encoder, fraction)?;
+        Ok(TablesProgress { work, done: self.done(planet) })
+    }
+
+    /// Builds what is asked to its end and shows it. The work.
+    fn show_at_once(&mut self, encoder: &mut wgpu::CommandEncoder, planet: &Planet, detail: Detail) -> Result<f32> {
+        let shows = |s: &Arc<TableSet>| s.planet == *planet && s.detail == detail;
+        if self.shown.as_ref().is_some_and(shows) {
+            if !matches!(self.state, State::Idle) {
+                self.show(encoder, self.shown.clone());
             }
-            return Ok(TablesProgress { work: work.0, done: 1.0 });
+            return Ok(0.0);
         }
-        Ok(TablesProgress { work: work.0, done: work.1.unwrap_or_else(|| self.fade_some(encoder, fraction)) })
+        planet.check()?;
+        let (set, work) = match self.kit.claim(planet, detail)? {
+            Claim::Finished(set) => (Some(set), 0.0),
+            Claim::Building(ticket) => {
+                let (step, set) = self.kit.advance(&ticket, 2.0)?;
+                (set, step.work as f32)
+            }
+        };
+        self.show(encoder, set);
+        Ok(work)
     }
 
-    /// Goes on with a build; work, and the share done unless it is time to fade.
-    fn build_some(&mut self, share: f32) -> Result<(f32, Option<f32>)> {
-        let State::Building(ticket) = &self.state else { return Ok((0.0, None)) };
-        let (step, set) = self.kit.advance(ticket, f64::from(share))?;
-        if let Some(set) = set {
-            self.state = State::Fading(set, 0.0);
+    /// Decides what to show next, if nothing is under way that leads there.
+    fn choose(&mut self, planet: &Planet) -> Result<()> {
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let free = match &self.state {
+            State::Idle => true,
+            State::Building(ticket, _) => ticket.detail() == Detail::Whole && is_far(ticket.planet(), planet),
+            State::Built(_) | State::Fading(..) => false,
+        };
+        if !free || (shown.planet == *planet && shown.detail == Detail::Whole) {
+            return Ok(());
         }
-        Ok((step.work as f32, Some(0.5 * step.done as f32)))
+        planet.check()?;
+        let detail = if is_far(&shown.planet, planet) { Detail::Draft } else { Detail::Whole };
+        self.state = match self.kit.claim(planet, detail)? {
+            Claim::Finished(set) => State::Built(set),
+            Claim::Building(ticket) => State::Building(ticket, 0),
+        };
+        Ok(())
     }
 
-    /// Goes on with a fade; the share done.
-    fn fade_some(&mut self, encoder: &mut wgpu::CommandEncoder, share: f32) -> f32 {
-        let State::Fading(set, t) = &mut self.state else { return 1.0 };
-        *t += share;
-        let (set, t) = (set.clone(), *t);
-        if t >= 1.0 - 1e-4 {
-            self.show(encoder, set);
-            return 1.0;
+    /// Goes on with a build or a fade; the work.
+    fn step(&mut self, encoder: &mut wgpu::CommandEncoder, share: f32) -> Result<f32> {
+        match &mut self.state {
+            State::Idle => Ok(0.0),
+            State::Building(ticket, calls) => {
+                *calls += 1;
+                if calls.is_multiple_of(REST) {
+                    return Ok(0.0);
+                }
+                let (step, set) = self.kit.advance(ticket, f64::from(share))?;
+                self.busy = true;
+                if let Some(set) = set {
+                    self.state = State::Built(set);
+                }
+                Ok(step.work as f32)
+            }
+            State::Built(set) => {
+                self.state = State::Fading(set.clone(), 0.0);
+                Ok(0.0)
+            }
+            State::Fading(set, t) => {
+                self.busy = true;
+                *t += share.max(FADE);
+                let (set, t) = (set.clone(), *t);
+                if t >= 1.0 - 1e-4 {
+                    self.show(encoder, Some(set));
+                } else {
+                    self.revision += 1;
+                    self.draw_light(encoder);
+                }
+                Ok(0.0)
+            }
         }
-        self.revision += 1;
-        self.draw_light(encoder);
-        0.5 + 0.5 * t
+    }
+
+    /// Share of the way to the whole tables of `planet`.
+    fn done(&self, planet: &Planet) -> f32 {
+        let leads = |set: &TableSet| set.detail == Detail::Whole && set.planet == *planet;
+        match &self.state {
+            State::Idle if self.shown.as_ref().is_some_and(|s| leads(s)) => 1.0,
+            State::Building(ticket, _) if ticket.detail() == Detail::Whole && ticket.planet() == planet => {
+                0.5 * self.kit.done(ticket) as f32
+            }
+            State::Built(set) if leads(set) => 0.5,
+            State::Fading(set, t) if leads(set) => 0.5 + 0.5 * t,
+            _ => 0.0,
+        }
     }
 
     /// The light of the sky over altitudes and sun angles as it is shown. Each build is read back once, when it is first
@@ -167,9 +239,9 @@ impl SkyTables {
         let Some(shown) = &self.shown else {
             return LightTable::read(&self.device, &self.light, AirUniform::of(&Planet::earth()));
         };
-        let shown = shown.read_light(&self.device)?;
+        let shown = shown.read_light(&self.device, self.settings())?;
         Ok(match &self.state {
-            State::Fading(next, t) => shown.mix(&*next.read_light(&self.device)?, *t),
+            State::Fading(next, t) => shown.mix(&*next.read_light(&self.device, self.settings())?, *t),
             _ => LightTable::clone(&shown),
         })
     }
@@ -202,24 +274,18 @@ impl SkyTables {
         let device = self.device.clone();
         let _entered = device.enter()?;
         let mut encoder = device.device.create_command_encoder(&Default::default());
-        self.show(&mut encoder, set);
+        self.show(&mut encoder, Some(set));
         device.submit(encoder);
         device.check()
     }
 
-    /// Reads the tables of the first planet from a cache, or builds them and writes it; later planets are not kept, since a
-    /// changing weather makes one after the other.
+    /// Shows the tables of the first planet, if they lie in a cache or another shows them.
     pub(crate) fn begin_with(&mut self, planet: &Planet, cache: &Path) -> Result<()> {
         planet.check()?;
-        let ticket = match self.kit.claim_or_load(planet, Some(cache))? {
-            Claim::Finished(set) => return self.show_now(set),
-            Claim::Building(ticket) => ticket,
-        };
-        if let (_, Some(set)) = self.kit.advance(&ticket, 2.0)? {
-            self.kit.keep(&set, cache);
-            self.show_now(set)?;
+        match self.kit.finished_or_kept(planet, cache)? {
+            Some(set) => self.show_now(set),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// What is shown.
@@ -227,17 +293,28 @@ impl SkyTables {
         self.shown.as_ref()
     }
 
-    /// What fades in, with its share.
-    pub(crate) fn fading(&self) -> Option<(&TableSet, f32)> {
+    /// The share of a build that is as much work as `share` of one with the default settings; small tables take sixteen calls
+    /// all the same.
+    pub(crate) fn paced(&self, share: f32) -> f32 {
+        (share * self.kit.pace() as f32).min(FADE)
+    }
+
+    /// What is shown, where it is no draft.
+    pub(crate) fn shown_whole(&self) -> Option<&Arc<TableSet>> {
+        self.shown.as_ref().filter(|s| s.detail == Detail::Whole)
+    }
+
+    /// What fades in, with its share; 0 in the one call before the first step.
+    pub(crate) fn fading(&self) -> Option<(&Arc<TableSet>, f32)> {
         match &self.state {
-            State::Fading(set, t) if *t > 0.0 => Some((set, *t)),
+            State::Fading(set, t) => Some((set, *t)),
             _ => None,
         }
     }
 
-    /// Whether what was built fades in, or is about to.
-    pub(crate) fn is_fading(&self) -> bool {
-        matches!(self.state, State::Fading(..))
+    /// Whether this frame has work on tables to pay already.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.busy
     }
 
     /// The air that look-ups use: between two while one fades into the other.
@@ -246,8 +323,8 @@ impl SkyTables {
         self.fading().map_or(shown, |(set, t)| shown.mix(&AirUniform::of(&set.planet), t))
     }
 
-    fn show(&mut self, encoder: &mut wgpu::CommandEncoder, set: Arc<TableSet>) {
-        self.shown = Some(set);
+    fn show(&mut self, encoder: &mut wgpu::CommandEncoder, set: Option<Arc<TableSet>>) {
+        self.shown = set.or(self.shown.take());
         self.state = State::Idle;
         self.revision += 1;
         self.draw_light(encoder);
@@ -255,8 +332,32 @@ impl SkyTables {
 
     fn draw_light(&self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(shown) = &self.shown {
-            let next = self.fading().map(|(set, t)| (&set.light_group, t));
-            self.kit.fades.show(encoder, &self.light.view, &shown.light_group, next);
+            let next = self.fading().filter(|(_, t)| *t > 0.0).map(|(set, t)| (&set.light_group, t));
+            self.kit.fades.show_light(encoder, &self.light.view, &shown.light_group, next);
         }
     }
+}
+
+/// Whether tables of one planet are so wrong over the other that a draft is nearer.
+fn is_far(a: &Planet, b: &Planet) -> bool {
+    // Optical depth straight up of gas, haze and ozone at a wavelength.
+    let depths = |p: &Planet, i: usize| {
+        [
+            p.rayleigh.scattering_per_m[i] * p.rayleigh.scale_height_m,
+            p.mie.extinction_per_m[i] * p.mie.scale_height_m,
+            p.absorption.extinction_per_m[i] * p.absorption.half_width_m,
+        ]
+    };
+    let apart = |i: usize| {
+        let (a, b) = (depths(a, i), depths(b, i));
+        let change: f64 = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).sum();
+        change > FAR * a.iter().sum::<f64>().max(b.iter().sum())
+    };
+    let taller = |x: f64, y: f64| (x - y).abs() > 2.0 * FAR * x.max(y);
+    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm, p.ground_albedo);
+    body(a) != body(b)
+        || (a.mie.asymmetry_g - b.mie.asymmetry_g).abs() > FAR
+        || taller(a.mie.scale_height_m, b.mie.scale_height_m)
+        || taller(a.rayleigh.scale_height_m, b.rayleigh.scale_height_m)
+        || (0..3).any(apart)
 }

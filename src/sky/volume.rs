@@ -6,7 +6,7 @@ use bytemuck::{Zeroable as _, bytes_of};
 
 use super::kit::Kit;
 use super::observer::{Lamp, Observer};
-use super::passes::{Builder, Slot, TABLE_FORMAT, bind, fade_blend, layout, table_texture, tex, uniform_buffer};
+use super::passes::{Slot, TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
 use super::recipe::Name;
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
@@ -22,6 +22,7 @@ const LAMPS: usize = 2;
 
 /// An array texture that passes draw into layer by layer.
 struct Layered {
+    texture: wgpu::Texture,
     whole: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
 }
@@ -38,12 +39,22 @@ impl Layered {
             })
         };
         let layers = (0..LAYERS * LAMPS as u32).map(|i| view(wgpu::TextureViewDimension::D2, i, Some(1))).collect();
-        Self { whole: view(wgpu::TextureViewDimension::D2Array, 0, None), layers }
+        let whole = view(wgpu::TextureViewDimension::D2Array, 0, None);
+        Self { texture, whole, layers }
+    }
+
+    /// Copies a lamp's layers to another of the same size.
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, to: &Self) {
+        let mut from = self.texture.as_image_copy();
+        from.origin.z = LAYERS * lamp as u32;
+        let to = wgpu::TexelCopyTextureInfo { texture: &to.texture, ..from };
+        encoder.copy_texture_to_texture(
+            from,
+            to,
+            wgpu::Extent3d { depth_or_array_layers: LAYERS, ..self.texture.size() },
+        );
     }
 }
-
-/// Plain and blending variant of a pass.
-struct Pair([wgpu::RenderPipeline; 2]);
 
 /// Layouts of what observers bind.
 pub(crate) struct ObserverLayouts {
@@ -66,21 +77,20 @@ impl ObserverLayouts {
     pub fn planet_group(
         &self,
         device: &Device,
-        builder: &Builder,
-        [air, airs]: [&wgpu::Buffer; 2],
+        blocks: [&wgpu::Buffer; 3],
+        sampler: &wgpu::Sampler,
         [sources, gas, haze]: [&wgpu::TextureView; 3],
     ) -> wgpu::BindGroup {
-        let sampler = wgpu::BindingResource::Sampler(&builder.sampler);
-        let (air, dims) = (air.as_entire_binding(), builder.dims.as_entire_binding());
-        let airs = airs.as_entire_binding();
+        let [air, dims, airs] = blocks.map(wgpu::Buffer::as_entire_binding);
+        let sampler = wgpu::BindingResource::Sampler(sampler);
         bind(device, &self.planet, &[air, dims, tex(sources), sampler, tex(gas), tex(haze), airs])
     }
 }
 
 /// Pipelines that all observers share.
 pub(crate) struct ObserverPasses {
-    sky: Pair,
-    air: Pair,
+    sky: wgpu::RenderPipeline,
+    air: wgpu::RenderPipeline,
 }
 
 impl ObserverPasses {
@@ -90,17 +100,49 @@ impl ObserverPasses {
             SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
             _ => ("sky", "volume"),
         };
-        Ok(Self { sky: pair(device, settings, sky, &layouts)?, air: pair(device, settings, air, &layouts)? })
+        Ok(Self { sky: pipeline(device, settings, sky, &layouts)?, air: pipeline(device, settings, air, &layouts)? })
     }
 }
 
-/// What an observer's table was drawn for.
+/// What a lamp's tables were drawn for.
 #[derive(Clone, Copy, PartialEq)]
 struct Drawn {
-    revision: u64,
+    /// The planet's tables.
+    set: u64,
+    /// Those that lie over them, and their share.
+    over: Option<(u64, f32)>,
     altitude_m: f64,
     mu_s: f64,
 }
+
+/// Tables of which one fades into the other: each is drawn once, and every step lays one over the other.
+struct Fade {
+    /// The sky's and the air's that fade out, and that fade in.
+    first: [Layered; 2],
+    next: [Layered; 2],
+    drawn: [Option<Drawn>; LAMPS],
+    /// How each layer of both is read.
+    groups: [[Vec<wgpu::BindGroup>; 2]; 2],
+}
+
+impl Fade {
+    fn new(device: &Device, kit: &Kit) -> Self {
+        let (first, next) = (layered(device, &kit.settings), layered(device, &kit.settings));
+        let read = |t: &Layered| t.layers.iter().map(|l| kit.fades.group(device, l)).collect();
+        let groups = [&first, &next].map(|tables| tables.each_ref().map(read));
+        Self { first, next, drawn: [None; LAMPS], groups }
+    }
+}
+
+/// An observer's sky and air.
+fn layered(device: &Device, s: &SkySettings) -> [Layered; 2] {
+    let sky = Layered::new(device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
+    let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
+    [sky, Layered::new(device, "air of an observer", air_size)]
+}
+
+/// Tables follow a sun that has moved by so much, rad; in frames that have other tables to pay, by so much.
+const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
 /// An observer's tables, and the bind group with which shaders look them up (`shaders/sky/lookup.wgsl`, group 1).
 ///
@@ -117,6 +159,8 @@ pub struct SkyVolume {
     /// Whose sources the group holds, where pixels march through them.
     marched: Option<Arc<TableSet>>,
     drawn: [Option<Drawn>; LAMPS],
+    /// Made when first something fades in.
+    fade: Option<Box<Fade>>,
     written: ViewUniform,
 }
 
@@ -128,10 +172,7 @@ impl SkyVolume {
     pub fn new(tables: &SkyTables) -> Result<Self> {
         let (device, kit) = (tables.device.clone(), tables.kit().clone());
         let s = *tables.settings();
-        let sky = Layered::new(&device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
-        let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
-        let air = Layered::new(&device, "air of an observer", air_size);
-        kit.observer_passes()?;
+        let [sky, air] = layered(&device, &s);
         let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
         let observers: Vec<_> = (0..LAMPS).map(|_| uniform_buffer(&device, "sky observer", &zero)).collect();
         let group = |b: &wgpu::Buffer| bind(&device, &kit.observer_layouts.observer, &[b.as_entire_binding()]);
@@ -141,8 +182,8 @@ impl SkyVolume {
         let textures = [&sky.whole, &air.whole, &tables.light.view, &kit.nothing.view];
         let view_group = view_group(&kit, &view, textures);
         device.check()?;
-        let (marched, drawn) = (None, [None; LAMPS]);
-        Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, written })
+        let (marched, drawn, fade) = (None, [None; LAMPS], None);
+        Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, fade, written })
     }
 
     /// Of the tables that it was made for.
@@ -185,19 +226,12 @@ impl SkyVolume {
         let mut lit = observer.lamps.iter().flatten().filter(|l| l.is_lit());
         let lamps: [Option<&Lamp>; LAMPS] = std::array::from_fn(|_| lit.next());
         let lamps = || lamps.iter().flatten().copied();
-        let kept = lamps().enumerate().all(|(i, lamp)| self.is_current(i, tables, observer, lamp));
-        if !kept {
-            let edges = EdgesUniform::of(&air, observer.altitude_m);
-            for (i, lamp) in lamps().enumerate() {
-                let drawn =
-                    Drawn { revision: tables.revision(), altitude_m: observer.altitude_m, mu_s: lamp.toward[2] };
-                let altitude = observer.altitude_m.max(0.0) as f32;
-                let uniform = ObserverUniform { altitude, mu_s: lamp.toward[2] as f32, unused: [0.0; 2], edges };
-                self.device.queue.write_buffer(&self.observers[i], 0, bytes_of(&uniform));
-                self.draw(encoder, tables, i)?;
-                self.drawn[i] = Some(drawn);
-            }
-        }
+        let (place, busy) = (observer.altitude_m, tables.is_busy());
+        let mu_s: [Option<f64>; LAMPS] = std::array::from_fn(|i| lamps().nth(i).map(|l| l.toward[2]));
+        let drawn = match tables.shown().cloned() {
+            Some(shown) => self.follow(encoder, tables, &shown, (place, mu_s, observer.exact, busy))?,
+            None => false,
+        };
         let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
         let mut view = ViewUniform {
             air,
@@ -216,20 +250,95 @@ impl SkyVolume {
             self.device.queue.write_buffer(&self.view, 0, bytes_of(&view));
             self.written = view;
         }
-        Ok(!kept)
+        Ok(drawn)
     }
 
-    /// Whether lamp `i`'s tables still serve.
-    fn is_current(&self, i: usize, tables: &SkyTables, observer: &Observer, lamp: &Lamp) -> bool {
-        let Some(drawn) = self.drawn[i] else { return false };
-        let (altitude_m, mu_s) = (observer.altitude_m, lamp.toward[2]);
-        if drawn.revision != tables.revision() {
-            return false;
+    /// Draws what of the lamps' tables does not serve any more; whether there was anything.
+    fn follow(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        tables: &SkyTables,
+        shown: &TableSet,
+        (altitude_m, mu_s, exact, busy): (f64, [Option<f64>; LAMPS], bool, bool),
+    ) -> Result<bool> {
+        let serves = |drawn: &Option<Drawn>, mu_s: f64| {
+            let step = if busy { SUN_STEP.1 } else { SUN_STEP.0 };
+            drawn.filter(|d| match exact {
+                true => d.altitude_m == altitude_m && d.mu_s == mu_s,
+                false => {
+                    (d.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (d.mu_s - mu_s).abs() <= step
+                }
+            })
+        };
+        let lamps = || mu_s.iter().enumerate().filter_map(|(i, mu_s)| mu_s.map(|mu_s| (i, mu_s)));
+        let fading = tables.fading();
+        // The altitude of all lamps' tables is one.
+        let moved = lamps().any(|(i, mu_s)| serves(&self.drawn[i], mu_s).is_none());
+        let mut drawn = false;
+        for (i, mu_s) in lamps() {
+            let now = Drawn { set: shown.id, over: None, altitude_m, mu_s };
+            let kept = self.drawn[i].filter(|_| !moved);
+            let over = fading.map(|(next, share)| (next.id, share));
+            match kept {
+                Some(d) if (d.set, d.over) == (shown.id, over.filter(|(_, share)| *share > 0.0)) => {}
+                // What has faded in wholly.
+                Some(d)
+                    if over.is_none()
+                        && d.over.is_some_and(|(id, _)| id == shown.id)
+                        && self.is_ready(i, &d, shown) =>
+                {
+                    self.lay_over(encoder, i, 1.0);
+                    self.drawn[i] = Some(Drawn { set: shown.id, over: None, ..d });
+                    drawn = true;
+                }
+                Some(d) if d.set == shown.id && (d.over.is_none() || d.over.map(|o| o.0) == over.map(|o| o.0)) => {}
+                _ => {
+                    self.write_observer(tables, i, &now);
+                    self.march(encoder, shown, i, false)?;
+                    self.drawn[i] = Some(now);
+                    drawn = true;
+                }
+            }
+            let (Some((next, share)), Some(d)) = (fading, self.drawn[i]) else { continue };
+            if !self.is_ready(i, &d, next) {
+                self.write_observer(tables, i, &d);
+                self.march(encoder, next, i, true)?;
+                drawn = true;
+            }
+            if share > 0.0 && d.over != Some((next.id, share)) {
+                if let (None, Some(fade)) = (d.over, &self.fade) {
+                    [&self.sky, &self.air].into_iter().zip(&fade.first).for_each(|(t, to)| t.copy(encoder, i, to));
+                }
+                self.lay_over(encoder, i, share);
+                drawn = true;
+                self.drawn[i] = Some(Drawn { over: Some((next.id, share)), ..d });
+            }
         }
-        if observer.exact {
-            return drawn.altitude_m == altitude_m && drawn.mu_s == mu_s;
+        Ok(drawn)
+    }
+
+    /// Whether lamp `i`'s tables of what fades in are those of `set`, for the place of `d`.
+    fn is_ready(&self, i: usize, d: &Drawn, set: &TableSet) -> bool {
+        let wanted = Drawn { set: set.id, over: None, ..*d };
+        self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
+    }
+
+    fn write_observer(&self, tables: &SkyTables, i: usize, of: &Drawn) {
+        let edges = EdgesUniform::of(&tables.air(), of.altitude_m);
+        let (altitude, mu_s) = (of.altitude_m.max(0.0) as f32, of.mu_s as f32);
+        let uniform = ObserverUniform { altitude, mu_s, unused: [0.0; 2], edges };
+        self.device.queue.write_buffer(&self.observers[i], 0, bytes_of(&uniform));
+    }
+
+    /// Lays a share of what fades in over lamp `i`'s tables.
+    fn lay_over(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
+        let Some(fade) = &self.fade else { return };
+        let [first, next] = &fade.groups;
+        for (part, target) in [&self.sky, &self.air].into_iter().enumerate() {
+            for k in LAYERS as usize * i..LAYERS as usize * (i + 1) {
+                self.kit.fades.between(encoder, &target.layers[k], [&first[part][k], &next[part][k]], share);
+            }
         }
-        (drawn.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (drawn.mu_s - mu_s).abs() <= 2e-5
     }
 
     /// Where every pixel marches, it reads the sources of the planet that is shown.
@@ -245,15 +354,20 @@ impl SkyVolume {
         self.marched = Some(shown.clone());
     }
 
-    /// Draws lamp `i`'s tables; while an air fades into another, both, one over the other.
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, tables: &SkyTables, i: usize) -> Result<()> {
-        let Some(shown) = tables.shown() else { return Ok(()) };
-        let next = tables.fading();
+    /// Draws lamp `i`'s tables of a planet's, for looking up or for laying over those.
+    fn march(&mut self, encoder: &mut wgpu::CommandEncoder, set: &TableSet, i: usize, is_next: bool) -> Result<()> {
         if self.kit.settings.model == SkyModel::BruteForce {
             return Ok(());
         }
         let passes = self.kit.observer_passes()?;
-        for (pass, target) in [(&passes.sky, &self.sky), (&passes.air, &self.air)] {
+        let targets = if is_next {
+            let fade = self.fade.get_or_insert_with(|| Box::new(Fade::new(&self.device, &self.kit)));
+            fade.drawn[i] = self.drawn[i].map(|d| Drawn { set: set.id, over: None, ..d });
+            fade.next.each_ref()
+        } else {
+            [&self.sky, &self.air]
+        };
+        for (pipeline, target) in [&passes.sky, &passes.air].into_iter().zip(targets) {
             let layer = |k: usize| {
                 Some(wgpu::RenderPassColorAttachment {
                     view: &target.layers[LAYERS as usize * i + k],
@@ -270,17 +384,10 @@ impl SkyVolume {
                 color_attachments: &[layer(0), layer(1)],
                 ..Default::default()
             });
-            recorded.set_pipeline(&pass.0[0]);
-            recorded.set_bind_group(0, &shown.observer_group, &[]);
+            recorded.set_pipeline(pipeline);
+            recorded.set_bind_group(0, &set.observer_group, &[]);
             recorded.set_bind_group(1, &self.observer_groups[i], &[]);
             recorded.draw(0..3, 0..1);
-            if let Some((next, t)) = next {
-                let t = f64::from(t);
-                recorded.set_pipeline(&pass.0[1]);
-                recorded.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });
-                recorded.set_bind_group(0, &next.observer_group, &[]);
-                recorded.draw(0..3, 0..1);
-            }
         }
         Ok(())
     }
@@ -293,21 +400,20 @@ fn view_group(kit: &Kit, view: &wgpu::Buffer, textures: [&wgpu::TextureView; 4])
     bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), sky, air, light, sources, sampler])
 }
 
-fn pair(device: &Device, s: &SkySettings, entry: &str, layouts: &[&wgpu::BindGroupLayout]) -> Result<Pair> {
-    let make = |blend| {
-        let target = wgpu::ColorTargetState { format: TABLE_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL };
-        let desc = FullscreenDesc {
-            shader: "sky/observer.wgsl",
-            entry,
-            layouts,
-            targets: &[target.clone(), target],
-            constants: &[
-                ("DIRECTIONAL", f64::from(u8::from(s.model.is_directional()))),
-                ("LAYERS", f64::from(s.layers())),
-            ],
-            samples: 1,
-        };
-        fullscreen(device, &desc)
+fn pipeline(
+    device: &Device,
+    s: &SkySettings,
+    entry: &str,
+    layouts: &[&wgpu::BindGroupLayout],
+) -> Result<wgpu::RenderPipeline> {
+    let target = wgpu::ColorTargetState::from(TABLE_FORMAT);
+    let desc = FullscreenDesc {
+        shader: "sky/observer.wgsl",
+        entry,
+        layouts,
+        targets: &[target.clone(), target],
+        constants: &[("DIRECTIONAL", f64::from(u8::from(s.model.is_directional()))), ("LAYERS", f64::from(s.layers()))],
+        samples: 1,
     };
-    Ok(Pair([make(None)?, make(Some(fade_blend()))?]))
+    fullscreen(device, &desc)
 }

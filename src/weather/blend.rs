@@ -1,11 +1,12 @@
 //! Blending of two `Conditions`: what a change of weather looks like half-way.
 //!
 //! Each quantity is blended in the variable in which the eye sees even steps, and each layer's geometry is weighted by how much
-//! of the layer there is, so that a layer which fades in from nothing does not drag the other one's height along.
+//! of the layer there is, so that a layer which fades in from nothing stands where it will stay as soon as it can be seen. Every
+//! field is continuous in time, those of layers that come and go too.
 
 use super::conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, FogLayer, SeaState, SurfaceCover,
-    WindProfile,
+    WindProfile, clear_between,
 };
 
 /// a + (b - a) t, exact at both ends and monotone in t.
@@ -13,16 +14,32 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
     if t >= 1.0 { b } else { a + (b - a) * t }
 }
 
-/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb).
+/// What no layer at all counts for beside a whole one: a layer's geometry moves while there is about so much of it, which nobody
+/// sees. Were it 0, the geometry would jump from that of no layer in the moment in which the layer begins.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// 0 at `a`, 1 at `b`, level at both.
+pub(crate) fn smoothstep(a: f64, b: f64, x: f64) -> f64 {
+    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb), each amount counted as
+/// [`LEAST_SHARE`] of the larger more than it is.
 fn share(qa: f64, qb: f64, t: f64) -> f64 {
-    let (a, b) = ((1.0 - t) * qa, t * qb);
+    let least = LEAST_SHARE * qa.max(qb);
+    let (a, b) = ((1.0 - t) * (qa + least), t * (qb + least));
     if a + b > 0.0 { b / (a + b) } else { t }
 }
+
+/// Least extinction that counts in [`geometric_weight`], 1/m: clearer than air at any height that has weather. From exactly nothing
+/// no factor leads to anything.
+const CLEAREST_PER_M: f64 = 1e-9;
 
 /// Weight for which mix(a, b, w) = a^(1-t) b^t, both positive: visibility then changes by equal factors in equal parts of t,
 /// which is how differences of visibility are seen (Weber and Fechner).
 pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
-    let log_ratio = libm::log(b / a);
+    let log_ratio = libm::log(b.max(CLEAREST_PER_M) / a.max(CLEAREST_PER_M));
     let whole = libm::expm1(log_ratio);
     // Below 1e-9 the quotient's limit is t itself; a quotient of two rounding errors is not.
     if log_ratio.abs() < 1e-9 || !whole.is_finite() { t } else { libm::expm1(t * log_ratio) / whole }
@@ -40,8 +57,9 @@ impl Conditions {
     /// The weather between `self` (at `t` = 0) and `to` (at 1); `t` outside is clamped, NaN counts as 0.
     ///
     /// Extinctions share one weight that makes the total geometric (see the module); cloud layers blend slot by slot, covers
-    /// linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; wind blends as a vector, so
-    /// a turn by more than 90 degrees passes through a lull; everything else is linear.
+    /// linearly, optical depth in tau / (tau + 10), which is nearly the light that a cloud stops; no more of the sky is clear than at
+    /// the clearer end, however much of one overcast has gone and of another has come; wind blends as a vector, so a turn by more
+    /// than 90 degrees passes through a lull; everything else is linear.
     pub fn lerp(&self, to: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *to;
@@ -50,13 +68,15 @@ impl Conditions {
             return *self;
         }
         let w = geometric_weight(burden_per_m(self), burden_per_m(to), t);
+        let clouds = std::array::from_fn(|i| self.clouds[i].blend(&to.clouds[i], t));
         Self {
             extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
             air: self.air.blend(&to.air, t, w),
             aerosol: self.aerosol.blend(&to.aerosol, w),
             fog: self.fog.blend(&to.fog, w),
             precipitation: self.precipitation.blend(&to.precipitation, t, w),
-            clouds: std::array::from_fn(|i| self.clouds[i].blend(&to.clouds[i], t)),
+            clear_sky: clear_between_ends([self, to], clear_between(&clouds), t),
+            clouds,
             cloud_light: self.cloud_light.blend(&to.cloud_light, t),
             wind: self.wind.blend(&to.wind, t),
             sea: self.sea.blend(&to.sea, t),
@@ -64,6 +84,14 @@ impl Conditions {
             ozone_du: mix(self.ozone_du, to.ozone_du, t),
         }
     }
+}
+
+/// Clear sky between two weathers, where layers placed independently would leave `independent` clear: as much less of it as at the
+/// ends, and no less and no more than at either.
+fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
+    let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
+    let ends = [a.clear_sky(), b.clear_sky()];
+    (independent - mix(less(a), less(b), t)).clamp(ends[0].min(ends[1]), ends[0].max(ends[1]))
 }
 
 impl Air {
@@ -248,12 +276,15 @@ mod tests {
     fn a_layer_that_fades_in_stands_where_it_will_stay() {
         let (a, b) = (clear(), fog());
         let early = a.lerp(&b, 0.01).fog;
-        assert!(early.extinction_per_m > 0.0 && early.top_m == b.fog.top_m && early.coverage == 1.0);
+        assert!(early.extinction_per_m > 0.0 && early.coverage == 1.0);
+        assert!(early.top_m > 0.3 * b.fog.top_m, "a thousandth of the fog: {}", early.top_m);
+        let top_m = a.lerp(&b, 0.3).fog.top_m;
+        assert!((top_m / b.fog.top_m - 1.0).abs() < 0.03, "{top_m}");
         let cloudy = Weather { clouds: vec![CloudLayer::of(CloudKind::Stratus, 1.0, 250.0)], ..Weather::default() };
         let c = derive(&cloudy).unwrap();
         let half = a.lerp(&c, 0.5).clouds[0];
-        assert_eq!((half.cover, half.base_m), (0.5, 250.0));
-        assert!((half.optical_depth / c.clouds[0].optical_depth - 1.0).abs() < 1e-12);
+        assert!(half.cover == 0.5 && (half.base_m - 250.0).abs() < 1.0, "{half:?}");
+        assert!((half.optical_depth / c.clouds[0].optical_depth - 1.0).abs() < 5e-3, "{half:?}");
     }
 
     #[test]
@@ -263,8 +294,12 @@ mod tests {
         };
         let (low, high) = (of(CloudKind::Stratus, 300.0), of(CloudKind::Cirrus, 9000.0));
         let half = low.lerp(&high, 0.5);
-        let seen: Vec<(f64, f64)> = half.cloud_slabs().map(|s| (s.cover, s.base_m)).collect();
-        assert_eq!(seen, [(0.5, 300.0), (0.5, 9000.0)]);
+        let seen: Vec<(f64, f64)> = half.cloud_slabs().map(|s| (s.cover, (s.base_m / 100.0).round())).collect();
+        assert_eq!(seen, [(0.5, 3.0), (0.5, 90.0)]);
+        assert_eq!((half.cloud_cover(), half.clear_sky), (1.0, 0.0), "one overcast comes for another");
+        let under = half.cloud_light(0.7, 0.2);
+        let [low, high] = [low, high].map(|c| c.cloud_light(0.7, 0.2));
+        assert!(under.direct < high.direct && under.direct + under.diffuse > low.direct + low.diffuse, "{under:?}");
     }
 
     #[test]
@@ -278,6 +313,8 @@ mod tests {
 
     #[test]
     fn shares_of_nothing_are_the_time() {
-        assert_eq!((share(0.0, 0.0, 0.3), share(0.0, 2.0, 0.3), share(2.0, 0.0, 0.3)), (0.3, 1.0, 0.0));
+        assert_eq!(share(0.0, 0.0, 0.3), 0.3);
+        assert!(share(0.0, 2.0, 0.3) > 0.995 && share(2.0, 0.0, 0.3) < 0.005);
+        assert_eq!((share(0.0, 2.0, 0.0), share(2.0, 0.0, 1.0)), (0.0, 1.0), "and begin as nothing");
     }
 }

@@ -1,6 +1,7 @@
 //! Clouds as slabs of water, and the light that they let through.
 
-use super::conditions::{CloudSlab, Conditions};
+use super::blend::smoothstep;
+use super::conditions::{CloudSlab, Conditions, clear_between};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
@@ -140,19 +141,48 @@ pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MA
 /// First slots of low, middle and high clouds.
 const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
 
-/// Puts slabs, lowest first, into the slots of their level, or any free one if those are full.
+/// Puts slabs, lowest first, into the slots of their level; where one has more than slots, the others make room. Slots are then
+/// in the order of heights, which is how light goes through them ([`Conditions::cloud_light`]).
 fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
+    let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);
+    let (middle, high) = (below(MIDDLE_FROM_M), below(HIGH_FROM_M));
+    let first_high =
+        (LEVEL_SLOTS[1].max(middle) + high - middle).max(LEVEL_SLOTS[2]).min(MAX_CLOUD_LAYERS - (slabs.len() - high));
+    let first_middle = LEVEL_SLOTS[1].max(middle).min(first_high - (high - middle));
     let mut slots = [CloudSlab::NONE; MAX_CLOUD_LAYERS];
-    for s in slabs {
-        let level = usize::from(s.base_m >= MIDDLE_FROM_M) + usize::from(s.base_m >= HIGH_FROM_M);
-        let first = LEVEL_SLOTS[level];
-        let free = (first..MAX_CLOUD_LAYERS).chain(0..first).find(|&i| slots[i].cover <= 0.0);
-        if let Some(i) = free {
-            slots[i] = s;
-        }
+    for (i, s) in slabs.into_iter().enumerate() {
+        let first = if i < middle {
+            0
+        } else if i < high {
+            first_middle - middle
+        } else {
+            first_high - high
+        };
+        slots[first + i] = s;
     }
     slots
+}
+
+/// Height by which a slab comes over a place that it was below, m: from so much above its base on, the place is in it.
+const WITHIN_BASE_M: f64 = 150.0;
+
+/// Least part of the sky that counts for a mean over layers, beside what there is of them: [`over_layers`].
+const LEAST_COVER: f64 = 1e-6;
+
+/// Mean of `f` over layers by the part of the sky in which each is the first to be met, in the order of `layers` (cover, layer);
+/// `without` where there are none. Continuous where a layer comes or goes.
+fn over_layers<'a>(
+    layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
+    without: f64,
+    f: impl Fn(&CloudSlab) -> f64,
+) -> f64 {
+    let (mut open, mut met, mut sum) = (1.0, LEAST_COVER, LEAST_COVER * without);
+    for (cover, slab) in layers {
+        (met, sum) = (met + open * cover, sum + open * cover * f(slab));
+        open *= 1.0 - cover;
+    }
+    sum / met
 }
 
 /// Reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and Weaver (1980, eq. 24)
@@ -195,34 +225,72 @@ impl Conditions {
     /// 0.2. Layers are combined from the top by adding (van de Hulst 1980), each a mixture of cover and holes; the host's
     /// [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
+        self.cloud_light_at(cos_sun_zenith, ground_albedo, f64::NEG_INFINITY)
+    }
+
+    /// Layers that a place at `altitude_m` above the sea lies below, from the top, each with the part of the sky that it covers
+    /// there: less of it while the place comes up through its base.
+    fn layers_above(&self, altitude_m: f64) -> impl Iterator<Item = (f64, &CloudSlab)> {
+        let height_m = altitude_m - self.air.station_altitude_m;
+        let above = move |s: &CloudSlab| smoothstep(-WITHIN_BASE_M, WITHIN_BASE_M, s.base_m - height_m);
+        self.clouds.iter().rev().filter(|s| s.cover > 0.0).map(move |s| (s.cover * above(s), s))
+    }
+
+    /// Height above the sea on whose light clouds over a place feed: the tops of the layers that light meets first, on the mean.
+    pub(crate) fn lit_top_m(&self, altitude_m: f64) -> f64 {
+        let station_m = self.air.station_altitude_m;
+        over_layers(self.layers_above(altitude_m), altitude_m, |s| s.top_m() + station_m).max(altitude_m)
+    }
+
+    /// Height above the sea at which what falls begins: the bases of the layers that one meets first from below, on the mean, at
+    /// least 100 m above the station; 2 km if no cloud is known.
+    pub(crate) fn falling_top_m(&self) -> f64 {
+        let layers = self.cloud_slabs().map(|s| (s.cover, s));
+        self.air.station_altitude_m + over_layers(layers, 2000.0, |s| s.base_m.max(100.0))
+    }
+
+    /// Part of the sky over a place hidden by cloud that one cannot see through: a thin layer counts for what it takes of the
+    /// light.
+    pub(crate) fn opaque_cover(&self, altitude_m: f64) -> f64 {
+        let hidden = |(cover, s): (f64, &CloudSlab)| -cover * libm::expm1(-0.25 * s.optical_depth);
+        let clear = self.layers_above(altitude_m).map(hidden).fold(1.0, |clear, hidden| clear * (1.0 - hidden));
+        (self.gathered() * (1.0 - clear)).min(1.0)
+    }
+
+    /// As [`Conditions::cloud_light`] at a height above the sea: of the clouds that are above it.
+    pub(crate) fn cloud_light_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> CloudLight {
         let mu = cos_sun_zenith.clamp(0.01, 1.0);
-        // From the top, those of one height in the order of their slots; in place, since frames ask.
-        let mut order = [&CloudSlab::NONE; MAX_CLOUD_LAYERS];
-        let mut present = 0;
-        for s in self.cloud_slabs() {
-            let above = order[..present].partition_point(|o| o.base_m.total_cmp(&s.base_m).is_ge());
-            order[above..=present].rotate_right(1);
-            order[above] = s;
-            present += 1;
-        }
         let (mut direct, mut diffuse, mut sky, mut above) = (1.0, 0.0, 1.0, 0.0);
-        for s in &order[..present] {
-            let beam = 1.0 - s.cover + s.cover * libm::exp(-s.optical_depth / mu);
-            let back_beam = s.cover * slab_reflectance(s.optical_depth, s.asymmetry, mu);
-            let back = s.cover * slab_diffuse_reflectance(s.optical_depth, s.asymmetry);
+        // Of the direct light, what met no cloud, and what came through one.
+        let (mut clear, mut through) = (1.0, 0.0);
+        for (cover, s) in self.layers_above(altitude_m) {
+            let passed = cover * libm::exp(-s.optical_depth / mu);
+            let beam = 1.0 - cover + passed;
+            let back_beam = cover * slab_reflectance(s.optical_depth, s.asymmetry, mu);
+            let back = cover * slab_diffuse_reflectance(s.optical_depth, s.asymmetry);
             let bounce = 1.0 / (1.0 - above * back);
             let between = (diffuse + above * back_beam * direct) * bounce;
             diffuse = (1.0 - back) * between + direct * (1.0 - back_beam - beam).max(0.0);
             sky *= (1.0 - back) * bounce;
             above = back + (1.0 - back) * (1.0 - back) * above * bounce;
-            direct *= beam;
+            (clear, through) = (clear * (1.0 - cover), through * beam + clear * passed);
+            direct = clear + through;
         }
         let albedo = ground_albedo.clamp(0.0, 1.0);
         let bounce = 1.0 / (1.0 - albedo * above).max(1e-6);
         diffuse = (diffuse + above * albedo * direct) * bounce;
         sky *= bounce;
+        // Where layers lie beside one another, there is more of what is under cloud, and less of what lies between.
+        let gathered = self.gathered();
+        let left_clear = self.clear_sky() + (clear - clear_between(&self.clouds)).max(0.0) * gathered;
+        direct = left_clear + through * gathered;
+        (diffuse, sky) = (diffuse * gathered, left_clear + (sky - clear).max(0.0) * gathered);
+        // The host's figures hold below the clouds, wherever he has any.
         let o = &self.cloud_light;
-        let host = |computed: f64, said: f64| computed + (said - computed) * o.weight;
+        let height_m = altitude_m - self.air.station_altitude_m;
+        let below = |s: &CloudSlab| smoothstep(-WITHIN_BASE_M, WITHIN_BASE_M, s.base_m - height_m);
+        let weight = o.weight * over_layers(self.cloud_slabs().map(|s| (s.cover, s)), 1.0, below);
+        let host = |computed: f64, said: f64| computed + (said - computed) * weight;
         CloudLight { direct: host(direct, o.direct), diffuse: host(diffuse, o.diffuse), sky: host(sky, o.diffuse) }
     }
 }

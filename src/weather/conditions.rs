@@ -25,8 +25,13 @@ pub struct Conditions {
     pub fog: FogLayer,
     /// What falls.
     pub precipitation: Falling,
-    /// Cloud layers, each in the slot of its height class; those with `cover == 0` are absent. See [`Conditions::cloud_slabs`].
+    /// Cloud layers, lowest first, each in a slot of its height class; those with `cover == 0` are absent. The order of the slots
+    /// is that in which light meets them, also while a change moves one past another. See [`Conditions::cloud_slabs`].
     pub clouds: [CloudSlab; MAX_CLOUD_LAYERS],
+    /// Part of the sky that no layer hides, at most: less than layers placed independently would leave while one overcast comes for
+    /// another. 1 where only the layers say it.
+    #[serde(default = "whole")]
+    pub clear_sky: f64,
     /// Cloud light as the host set it, in place of the slabs'.
     pub cloud_light: CloudLightOverride,
     /// Wind and its turbulence.
@@ -212,6 +217,15 @@ pub struct SurfaceCover {
     pub snow_depth_m: f64,
 }
 
+fn whole() -> f64 {
+    1.0
+}
+
+/// Part of the sky that layers leave clear which are placed independently (random overlap): the product of 1 - cover.
+pub(super) fn clear_between(clouds: &[CloudSlab; MAX_CLOUD_LAYERS]) -> f64 {
+    clouds.iter().fold(1.0, |clear, slab| clear * (1.0 - slab.cover))
+}
+
 impl AerosolLayer {
     /// Extinction at station height, 1/m, at each wavelength (nm): the Angstrom law.
     pub fn extinction_at(&self, wavelengths_nm: [f64; 3]) -> [f64; 3] {
@@ -330,8 +344,20 @@ impl Conditions {
         self.clouds.iter().filter(|slab| slab.cover > 0.0)
     }
 
-    /// Part of the sky hidden by cloud: 1 - product of (1 - cover), layers placed independently (random overlap).
+    /// Part of the sky hidden by cloud: 1 - product of (1 - cover), layers placed independently (random overlap), or more while one
+    /// overcast comes for another ([`Conditions::clear_sky`]).
     pub fn cloud_cover(&self) -> f64 {
-        1.0 - self.clouds.iter().fold(1.0, |clear, slab| clear * (1.0 - slab.cover))
+        1.0 - self.clear_sky()
+    }
+
+    /// Part of the sky that no layer hides.
+    pub(super) fn clear_sky(&self) -> f64 {
+        self.clear_sky.min(clear_between(&self.clouds))
+    }
+
+    /// How much more of the sky layers hide than if they were placed independently, from 1 on.
+    pub(super) fn gathered(&self) -> f64 {
+        let hidden = 1.0 - clear_between(&self.clouds);
+        if hidden > 0.0 { (self.cloud_cover() / hidden).max(1.0) } else { 1.0 }
     }
 }

@@ -1,6 +1,6 @@
 //! From what is said to what is: every coupling between the parts of the weather, each a named law that the host can override.
 
-use super::conditions::{CloudLightOverride, Conditions};
+use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;
 use super::{air, cloud_light, hydrometeors, particles, surface};
 use crate::error::{Result, check_range};
@@ -90,13 +90,15 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     let wind = surface::wind_profile(w);
     let mut ground = surface::surface_cover(&w.surface, w.temperature_c, w.relative_humidity, &falling);
     ground.wetness = o.wetness.unwrap_or(ground.wetness);
+    let clouds = cloud_light::cloud_slabs(w, o.rain_needs_cloud.unwrap_or(true));
     Ok(Conditions {
         extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m,
         air,
         aerosol,
         fog,
         precipitation: falling,
-        clouds: cloud_light::cloud_slabs(w, o.rain_needs_cloud.unwrap_or(true)),
+        clear_sky: clear_between(&clouds),
+        clouds,
         cloud_light: o.cloud_light.map_or(CloudLightOverride::default(), |(direct, diffuse)| CloudLightOverride {
             weight: 1.0,
             direct,

@@ -20,6 +20,7 @@ mod surface;
 pub mod timeline;
 mod validate;
 
+pub(crate) use blend::smoothstep;
 pub use cloud_light::{
     CloudLight, cloud_optical_depth, slab_diffuse_reflectance, slab_reflectance, water_path_for_rate_kg_m2,
 };

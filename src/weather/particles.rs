@@ -72,6 +72,17 @@ fn effective_kind(w: &Weather) -> AerosolKind {
     }
 }
 
+/// Scale heights that particles at a station may be above the sea, at most. The sky counts their density from the sea: e^4.6, a
+/// hundred times that at the station, is what its tables still hold. The haze of a plateau lies on the plateau.
+const DEEPEST_SCALES: f64 = 4.6;
+
+/// Height over which the particles thin out by 1/e, m: as given or by kind, at least the station's altitude over
+/// [`DEEPEST_SCALES`].
+fn scale_height_m(w: &Weather) -> f64 {
+    let own = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
+    own.max(w.station_altitude_m / DEEPEST_SCALES)
+}
+
 /// Kinds thick enough to bring visibility down to anything without fog.
 fn is_dry_obscuration(kind: AerosolKind) -> bool {
     use AerosolKind as A;
@@ -99,7 +110,7 @@ pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option
         absorption_angstrom_exponent: p.absorption_angstrom_exponent,
         single_scattering_albedo: w.aerosol.single_scattering_albedo.unwrap_or(albedo),
         asymmetry: w.aerosol.asymmetry.unwrap_or(toward(p.asymmetry, 0.82)),
-        scale_height_m: w.aerosol.scale_height_m.unwrap_or(p.scale_height_m),
+        scale_height_m: scale_height_m(w),
         reference_altitude_m: w.station_altitude_m,
     }
 }
@@ -155,7 +166,7 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
     let tall = if beside.is_some() {
         rest
     } else if is_dry(w) {
-        let height = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
+        let height = scale_height_m(w);
         // Sand keeps low: at most half of it fills the mixed layer.
         let low = if matches!(w.lofted.kind, LoftedKind::BlowingSand | LoftedKind::BlowingDust) { 0.5 } else { 1.0 };
         (sky_depth(rest * height) / height).min(low * rest)

@@ -3,12 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::Conditions;
-use crate::error::{Error, Result, Status, check_range};
+use crate::error::{Error, Result, Status, check_range, toml_fault};
 
 /// Longest transition, s: a year.
 const MAX_TRANSITION_S: f64 = 3.2e7;
-/// Latest and earliest simulation time, s.
-const MAX_TIME_S: f64 = 1e12;
+/// Largest distance of simulation time from 0, s.
+pub(crate) const MAX_TIME_S: f64 = 1e10;
+/// Stands for a time before all others, s.
+const EVER_S: f64 = -1e12;
 /// Number that begins a saved timeline; grows when its form changes.
 const VERSION: u32 = 1;
 /// Most changes that are under way or to come.
@@ -59,7 +61,7 @@ pub struct Timeline {
 }
 
 fn always() -> f64 {
-    -MAX_TIME_S
+    EVER_S
 }
 
 fn is_always(time_s: &f64) -> bool {
@@ -69,10 +71,10 @@ fn is_always(time_s: &f64) -> bool {
 impl Timeline {
     /// `base` for ever.
     pub fn new(base: Conditions) -> Self {
-        Self { version: VERSION, now_s: -MAX_TIME_S, known_from_s: always(), base, changes: Vec::new() }
+        Self { version: VERSION, now_s: EVER_S, known_from_s: always(), base, changes: Vec::new() }
     }
 
-    /// Changes to `to`, beginning at simulation time `start_s` (\[-1e12, 1e12\] s) and lasting `transition_s`
+    /// Changes to `to`, beginning at simulation time `start_s` (\[-1e10, 1e10\] s) and lasting `transition_s`
     /// (\[0, 3.2e7\] s; 0 is a cut).
     ///
     /// # Errors
@@ -174,7 +176,7 @@ impl Timeline {
             version: u32,
         }
         let body = text.split_once('\n').map_or("", |(_, body)| body);
-        let head: Head = toml::from_str(body).map_err(|e| parse(&e))?;
+        let head: Head = toml::from_str(body).map_err(|e| parse(&toml_fault(body, &e)))?;
         if head.version != VERSION {
             return Err(parse(&format!("version must be {VERSION}, got {}", head.version)));
         }
@@ -182,7 +184,7 @@ impl Timeline {
         if sealed(body) != text {
             return Err(parse(&"the text is cut short or changed: its seal does not fit"));
         }
-        let timeline: Self = toml::from_str(body).map_err(|e| parse(&e))?;
+        let timeline: Self = toml::from_str(body).map_err(|e| parse(&toml_fault(body, &e)))?;
         if let Some(line) = text.lines().position(|l| l.ends_with("nan") || l.ends_with("inf")) {
             return Err(parse(&format!("line {}: numbers must be finite", line + 1)));
         }

@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use super::world::{World, init, message};
+use super::world::{World, init, message, update};
 use welkin::capi::{
     context::*, ground::*, ground_grid::*, ground_texture::*, rain::*, status::*, timeline::*, weather::*,
     weather_kinds::*, wind::*,
@@ -50,7 +50,7 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     };
     assert_eq!(get(&mut cells, CELL, &mut revision), WK_ERROR_WRONG_ORDER, "{}", message());
     assert_eq!(set(&grid), WK_OK, "{}", message());
-    assert_eq!(unsafe { wk_context_update(context, 1800.0) }, WK_OK, "{}", message());
+    update(context, 1800.0);
     refused(get(&mut cells[..24], CELL, &mut revision), "capacity must be at least 25");
     refused(get(&mut cells, 12, &mut revision), "cell_size must be");
     refused(get(&mut cells, CELL, null_mut()), "out_revision must not be NULL");
@@ -63,10 +63,28 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     let mut ground = init::<wk_ground>("wk_ground");
     assert_eq!(unsafe { wk_context_get_ground(context, &[0.0; 3], &mut ground) }, WK_OK);
     assert!((ground.water_mm / f64::from(cells[12].standing_mm) - 1.0).abs() < 1e-6 && ground.in_puddle == 1);
+    // What it is made of: by the cell, else by the default.
+    let mut classes = [WK_SURFACE_CLASS_ROCK as u8; 25];
+    classes[12] = 0;
+    let made = wk_ground_grid { surface_classes: classes.as_ptr(), surface_class_count: 25, ..grid };
+    assert_eq!(set(&made), WK_OK, "{}", message());
+    assert_eq!(unsafe { wk_context_set_default_surface_class(context, WK_SURFACE_CLASS_SOIL) }, WK_OK);
+    for (at, class) in [([0.0; 3], WK_SURFACE_CLASS_SOIL), ([4.0, 4.0, 0.0], WK_SURFACE_CLASS_ROCK)] {
+        assert_eq!(unsafe { wk_context_get_ground(context, &at, &mut ground) }, WK_OK);
+        assert_eq!(ground.surface_class, class, "{at:?}");
+    }
+    refused(unsafe { wk_context_set_default_surface_class(context, 7) }, "surface_class must be one of");
+    refused(
+        set(&wk_ground_grid { surface_class_count: 24, ..made }),
+        "ground_grid.surface_class_count must be 0, or 25",
+    );
+    classes[3] = 7;
+    let torn = wk_ground_grid { surface_classes: classes.as_ptr(), ..made };
+    refused(set(&torn), "ground_grid.surface_classes[3] must be a WK_SURFACE_CLASS_ value, 0 to 6, got 7");
     let mut again = 0u64;
     assert_eq!(get(&mut [], CELL, &mut again), WK_OK, "{}", message());
     assert_eq!(again, revision);
-    assert_eq!(unsafe { wk_context_update(context, 1810.0) }, WK_OK);
+    update(context, 1810.0);
     assert_eq!(get(&mut [], CELL, &mut again), WK_OK);
     assert!(again != revision, "rain goes on");
     for (bad, wanted) in [

@@ -60,6 +60,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_clock", "context", false, |h| unsafe { wk_context_set_clock(h.cast(), 0.0, 0.0) }),
         case("wk_context_set_exposure", "context", false, |h| unsafe { wk_context_set_exposure(h.cast(), 0, 0.0) }),
         case("wk_context_update", "context", false, |h| unsafe { wk_context_update(h.cast(), 0.0) }),
+        case("wk_context_get_state_time", "context", false, |h| unsafe {
+            wk_context_get_state_time(h.cast(), null_mut())
+        }),
         case("wk_context_save", "context", false, |h| unsafe { wk_context_save(h.cast(), null_mut(), 0, null_mut()) }),
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
@@ -74,6 +77,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
+        case("wk_context_set_default_surface_class", "context", false, |h| unsafe {
+            wk_context_set_default_surface_class(h.cast(), 0)
+        }),
         case("wk_context_set_ground_grid", "context", false, |h| unsafe {
             wk_context_set_ground_grid(h.cast(), null())
         }),
@@ -124,6 +130,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_ambient", "context", false, |h| unsafe {
             wk_context_get_ambient(h.cast(), null(), null_mut())
+        }),
+        case("wk_context_get_frame_light", "context", false, |h| unsafe {
+            wk_context_get_frame_light(h.cast(), null(), null_mut())
         }),
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),

@@ -5,12 +5,15 @@
 //! if a function of the header has none.
 
 mod areas;
+mod clock;
 mod ground;
 mod handles;
+mod limits;
 mod plan;
 mod queries;
 mod shelters;
 mod sky;
+mod state;
 mod structs;
 mod weather;
 mod wind;

@@ -3,7 +3,7 @@
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{frame::*, plan::*, status::*, view::*};
+use welkin::capi::{frame::*, plan::*, rain::*, report::*, status::*, timeline::*, view::*, weather::*};
 
 use super::world::{World, init, message, next_frame};
 
@@ -182,4 +182,38 @@ fn a_plan_that_is_not_made_yet_is_not_saved_and_the_report_says_what_it_does_not
         let says = report(&world);
         assert_eq!((says.has, says.reported_ms), (WK_REPORT_HAS_REPORTED_MS, 3.5));
     }
+}
+
+#[test]
+fn a_contrast_gain_left_at_zero_is_natures_and_the_report_says_what_was_drawn_with() {
+    let world = World::new();
+    let set = |contrast_gain: f64| {
+        let rain = wk_rain { contrast_gain, ..init("wk_rain") };
+        // SAFETY: live pointers.
+        (unsafe { wk_view_set_rain(world.view, &rain) }, message())
+    };
+    let mut weather = init::<wk_weather>("wk_weather");
+    // SAFETY: live pointers.
+    unsafe {
+        let report = c"METAR LFPG 121200Z 00000KT 4000 +RA 12/11 Q1005";
+        assert_eq!(wk_weather_from_metar(report.as_ptr(), null_mut(), 0, 0, &mut weather, null_mut()), WK_OK);
+        assert_eq!(wk_context_set_weather(world.context, &weather, 0.0, 0.0), WK_OK, "{}", message());
+    }
+    for (gain, applied) in [(0.0, 1.0), (1.0, 1.0), (WK_RAIN_GAIN_TRAINER, 4.0), (16.0, 16.0)] {
+        assert_eq!(set(gain).0, WK_OK);
+        drawn(&world);
+        assert_eq!(report(&world).contrast_gain, applied);
+    }
+    assert!(set(f64::NAN).1.contains("rain.contrast_gain must be finite"));
+    for gain in [0.5, -1.0, 16.1] {
+        let (status, text) = set(gain);
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
+        assert!(text.contains("rain.contrast_gain must be in [1, 16]"), "{text}");
+    }
+    drawn(&world);
+    assert_eq!(report(&world).contrast_gain, 16.0, "a refused one changes nothing");
+    let named = [WK_RAIN_SHUTTER_EYE_S, WK_RAIN_SHUTTER_CAMERA_60_S, WK_RAIN_SHUTTER_CAMERA_500_S];
+    type Settings = welkin::rain::RainSettings;
+    assert_eq!(named, [Settings::SHUTTER_EYE_S, Settings::SHUTTER_CAMERA_60_S, Settings::SHUTTER_CAMERA_500_S]);
+    assert_eq!(WK_RAIN_GAIN_TRAINER, Settings::TRAINER.contrast_gain);
 }

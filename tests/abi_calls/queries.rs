@@ -8,7 +8,7 @@ use welkin::capi::{
     weather_kinds::*,
 };
 
-use super::world::{World, init, message};
+use super::world::{World, init, message, update};
 
 const EYE: [f64; 3] = [0.0, 0.0, 2.0];
 
@@ -151,7 +151,10 @@ fn every_query_answers_for_other_times_too() {
     // SAFETY: live pointers.
     unsafe {
         refused(wk_context_get_conditions(context, &EYE, 99.0, &mut here), "time_s must be at least 100");
-        refused(wk_context_get_conditions(context, &[0.0, 0.0, 2e9], 200.0, &mut here), "altitude_m must be in");
+        refused(
+            wk_context_get_conditions(context, &[0.0, 0.0, 2e9], 200.0, &mut here),
+            "position_m must be at an altitude in",
+        );
         assert_eq!(here.visibility_m, 0.0, "nothing is written");
         // One weather for all the world: another place, the same answer.
         assert_eq!(wk_context_get_conditions(context, &EYE, 200.0, &mut here), WK_OK);
@@ -213,7 +216,7 @@ fn visibility_between_points_is_that_of_the_weather() {
         assert!((between[0].transmittance[1] - 0.05).abs() < 1e-3, "{:?}", between[0].transmittance);
         assert!((between[2].visibility_m / 400.0 - 1.0).abs() < 0.01, "{}", between[2].visibility_m);
         assert!(between[0].transmittance[1] < between[1].transmittance[1]);
-        refused(get(&[segment(0.0)], &mut between), "segments[0]: to must be at least a millimetre");
+        refused(get(&[segment(0.0)], &mut between), "segments[0].to_m must be at least a millimetre");
         refused(get(&[segment(f64::NAN)], &mut between), "segments[0].to_m[1] must be finite");
     }
 }
@@ -229,6 +232,61 @@ fn ambient_light_is_asked_for_with_a_place() {
         assert_eq!(wk_context_get_ambient(world.context, &EYE, &mut ambient), WK_OK, "{}", message());
     }
     assert!(ambient.sh9.iter().all(|v| v.is_finite()));
+}
+
+#[test]
+fn a_host_asks_how_to_light_a_frame_in_its_own_numbers() {
+    let world = World::new();
+    let noon = wk_given_direction { azimuth_deg: 90.0, elevation_deg: 30.0, ..init("wk_given_direction") };
+    let night = wk_given_direction { elevation_deg: -40.0, ..noon };
+    let light = |color_space, unit| {
+        let mut light = init::<wk_frame_light>("wk_frame_light");
+        let frame = wk_frame { color_space, cd_m2_per_unit: unit, position_m: EYE, ..init("wk_frame") };
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_context_get_frame_light(world.context, &frame, &mut light) }, WK_OK, "{}", message());
+        light
+    };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_context_set_sun(world.context, &noon) }, WK_OK);
+    let mut arriving = [wk_ground_light { sun_lux: [0.0; 3], moon_lux: [0.0; 3], sky_lux: [0.0; 3], total_lux: 0.0 }];
+    let size = size_of::<wk_ground_light>() as u32;
+    // SAFETY: live pointers with the sizes given.
+    unsafe { assert_eq!(wk_context_get_light(world.context, &EYE, 1, 24, arriving.as_mut_ptr(), size), WK_OK) };
+    let scene = light(WK_COLOR_SCENE_LINEAR, 50.0);
+    for i in 0..3 {
+        let close = |a: f64, lux: f64| (a * std::f64::consts::PI * 50.0 / lux - 1.0).abs() < 1e-9;
+        assert!(close(scene.direct[i], arriving[0].sun_lux[i]) && close(scene.ambient[i], arriving[0].sky_lux[i]));
+    }
+    // East is x, up is z.
+    let [x, y, z] = scene.direction;
+    assert!((x - 0.75_f64.sqrt()).abs() < 1e-6 && y.abs() < 1e-6 && (z - 0.5).abs() < 1e-6, "{:?}", scene.direction);
+    let linear = light(WK_COLOR_DISPLAY_LINEAR, 1.0);
+    let encoded = light(WK_COLOR_DISPLAY_SRGB, 1.0);
+    for i in 0..3 {
+        // A grey card in shade and in the sun, by the exponential curve that a context begins with.
+        let grey = |lux: f64| 1.0 - (-linear.exposure * 0.18 * lux / std::f64::consts::PI).exp();
+        let (sky, sun) = (arriving[0].sky_lux[i], arriving[0].sun_lux[i]);
+        assert!((0.18 * linear.ambient[i] - grey(sky)).abs() < 1e-9);
+        assert!((0.18 * (linear.ambient[i] + linear.direct[i]) - grey(sky + sun)).abs() < 1e-9);
+        let srgb = |v: f64| 1.055 * v.powf(1.0 / 2.4) - 0.055;
+        assert!((srgb(0.18) * encoded.ambient[i] - srgb(grey(sky))).abs() < 1e-9);
+        assert!((srgb(0.18) * (encoded.ambient[i] + encoded.direct[i]) - srgb(grey(sky + sun))).abs() < 1e-9);
+        // Neither black nor burnt out: a legacy host can use it as it is.
+        let shown = srgb(0.18) * (encoded.ambient[i] + encoded.direct[i]);
+        assert!((0.25..=0.9).contains(&shown), "{shown}");
+        assert!(linear.ambient_below[i] > 0.0 && linear.ambient_below[i] < linear.ambient[i] + linear.direct[i]);
+    }
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_set_sun(world.context, &night), WK_OK);
+        let mut light = init::<wk_frame_light>("wk_frame_light");
+        let wrong = wk_frame { cd_m2_per_unit: 0.0, ..init("wk_frame") };
+        refused(
+            wk_context_get_frame_light(world.context, &wrong, &mut light),
+            "frame.cd_m2_per_unit must be in (0, 1e9]",
+        );
+    }
+    assert_eq!(light(WK_COLOR_SCENE_LINEAR, 1.0).direct[1].max(0.1), 0.1, "no sun below the horizon");
 }
 
 #[test]
@@ -322,7 +380,7 @@ fn simulated_ground_is_asked_for_its_water() {
             ..init("wk_weather")
         };
         assert_eq!(wk_context_set_weather(context, &weather, 0.0, 0.0), WK_OK, "{}", message());
-        assert_eq!(wk_context_update(context, 600.0), WK_OK, "{}", message());
+        update(context, 600.0);
         assert_eq!(wk_context_get_ground(context, &[1.0, 2.0, 0.0], &mut ground), WK_OK, "{}", message());
         assert!(ground.film_mm > 0.2 && ground.water_mm >= ground.film_mm && ground.wetness > 0.8);
         assert_eq!(ground.in_puddle == 1, ground.water_mm > ground.film_mm);

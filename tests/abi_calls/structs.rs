@@ -144,6 +144,9 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_get_rainfall_at(context, &ORIGIN, 0.0, p.cast())
         }),
         case("wk_celestial", "out_sun", false, move |p| unsafe { wk_context_get_sun(context, &ORIGIN, p.cast()) }),
+        case("wk_frame_light", "out_light", false, move |p| unsafe {
+            wk_context_get_frame_light(context, &init("wk_frame"), p.cast())
+        }),
         case("wk_ambient", "out_ambient", false, move |p| unsafe {
             wk_context_get_ambient(context, &ORIGIN, p.cast())
         }),

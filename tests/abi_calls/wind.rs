@@ -6,7 +6,7 @@ use welkin::capi::{
     conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
 };
 
-use super::world::{World, init, message};
+use super::world::{World, init, message, resealed};
 
 const MAST: [f64; 3] = [0.0, 0.0, 10.0];
 
@@ -75,16 +75,11 @@ fn air_goes_as_far_as_the_wind_says_through_updates_and_a_save() {
         for world in [&a, &b, &c] {
             assert_eq!(wind(world, MAST, 300.0).displacement_m, late.displacement_m, "to the last bit");
         }
-        // States from before there was a drift are taken up; a damaged one is not.
+        // A drift that cannot be is refused, under a checksum that fits too.
         let text = String::from_utf8(state).unwrap();
         let line = text.lines().find(|l| l.starts_with("drifted")).expect("the drift is saved");
-        let old = text.replacen(&format!("{line}\n"), "", 1);
-        assert_eq!(wk_context_load(c.context, old.as_ptr().cast(), old.len()), WK_OK, "{}", message());
-        let moved = wind(&c, MAST, 300.0).displacement_m[1] - wind(&c, MAST, 200.0).displacement_m[1];
-        let same = late.displacement_m[1] - wind(&a, MAST, 200.0).displacement_m[1];
-        assert!((moved / same - 1.0).abs() < 0.3, "{moved} {same}");
         for damaged in ["drifted = [80.0, nan, 0.0, 0.0]", "drifted = [79.0, 0.0, 0.0, 0.0]"] {
-            let bad = text.replacen(line, damaged, 1);
+            let bad = resealed(&text.replacen(line, damaged, 1));
             assert_eq!(wk_context_load(c.context, bad.as_ptr().cast(), bad.len()), WK_ERROR_PARSE, "{damaged}");
             assert!(message().contains("drifted must be"), "{}", message());
         }
@@ -190,7 +185,10 @@ fn surfaces_are_rained_on_by_their_slope_size_and_speed() {
         (of(up, [0.0, 0.0, 2000.0], 1.0), "surfaces[0].velocity_m_s[2] must be in"),
         (of(up, still, -1.0), "surfaces[0].area_m2 must be in"),
         (of(up, still, f64::INFINITY), "surfaces[0].area_m2 must be finite"),
-        (wk_rain_surface { position_m: [0.0, 0.0, 1e10], ..list[0] }, "surfaces[0].altitude_m must be in"),
+        (
+            wk_rain_surface { position_m: [0.0, 0.0, 1e10], ..list[0] },
+            "surfaces[0].position_m must be at an altitude in",
+        ),
     ] {
         refused(get(&[bad], 7.0, &mut kept), wanted);
     }

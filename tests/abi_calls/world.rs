@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_void};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use welkin::capi::{abi, context::*, device::*, status::*, texture::*, view::*};
+use welkin::capi::{abi, context::*, device::*, status::*, texture::*, timeline::*, view::*};
 
 /// A device on the noop backend with a context, a view and a texture.
 pub struct World {
@@ -56,6 +56,20 @@ impl Drop for World {
             assert_eq!(wk_device_destroy(self.device), WK_OK);
         }
     }
+}
+
+/// Updates a context until all of its state is there.
+pub fn update(context: *mut wk_context, time_s: f64) {
+    // SAFETY: every caller has a live context.
+    let status = (0..1_000_000).map(|_| unsafe { wk_context_update(context, time_s) }).find(|s| *s != WK_PENDING);
+    assert_eq!(status, Some(WK_OK), "{}", message());
+}
+
+/// A saved state that was changed, under a checksum that fits.
+pub fn resealed(state: &str) -> String {
+    let body = state.split_once('\n').unwrap().1;
+    let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    format!("welkin state 2 {:016x}\n{body}", body.bytes().fold(0xcbf2_9ce4_8422_2325, fold))
 }
 
 /// A frame number that no frame had before.

@@ -2,10 +2,15 @@
 //! each looks at its own pixels. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
+#[path = "../x_server/mod.rs"]
+mod x_server;
+
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::{fs, io::BufRead, io::BufReader};
+
+use x_server::Server;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -64,32 +69,6 @@ impl Program {
 impl Drop for Program {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.folder);
-    }
-}
-
-/// An X server without a screen, ended with the value.
-struct Server {
-    child: Child,
-    display: String,
-}
-
-impl Server {
-    fn start() -> Self {
-        let mut child = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb is installed");
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("piped")).read_line(&mut line).expect("Xvfb names its display");
-        Self { child, display: format!(":{}", line.trim()) }
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        let _ = (self.child.kill(), self.child.wait());
     }
 }
 

@@ -59,7 +59,8 @@ pub fn rain(scene: &Scene, rate_mm_h: f64, from_s: f64, to_s: f64) {
         ok(wk_context_set_weather(scene.context, &weather, from_s, 0.0));
         ok(wk_context_set_shelters(scene.context, &roof, 1, size_of::<wk_shelter>() as u32));
         ok(wk_context_set_rain_areas(scene.context, &area, 1, size_of::<wk_rain_area>() as u32));
-        ok(wk_context_update(scene.context, to_s));
+        let mut update = || wk_context_update(scene.context, to_s);
+        ok(std::iter::repeat_with(&mut update).find(|status| *status != WK_PENDING).unwrap());
     }
 }
 

@@ -2,7 +2,6 @@
 
 use glam::{DMat3, DVec3};
 use welkin::{
-    Status,
     frame::{ColorSpace, Exposure, Frame, Stages, ToneCurve, tone},
     rain::{Planes, Shelter},
     scene::Camera,
@@ -76,10 +75,13 @@ fn tone_maps_scene_linear_hosts_only() {
         let want = curve.apply(EXPOSURE * (3000.0 * through[1] + light[1]));
         assert!((f64::from(p[1]) - want).abs() < 2e-3, "{p:?} want {want}");
     }
-    let mut frame = Frame::new(9, camera(), &host.color, Some(&host.depth));
-    frame.color_space = ColorSpace::DisplayLinear;
-    let e = host.view.record(&host.context, &frame, Stages::TONE).unwrap_err();
-    assert!(e.status == Status::InvalidArgument && e.message.contains("TONE"), "{e}");
+    // Elsewhere it means nothing, alone or among others.
+    for space in [ColorSpace::DisplayLinear, ColorSpace::DisplaySrgb] {
+        let with = draw(&mut host, space, both, 0.25);
+        assert_eq!(with, draw(&mut host, space, Stages::MEDIUM, 0.25), "{space:?}");
+        let untouched = draw(&mut host, space, Stages::TONE, 0.25);
+        assert!(untouched.iter().all(|p| p[..3] == [0.25; 3]), "{space:?}");
+    }
 }
 
 #[test]

@@ -243,7 +243,7 @@ fn frame(dice: &mut Dice, world: &mut World) -> Struct {
     if dice.one_in(2) {
         let mut target = Struct::plain("wk_own_target");
         target.set("color", handle(dice, &world.textures));
-        for field in ["depth", "mask"] {
+        for field in ["depth", "mask", "surface_classes", "normals"] {
             if dice.one_in(3) {
                 target.set(field, handle(dice, &world.textures));
             }
@@ -331,6 +331,12 @@ pub const CALLS: &[(&str, Call)] = &[
         }
         status.into()
     }),
+    ("wk_context_get_state_time", |d, w| {
+        let mut state_time_s = 0.0;
+        let status = unsafe { wk_context_get_state_time(handle(d, &w.contexts), &mut state_time_s) };
+        assert!(state_time_s.is_finite());
+        status.into()
+    }),
     ("wk_context_set_clock", |d, w| {
         let utc = if d.one_in(2) { d.float() } else { 1.7e9 * d.unit() };
         unsafe { wk_context_set_clock(handle(d, &w.contexts), utc, w.time(d)) }.into()
@@ -401,7 +407,17 @@ pub const CALLS: &[(&str, Call)] = &[
             "heights_m",
             (0..400).map(|_| if d.one_in(300) { d.float() as f32 } else { d.unit() as f32 }).collect(),
         );
+        // Classes of the header and one beyond it, by cells that may be fewer or more than there are heights.
+        let classes: Vec<u8> = (0..400).map(|i| if d.one_in(2000) { 7 } else { i as u8 % 7 }).collect();
+        if d.one_in(2) {
+            grid.set("surface_classes", classes.as_ptr());
+            grid.set("surface_class_count", if d.one_in(10) { d.below(400) as u32 } else { count });
+        }
         unsafe { wk_context_set_ground_grid(handle(d, &w.contexts), grid.ptr().cast()) }.into()
+    }),
+    ("wk_context_set_default_surface_class", |d, w| {
+        let class = d.below(8) as u32;
+        unsafe { wk_context_set_default_surface_class(handle(d, &w.contexts), class) }.into()
     }),
     ("wk_context_save", |d, w| {
         let (context, mut size) = (handle(d, &w.contexts), 0);

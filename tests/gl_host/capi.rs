@@ -12,7 +12,8 @@ use crate::{
     SIZE,
     egl::{Api, Window, make_none_current},
     host::{Host, get_proc, make_current},
-    images::{framebuffer, image_of, texture},
+    images::{framebuffer, image_of, image_of_samples, multisampled_texture, texture},
+    kinds::resolved,
 };
 
 pub fn device(host: &Host) -> *mut wk_device {
@@ -141,6 +142,137 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
         scene.destroy();
         ok(wk_device_destroy(device));
     }
+}
+
+/// A status and the message that goes with it.
+fn recorded(scene: &Scene, target: &wk_opengl_target, id: u64) -> (i32, String) {
+    let frame = wk_frame { target: std::ptr::from_ref(target).cast(), ..frame(id) };
+    // SAFETY: live handles and names.
+    let status = unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) };
+    (status, if status < 0 { message() } else { String::new() })
+}
+
+#[test]
+fn a_window_of_another_size_than_told_is_refused() {
+    for samples in [0, 4] {
+        let host =
+            Host::new(Api::Core(3, 3), Window::Pbuffer(SIZE.0 as i32, SIZE.1 as i32, samples), GlMode::HostContext);
+        let device = device(&host);
+        let scene = Scene::new(device);
+        let window = GlImage::Framebuffer { name: 0 };
+        let right = target(window, window);
+        let with = |width, height| wk_opengl_target { width, height, ..right };
+        for id in 0..3 {
+            for (width, height, relation) in [
+                (SIZE.0 - 1, SIZE.1, "larger"),
+                (SIZE.0, SIZE.1 - 1, "larger"),
+                (SIZE.0 + 1, SIZE.1, "smaller"),
+                (SIZE.0, SIZE.1 + 9, "smaller"),
+            ] {
+                let (status, text) = recorded(&scene, &with(width, height), id);
+                assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{width} x {height}: {text}");
+                assert!(text.contains("frame.target.width and target.height must be the window's size now"), "{text}");
+                assert!(text.contains(&format!("{width} x {height} for a {relation} one")), "{text}");
+            }
+        }
+        for id in 3..6 {
+            assert_eq!(recorded(&scene, &right, id), (WK_OK, String::new()));
+        }
+        scene.destroy();
+        // SAFETY: a live handle.
+        ok(unsafe { wk_device_destroy(device) });
+    }
+}
+
+#[test]
+fn a_framebuffer_of_another_size_than_told_is_refused() {
+    let host = Host::new(Api::Core(3, 3), Window::None, GlMode::HostContext);
+    let device = device(&host);
+    let scene = Scene::new(device);
+    let color = image_of(texture(&host.gl, glow::RGBA8));
+    let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT24));
+    let image = GlImage::Framebuffer { name: framebuffer(&host.gl, color, Some(depth)).0.get() };
+    let wrong = wk_opengl_target { width: SIZE.0 + 1, ..target(image, image) };
+    let (status, text) = recorded(&scene, &wrong, 1);
+    assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{text}");
+    assert!(text.contains("the size of target.color, 64 x 48"), "{text}");
+    assert_eq!(recorded(&scene, &target(image, image), 2), (WK_OK, String::new()));
+    scene.destroy();
+    // SAFETY: a live handle.
+    ok(unsafe { wk_device_destroy(device) });
+}
+
+/// OpenGL reuses names: an image made anew under an old one is drawn into whether the host says so or not, also where a
+/// framebuffer of Welkin's held on to the old one; a number that falls is a mistake.
+#[test]
+fn an_image_made_anew_under_its_old_name_is_the_one_drawn_into() {
+    // In the compatibility profile a host may choose names itself.
+    let host = Host::new(Api::Compatibility(4, 5), Window::None, GlMode::Shared);
+    let gl = &host.gl;
+    let device = device(&host);
+    let scene = Scene::new(device);
+    let depth = image_of_samples(multisampled_texture(gl, glow::DEPTH_COMPONENT24, 4));
+    let name = multisampled_texture(gl, glow::RGBA8, 4);
+    for (id, generation) in [4, 5, 5].into_iter().enumerate() {
+        if id > 0 {
+            // SAFETY: the host's context is current, and the name is free.
+            unsafe {
+                gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, Some(name));
+                let (w, h) = (SIZE.0 as i32, SIZE.1 as i32);
+                gl.tex_storage_2d_multisample(glow::TEXTURE_2D_MULTISAMPLE, 4, glow::RGBA8, w, h, true);
+                assert_eq!(gl.get_error(), glow::NO_ERROR);
+            }
+        }
+        let color = image_of_samples(name);
+        let fbo = framebuffer(gl, color, Some(depth));
+        let target = wk_opengl_target { generation, ..target(color, depth) };
+        // SAFETY: the host's context is current.
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(fbo));
+            gl.clear_color(0.0, 0.0, 0.0, 1.0);
+            gl.clear_depth_f32(0.001);
+            gl.clear(glow::COLOR_BUFFER_BIT | glow::DEPTH_BUFFER_BIT);
+        }
+        assert_eq!(recorded(&scene, &target, id as u64), (WK_OK, String::new()));
+        let drawn = resolved(gl, fbo);
+        assert!(drawn.iter().filter(|p| p[2] > 20).count() > 500, "generation {generation}: {:?}", drawn[0]);
+        let older = wk_opengl_target { generation: generation - 1, ..target };
+        let (status, text) = recorded(&scene, &older, 100);
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{text}");
+        assert!(text.contains(&format!("frame.target.generation must be at least {generation}")), "{text}");
+        // SAFETY: as above; the name is free for the next one.
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, None);
+            gl.delete_framebuffer(fbo);
+            gl.delete_texture(name);
+        }
+    }
+    scene.destroy();
+    // SAFETY: a live handle.
+    ok(unsafe { wk_device_destroy(device) });
+}
+
+#[test]
+fn one_image_in_two_roles_is_refused_by_name() {
+    let host = Host::new(Api::Core(4, 5), Window::None, GlMode::Shared);
+    let device = device(&host);
+    let scene = Scene::new(device);
+    let color = image_of(texture(&host.gl, glow::RGBA8));
+    let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT24));
+    let both = target(color, depth);
+    for (name, wrong) in [
+        ("mask", wk_opengl_target { mask: both.color, ..both }),
+        ("depth", wk_opengl_target { depth: both.color, ..both }),
+        ("depth", wk_opengl_target { color: both.depth, ..both }),
+    ] {
+        let (status, text) = recorded(&scene, &wrong, 1);
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{text}");
+        assert!(text.contains(&format!("frame.target.{name} must be another image than frame.target.color")), "{text}");
+    }
+    assert_eq!(recorded(&scene, &both, 1), (WK_OK, String::new()));
+    scene.destroy();
+    // SAFETY: a live handle.
+    ok(unsafe { wk_device_destroy(device) });
 }
 
 #[test]

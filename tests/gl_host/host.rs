@@ -3,7 +3,10 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use welkin::gpu::gl::{GlDevice, GlHostDesc, GlMode, GlTarget, Handover, adopt};
+use welkin::gpu::{
+    HostBinding,
+    gl::{GlDevice, GlHostDesc, GlMode, GlTarget, Handover, adopt},
+};
 
 use crate::egl::{self, Api, Context, Window};
 
@@ -198,6 +201,9 @@ impl Picture {
     }
 
     pub fn draw(&self, adopted: &GlDevice, target: &GlTarget) {
+        if self.reads == Depth::OldColor || self.reads == Depth::OldColors {
+            adopted.host.refresh(&target.color).unwrap();
+        }
         let group = self.layout.as_ref().map(|layout| {
             let (texture, aspect) = match self.reads {
                 Depth::OldColor | Depth::OldColors => (&target.color_read, wgpu::TextureAspect::All),

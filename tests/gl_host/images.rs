@@ -87,6 +87,8 @@ pub fn desc(color: GlImage, depth: Option<GlImage>) -> GlTargetDesc {
         color,
         depth,
         mask: None,
+        surface_classes: None,
+        normals: None,
         width: WIDTH,
         height: HEIGHT,
         generation: 0,

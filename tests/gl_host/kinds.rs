@@ -99,7 +99,7 @@ fn depth_formats() {
 }
 
 /// The host's multisampled image, averaged by the host into one it can read.
-fn resolved(gl: &glow::Context, from: glow::Framebuffer) -> Vec<[u8; 4]> {
+pub fn resolved(gl: &glow::Context, from: glow::Framebuffer) -> Vec<[u8; 4]> {
     let to = framebuffer(gl, image_of(texture(gl, glow::RGBA8)), None);
     let (w, h) = (WIDTH as i32, HEIGHT as i32);
     // SAFETY: the host's context is current.
@@ -204,6 +204,32 @@ fn multisampled_images_resolved() {
         let desc = GlTargetDesc { multisample: Multisample::Resolve, ..desc(color, Some(depth)) };
         draw(&host, &desc, Depth::One);
         assert_picture(&resolved(gl, fbo), Blue::Depth, 1);
+    }
+}
+
+#[test]
+fn a_resolved_picture_with_multisampled_depth() {
+    for mode in [GlMode::Shared, GlMode::HostContext] {
+        for as_texture in [true, false] {
+            let host = Host::new(Api::Core(3, 3), Window::None, mode);
+            let gl = &host.gl;
+            let (color, beside) = (image_of(texture(gl, glow::RGBA8)), renderbuffer(gl, glow::RGBA8, 4));
+            let depth = if as_texture {
+                image_of_samples(multisampled_texture(gl, glow::DEPTH_COMPONENT24, 4))
+            } else {
+                image_of_buffer(renderbuffer(gl, glow::DEPTH_COMPONENT24, 4))
+            };
+            let [drawn, fbo] = [framebuffer(gl, image_of_buffer(beside), Some(depth)), framebuffer(gl, color, None)];
+            for framebuffer in [drawn, fbo] {
+                // SAFETY: the host's context is current.
+                unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer)) };
+                clear(gl);
+            }
+            draw(&host, &desc(color, Some(depth)), Depth::One);
+            // SAFETY: as above.
+            unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, Some(fbo)) };
+            assert_picture(&read(gl), Blue::Depth, 1);
+        }
     }
 }
 
@@ -320,7 +346,6 @@ fn what_cannot_be_served_is_refused_by_name() {
         let host = Host::new(Api::Core(4, 5), Window::None, mode);
         let gl = &host.gl;
         let good = image_of(texture(gl, glow::RGBA8));
-        let four = renderbuffer(gl, glow::DEPTH_COMPONENT24, 4);
         let refused = |desc, status, parts: &[&str]| assert_refused(&host, &desc, status, parts);
         let five_one = image_of(texture(gl, glow::RGB5_A1));
         refused(desc(five_one, None), Status::Unsupported, &["target.color", "GL_RGB5_A1", "GL_RGBA8"]);
@@ -340,8 +365,8 @@ fn what_cannot_be_served_is_refused_by_name() {
         refused(desc(wrong, None), Status::InvalidArgument, &["target.color.target"]);
         let small = GlTargetDesc { width: 63, ..desc(good, None) };
         refused(small, Status::InvalidArgument, &["target.width", "64 x 48", "63 x 48"]);
-        let samples = image_of_buffer(four);
-        refused(desc(good, Some(samples)), Status::InvalidArgument, &["target.depth", "samples", "4"]);
+        let samples = image_of_buffer(renderbuffer(gl, glow::RGBA8, 4));
+        refused(desc(samples, Some(depth)), Status::InvalidArgument, &["target.depth", "samples", "4", "got 1"]);
         // SAFETY: the host's context is current; a texture without storage.
         let empty = unsafe {
             let name = gl.create_texture().unwrap();

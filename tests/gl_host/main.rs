@@ -12,11 +12,15 @@ mod host;
 mod images;
 mod kinds;
 mod life;
+mod matrix;
+mod own;
+mod painter;
 mod pictures;
 mod sky;
 mod snapshot;
 mod state;
 mod unusual;
+mod windows;
 
 /// The size of the pictures that come through the C functions.
 const SIZE: (u32, u32) = (images::WIDTH, images::HEIGHT);

@@ -7,12 +7,24 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
+    ground::SurfaceClass,
     scene::{Camera, DepthMapping, ViewRays},
     sky::SkySettings,
     weather::{Surface, SurfaceState, Weather, Wind},
 };
 
 pub const SIZE: (u32, u32) = (160, 90);
+
+/// Writes the depths of a texture of floats.
+const DEPTH_SHADER: &str = "
+@group(0) @binding(0) var depths: texture_2d<f32>;
+@vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+@fragment fn depth(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
+    return textureLoad(depths, vec2i(at.xy), 0).x;
+}
+";
 
 /// What a ray meets: metres along it, luminance.
 pub type Hit = Option<(f64, [f64; 3])>;
@@ -51,11 +63,19 @@ pub fn ray(camera: &Camera, x: u32, y: u32) -> DVec3 {
     rays(camera).view_ray(ndc(x, y)).direction
 }
 
+/// A saved state that was changed, under a checksum that fits: what lies behind that must hold too.
+pub fn resealed(state: &str) -> Vec<u8> {
+    let body = state.split_once('\n').unwrap().1;
+    let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    let sum = body.bytes().fold(0xcbf2_9ce4_8422_2325, fold);
+    format!("welkin state 2 {sum:016x}\n{body}").into_bytes()
+}
+
 fn rays(camera: &Camera) -> ViewRays {
     ViewRays::new(camera, &DepthMapping { reversed: true, ..Default::default() }).unwrap()
 }
 
-fn ndc(x: u32, y: u32) -> DVec2 {
+pub fn ndc(x: u32, y: u32) -> DVec2 {
     let uv = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / DVec2::new(f64::from(SIZE.0), f64::from(SIZE.1));
     DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)
 }
@@ -86,6 +106,8 @@ impl Host {
         };
         let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
+        // What most tests ask of is asphalt.
+        context.set_default_surface_class(SurfaceClass::Paved);
         let view = View::new(&context).unwrap();
         let color = texture(&device, wgpu::TextureFormat::Rgba32Float);
         let depth = texture(&device, wgpu::TextureFormat::R32Float);
@@ -130,6 +152,97 @@ impl Host {
             );
         }
         queue.write_texture(self.depth.as_image_copy(), bytemuck::cast_slice(&depths), layout(4), self.depth.size());
+    }
+
+    /// Writes a picture of the host's, row by row from the top.
+    pub fn write(&self, colors: &[[f32; 4]]) {
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 16), rows_per_image: None };
+        let bytes = bytemuck::cast_slice(colors);
+        self.device.queue.write_texture(self.color.as_image_copy(), bytes, rows, self.color.size());
+    }
+
+    /// An image beside the picture, of its size, from its bytes row by row from the top.
+    pub fn image(&self, format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::Texture {
+        let image = texture(&self.device, format);
+        let bytes_per_row = Some(bytes.len() as u32 / SIZE.1);
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+        self.device.queue.write_texture(image.as_image_copy(), bytes, rows, image.size());
+        image
+    }
+
+    /// A depth buffer of 24 bits that holds these depths, row by row from the top.
+    pub fn depth_24(&self, depths: &[f64]) -> wgpu::Texture {
+        let device = &self.device.device;
+        let floats: Vec<f32> = depths.iter().map(|d| *d as f32).collect();
+        let source = texture(&self.device, wgpu::TextureFormat::R32Float);
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 4), rows_per_image: None };
+        self.device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(&floats), rows, source.size());
+        let format = wgpu::TextureFormat::Depth24Plus;
+        let depth = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: source.size(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(DEPTH_SHADER.into()),
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("corner"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Always),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("depth"),
+                compilation_options: Default::default(),
+                targets: &[],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&source.create_view(&Default::default())),
+            }],
+        });
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let view = depth.create_view(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        self.device.queue.submit([encoder.finish()]);
+        depth
     }
 
     pub fn use_half_floats(&mut self) {

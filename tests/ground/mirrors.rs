@@ -4,7 +4,11 @@ use glam::{DVec2, DVec3};
 use welkin::{
     context::GivenDirection,
     frame::Stages,
-    ground::reference::{fresnel_water, normal_quantile},
+    ground::{
+        SurfaceClass,
+        reference::{fresnel_water, glitter, normal_quantile},
+    },
+    scene::HostLight,
     weather::{CloudKind, CloudLayer, Surface, SurfaceState, Weather, Wind},
 };
 
@@ -133,4 +137,62 @@ fn rings_follow_time_and_rate() {
         assert_eq!(moved > 300, rate > 0.0, "{rate} mm/h: {moved}");
     }
     assert!(roughness[0] < 0.02 && roughness[2] > 3.0 * roughness[1] && roughness[1] > 0.01, "{roughness:?}");
+}
+
+/// Twins of `LAMP_RADIUS` and of the slope that wind gives to puddles.
+const LAMP_RADIUS_M: f64 = 0.1;
+const WIND_SLOPE_M_S: f64 = 8.0;
+
+#[test]
+fn a_lamp_shines_in_a_puddle_by_the_law_of_glitter_and_not_on_grass() {
+    let mut host = Host::new();
+    let surface = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
+    let weather = Weather { surface, wind: Wind::of(WIND_SLOPE_M_S, 240.0), ..Weather::default() };
+    host.context.set_weather(&weather, 0.0, 0.0).unwrap();
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+    let at = puddle(&host);
+    let eye = at.extend(0.0) + DVec3::new(0.0, -1.2, 0.9);
+    // Where a mirror at the puddle's middle sees it.
+    let lamp = HostLight {
+        position_m: at.extend(0.0) + DVec3::new(0.0, 4.0, 3.0),
+        direction: DVec3::new(0.0, -4.0, -3.0),
+        intensity_cd: [3000.0, 2000.0, 1000.0],
+        inner_deg: 60.0,
+        outer_deg: 80.0,
+    };
+    let camera = look(eye, 0.0, -(0.9f64 / 1.2).atan().to_degrees(), 0.12);
+    let mut picture = |class: SurfaceClass, lamps: &[HostLight]| {
+        host.context.set_default_surface_class(class);
+        host.context.set_lights(lamps).unwrap();
+        host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]))
+    };
+    let dark = picture(SurfaceClass::Paved, &[]);
+    let lit = picture(SurfaceClass::Paved, &[lamp]);
+    let grass = picture(SurfaceClass::Vegetation, &[lamp]);
+    assert!(grass.iter().all(|p| p[..3] == [0.0; 3]), "leaves mirror no lamp");
+    // Cox & Munk's slopes for the open sea, of which puddles have 3 of 100 (src/ground/uniform.rs).
+    let wind = host.context.scene_at(eye, 0.0).unwrap().conditions.wind.speed_m_s();
+    let slope = (0.5 * 0.00512 * 0.03 * wind).sqrt();
+    let pixel = 0.12 / f64::from(SIZE.1);
+    let (mut brightest, mut compared) = (0f64, 0);
+    for (x, y) in [(80, 45), (90, 45), (70, 40), (80, 55), (80, 35), (60, 50), (100, 60), (80, 20)] {
+        let d = ray(&camera, x, y);
+        let p = eye + d * (-eye.z / d.z);
+        let to = lamp.position_m - p;
+        let (to_lamp, to_eye) = (to.normalize(), -d);
+        let facet = (to_eye + to_lamp).normalize();
+        let disc = 0.25 * (LAMP_RADIUS_M / to.length() + pixel);
+        let share = glitter(slope, disc * disc, DVec3::Z, facet, to_eye, to_lamp) * fresnel_water(facet.dot(to_eye));
+        let i = (y * SIZE.0 + x) as usize;
+        for c in 0..3 {
+            let got = f64::from(lit[i][c] - dark[i][c]);
+            let want = lamp.illuminance_lux(p)[c] * share;
+            if want > 0.5 {
+                assert!((got / want - 1.0).abs() < 0.03, "pixel {x} {y}, channel {c}: {got}, want {want}");
+                compared += 1;
+            }
+            brightest = brightest.max(got);
+        }
+    }
+    assert!(compared >= 9 && brightest > 100.0, "{compared} {brightest}");
 }

@@ -61,7 +61,13 @@ fn pond(rate_mm_h: f64, showers: bool) -> (Host, f64) {
     let away = |i: u32| i.abs_diff(20) as f32;
     let height = |i: u32| (0.05 * (away(i % 40).max(away(i / 40)) - 6.0)).max(0.0);
     let heights_m = (0..1600).map(height).collect();
-    let grid = GroundGrid { origin: DVec3::new(-20.0, -20.0, 0.0), cell_m: 1.0, nodes: [40; 2], heights_m };
+    let grid = GroundGrid {
+        origin: DVec3::new(-20.0, -20.0, 0.0),
+        cell_m: 1.0,
+        nodes: [40; 2],
+        heights_m,
+        classes: Vec::new(),
+    };
     let weather = Weather {
         precipitation: Precipitation { showers, ..Precipitation::of(PrecipitationKind::Rain, rate_mm_h) },
         surface: Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() },

@@ -5,15 +5,17 @@ use welkin::{
     Status,
     context::{Context, ContextDesc, GivenDirection, GroundModel},
     frame::Stages,
+    ground::SurfaceClass,
     weather::Weather,
 };
 
-use crate::host::{Host, ground, look};
+use crate::host::{Host, ground, look, resealed};
 
 fn context(host: &Host, model: GroundModel) -> Context {
     let desc = ContextDesc { ground: model, seed: 7, ..ContextDesc::default() };
     let mut context = Context::new(host.device.clone(), host.context.shared().clone(), desc).unwrap();
     context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
+    context.set_default_surface_class(SurfaceClass::Paved);
     context
 }
 
@@ -64,10 +66,11 @@ fn a_saved_ground_goes_on_as_if_nothing_had_been() {
     assert_eq!(first.save().unwrap(), second.save().unwrap());
     let mut reported = context(&host, GroundModel::Reported);
     let e = reported.load(&saved).unwrap_err();
-    assert!(e.status == Status::InvalidArgument && e.message.contains("ground"), "{e}");
+    assert!(e.status == Status::InvalidArgument && e.message.contains("ground_model"), "{e}");
     let text = String::from_utf8(saved).unwrap();
     let broken = text.replacen("film_mm = ", "film_mm = -", 1);
-    assert!(text != broken && second.load(broken.as_bytes()).unwrap_err().status == Status::Parse);
+    let e = second.load(&resealed(&broken)).unwrap_err();
+    assert!(text != broken && e.status == Status::Parse && e.message.contains("ground must be"), "{e}");
     // A context without simulation says nothing of the ground in what it saves.
     assert!(!String::from_utf8(reported.save().unwrap()).unwrap().contains("film_mm"));
     assert!(reported.ground_water().is_none());
@@ -99,6 +102,12 @@ fn a_shower_wets_the_ground_and_the_sun_dries_it() {
     again.update(1800.0).unwrap();
     let under = places.filter(|p| again.ground_at(*p).unwrap().in_puddle).count() as f64 / 400.0;
     assert!((under - wet.puddles).abs() < 0.15, "{under} {}", wet.puddles);
+    // Where nothing is paved, none is drawn, and none is there.
+    again.set_default_surface_class(SurfaceClass::Unspecified);
+    for i in 0..400 {
+        let at = again.ground_at(DVec3::new(f64::from(i) * 0.3, 5.0, 0.0)).unwrap();
+        assert!(!at.in_puddle && at.water_mm == at.film_mm && at.film_mm > 0.2, "{at:?}");
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use welkin::{
     weather::{Precipitation, PrecipitationKind, Surface, SurfaceState, Weather, Wind},
 };
 
-use crate::host::{Host, SIZE, ground, look};
+use crate::host::{Host, SIZE, ground, look, resealed};
 
 pub const NODES: [u32; 2] = [40, 30];
 
@@ -22,7 +22,7 @@ pub fn grid() -> GroundGrid {
         (0.004 * y - 0.3 * (1.0 - away / 6.0).max(0.0)) as f32
     };
     let heights_m = (0..NODES[0] * NODES[1]).map(at).collect();
-    GroundGrid { origin: DVec3::new(-20.0, 0.0, 0.0), cell_m: 1.0, nodes: NODES, heights_m }
+    GroundGrid { origin: DVec3::new(-20.0, 0.0, 0.0), cell_m: 1.0, nodes: NODES, heights_m, classes: Vec::new() }
 }
 
 pub fn simulated(host: &Host) -> Context {
@@ -103,9 +103,9 @@ fn a_saved_terrain_goes_on_as_if_nothing_had_been() {
     let saved = first.save().unwrap();
     first.update(1800.0).unwrap();
     let mut second = simulated(&host);
-    second.set_shelters(first.shelters()).unwrap();
     second.load(&saved).unwrap();
     assert_eq!(second.ground_grid(), Some(&grid()), "the heights come with it");
+    assert_eq!(second.shelters(), first.shelters(), "and what keeps them dry");
     second.set_ground_grid(Some(grid())).unwrap();
     second.update(1800.0).unwrap();
     assert!(cells(&first) == cells(&second));
@@ -122,18 +122,18 @@ fn a_saved_terrain_goes_on_as_if_nothing_had_been() {
     ] {
         let broken = text.replacen(from, &to, 1);
         assert!(broken != text);
-        let e = second.load(broken.as_bytes()).unwrap_err();
+        let e = second.load(&resealed(&broken)).unwrap_err();
         assert!(e.status == Status::Parse && e.message.contains("terrain"), "{e}");
     }
     assert!(cells(&first) == cells(&second));
-    // A state from before there was a terrain leaves the grid and begins its water anew.
-    let plain = shower(&host);
+    // A state without a terrain takes it away; set again, it begins as the ground is.
+    let mut third = shower(&host);
     let mut bare = simulated(&host);
     bare.set_weather(&rain(12.0, 4.0), 0.0, 0.0).unwrap();
     bare.update(1000.0).unwrap();
-    let mut third = plain;
     third.load(&bare.save().unwrap()).unwrap();
-    assert!(third.ground_grid().is_some() && third.ground_water() == bare.ground_water());
+    assert!(third.ground_grid().is_none() && third.ground_water() == bare.ground_water());
+    third.set_ground_grid(Some(grid())).unwrap();
     let open = third.ground_at(at(0.0, 20.0)).unwrap();
     assert!((open.film_mm - bare.ground_water().unwrap().film_mm).abs() < 0.05, "{open:?}");
 }
@@ -281,7 +281,13 @@ fn in_real_hills_water_stands_in_their_closed_hollows_alone() {
     assert!(pits.len() > 20 && tops.len() > 20, "{} {}", pits.len(), tops.len());
     let host = Host::new();
     let mut context = simulated(&host);
-    let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 80.0, nodes: [columns, rows], heights_m: heights_m.clone() };
+    let grid = GroundGrid {
+        origin: DVec3::ZERO,
+        cell_m: 80.0,
+        nodes: [columns, rows],
+        heights_m: heights_m.clone(),
+        classes: Vec::new(),
+    };
     context.set_ground_grid(Some(grid)).unwrap();
     context.set_weather(&rain(15.0, 3.0), 0.0, 0.0).unwrap();
     context.update(3600.0).unwrap();
@@ -338,7 +344,7 @@ fn a_bad_grid_is_refused_and_the_running_one_stays() {
 }
 
 #[test]
-fn large_grids_and_long_leaps_end_soon() {
+fn large_grids_are_set_stepped_and_saved_soon() {
     let host = Host::new();
     for side in [64u32, 256, 512] {
         let at = |i: u32| {
@@ -351,7 +357,7 @@ fn large_grids_and_long_leaps_end_soon() {
         context.set_shelters(&[roof([10.0, 10.0, 4.0], [5.0, 5.0, 0.2])]).unwrap();
         let ms = |start: std::time::Instant| start.elapsed().as_secs_f64() * 1e3;
         let start = std::time::Instant::now();
-        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [side, side], heights_m };
+        let grid = GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [side, side], heights_m, classes: Vec::new() };
         context.set_ground_grid(Some(grid)).unwrap();
         let set = ms(start);
         let start = std::time::Instant::now();
@@ -368,11 +374,8 @@ fn large_grids_and_long_leaps_end_soon() {
             "{side}^2: set {set:.1} ms, step {step:.3} ms, in a rim {uneven:.3} ms, save {:.1} ms {saved} bytes",
             ms(start)
         );
+        assert!(uneven < 1e3 && step < 1e3, "{side}: {step} ms, {uneven} ms");
         context.set_rain_areas(&[]).unwrap();
-        let start = std::time::Instant::now();
-        context.update(1e9).unwrap();
-        println!("{side}^2: leap {:.1} s", ms(start) * 1e-3);
-        assert!(start.elapsed().as_secs_f64() < 30.0, "{side}: {:?}", start.elapsed());
         assert!(cells(&context).iter().all(|c| c.film_mm.is_finite() && c.standing_mm.is_finite()));
     }
 }

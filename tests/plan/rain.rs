@@ -127,6 +127,32 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
     }
 }
 
+/// A contrast gain makes streaks worth more, and the plan knows by how much.
+#[test]
+fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
+    let mut bench = Bench::new();
+    for seed in [1, 2, 7] {
+        let shot = Shot { tolerance: 0.5, height_m: 2.0, sun_deg: 30.0, far_m: 300.0, fov_deg: 50.0, ..rainy(seed) };
+        bench.set(&shot);
+        let mut found = [RainSettings::default(), RainSettings::TRAINER].map(|settings| {
+            bench.view.set_rain(settings).unwrap();
+            bench.plain.set_rain(settings).unwrap();
+            let everything = bench.everything(&shot);
+            let (_, plan) = bench.planned(&shot, SETTLED);
+            let mut parts = [true; PARTS];
+            (parts[RAIN], parts[DROPS]) = (false, false);
+            let error = difference(&bench.pinned(&shot, parts), &everything, 1.0).unwrap().p95;
+            bench.view.set_budget(Budget::default()).unwrap();
+            (error, plan.parts[RAIN].worth.p95)
+        });
+        println!("{}: (found, expected) {found:?}", shot.name);
+        for (error, expected) in &mut found {
+            assert!((0.75..1.4).contains(&(*expected / *error)), "{}: {expected} expected, {error}", shot.name);
+        }
+        assert!(found[1].1 > 2.5 * found[0].1, "{}: {found:?}", shot.name);
+    }
+}
+
 #[test]
 fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
     let mut bench = Bench::new();

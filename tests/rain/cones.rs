@@ -256,10 +256,12 @@ fn cones_leave_a_cab_dry_and_a_veil_draws_nothing() {
 #[test]
 fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
     let mut host = amid_walls((320, 180));
-    draws(&mut host, RainModel::Automatic);
     let pixel = 2.0 * (0.5f64 * 0.9).tan() / 180.0;
-    for (i, (rate, speed)) in [(2.0, 0.0), (20.0, 0.0), (20.0, 25.0), (100.0, 0.0)].into_iter().enumerate() {
+    let cases =
+        [(2.0, 0.0, 1.0), (20.0, 0.0, 1.0), (20.0, 25.0, 1.0), (100.0, 0.0, 1.0), (5.0, 0.0, 4.0), (20.0, 0.0, 8.0)];
+    for (i, (rate, speed, gain)) in cases.into_iter().enumerate() {
         let (t, weather) = (10.0 + 100.0 * i as f64, rain(rate, 0.0));
+        host.view.set_rain(RainSettings { contrast_gain: gain, ..RainSettings::default() }).unwrap();
         host.velocity_m_s = DVec3::X * speed;
         host.context.set_weather(&weather, t, 0.0).unwrap();
         let mut variance = 0.0;
@@ -272,12 +274,12 @@ fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
         let classes = classes(&weather, u32::MAX);
         let fall = classes.flux[16].1;
         let along = DVec3::new(speed, 0.0, fall).length() / 60.0;
-        let want = contrast::cover_variance(&classes, pixel, along, (0.2, BANDS_M[4])).sqrt();
+        let want = contrast::cover_variance(&classes, pixel, (along, gain), (0.2, BANDS_M[4])).sqrt();
         let ratio = variance.sqrt() / want;
         println!(
-            "{rate} mm/h at {speed} m/s: deviation {:.5}, by the closed form {want:.5}, {ratio:.3}",
+            "{rate} mm/h at {speed} m/s, gain {gain}: deviation {:.5}, by the closed form {want:.5}, {ratio:.3}",
             variance.sqrt()
         );
-        assert!((0.8..1.25).contains(&ratio), "{rate} mm/h at {speed} m/s: {ratio}");
+        assert!((0.85..1.15).contains(&ratio), "{rate} mm/h at {speed} m/s, gain {gain}: {ratio}");
     }
 }

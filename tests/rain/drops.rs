@@ -149,7 +149,8 @@ fn each_drop_is_drawn_where_the_reference_has_it_and_none_beside() {
     let mut host = white((480, 270));
     let weather = rain(10.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
-    let few = RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(2000) };
+    let few =
+        RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(2000), ..RainSettings::default() };
     host.view.set_rain(few).unwrap();
     let classes = classes(&weather, 2000);
     for (t, eye) in [(3.0, DVec3::new(0.0, 0.0, 300.0)), (123_456.7, DVec3::new(1.3, 0.4, 301.0))] {

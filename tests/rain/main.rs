@@ -2,6 +2,7 @@
 
 mod area_textures;
 mod areas;
+mod brute;
 mod cones;
 mod culled;
 #[path = "../depth_texture/mod.rs"]
@@ -11,6 +12,7 @@ mod dry_places;
 mod far;
 mod integrated;
 mod open_shares;
+mod photometry;
 mod pictures;
 mod processes;
 mod sand;

@@ -48,7 +48,14 @@ fn tell(host: &mut Host) {
     host.context.set_weather(&rain(12.0, 13.0), 0.0, 0.0).unwrap();
     host.context.set_weather(&rain(20.0, 8.0), 10.0, 5.0).unwrap();
     host.context.set_weather(&shower(), 40.0, 30.0).unwrap();
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: SHUTTER_S, most_drops: Some(MOST) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: SHUTTER_S,
+            most_drops: Some(MOST),
+            ..RainSettings::default()
+        })
+        .unwrap();
 }
 
 fn classes() -> Classes {
@@ -285,7 +292,12 @@ fn default_channel(name: &str) -> String {
     let mut host = night(Host::on(device, SIZE));
     tell(&mut host);
     host.view
-        .set_rain(RainSettings { model: RainModel::Automatic, shutter_s: SHUTTER_S, most_drops: Some(MOST) })
+        .set_rain(RainSettings {
+            model: RainModel::Automatic,
+            shutter_s: SHUTTER_S,
+            most_drops: Some(MOST),
+            ..RainSettings::default()
+        })
         .unwrap();
     let across = if name == "left" { [-0.15, 0.03] } else { [-0.03, 0.15] };
     Projector { projection: off_axis(across, [-0.06, 0.06]), ..projectors()[0] }.of(&mut host);
@@ -343,7 +355,14 @@ fn saved_file() -> PathBuf {
 fn dark() -> Host {
     let mut host = night(Host::new(SIZE));
     projectors()[0].of(&mut host);
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: SHUTTER_S, most_drops: Some(MOST) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: SHUTTER_S,
+            most_drops: Some(MOST),
+            ..RainSettings::default()
+        })
+        .unwrap();
     host
 }
 

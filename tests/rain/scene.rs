@@ -171,6 +171,11 @@ impl Host {
         self.upload(&self.depth, bytemuck::cast_slice(&depths), 4);
     }
 
+    /// Uploads black before what [`Host::draw`] drew last.
+    pub fn paint_black(&self) {
+        self.upload(&self.color, &vec![0; 8 * (self.size.0 * self.size.1) as usize], 8);
+    }
+
     fn upload(&self, texture: &wgpu::Texture, bytes: &[u8], texel: u32) {
         self.device.queue.write_texture(
             texture.as_image_copy(),

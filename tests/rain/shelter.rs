@@ -206,7 +206,14 @@ pub fn check(
 fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
     let mut host = white((480, 270));
     // Few drops, with no splashes among them: what can be seen of them is their discs.
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(4000) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: 1e-3,
+            most_drops: Some(4000),
+            ..RainSettings::default()
+        })
+        .unwrap();
     let side = (512, 512);
     for (i, wind) in [0.0, 5.0, 12.0, 25.0].into_iter().enumerate() {
         let t = 10.0 * (i + 1) as f64;
@@ -342,7 +349,14 @@ fn maps_keep_rain_off_on_both_drivers() {
 
 /// Drops few enough to be told apart.
 pub fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(4000) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: 1e-3,
+            most_drops: Some(4000),
+            ..RainSettings::default()
+        })
+        .unwrap();
     let weather = rain(rate, wind);
     host.context.set_weather(&weather, t, 0.0).unwrap();
     host.context.update(t + 3.0).unwrap();
@@ -353,7 +367,14 @@ pub fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
 fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
     let mut host = white((480, 270));
     let classes = few(&mut host, 3.0, 0.0, 10.0);
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: 1e-4, most_drops: Some(1000) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: 1e-4,
+            most_drops: Some(1000),
+            ..RainSettings::default()
+        })
+        .unwrap();
     let splashes = Splashes::new(&classes);
     let eye = DVec3::new(0.2, 0.3, 2.0);
     host.look(eye, DVec3::new(0.0, 1.0, -0.8));

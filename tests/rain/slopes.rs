@@ -66,7 +66,14 @@ fn count(host: &mut Host, splashes: &Splashes, from: f64, surface: impl Fn(DVec2
 /// Rain of few drops, whose splashes can be told apart.
 fn splashing(host: &mut Host, wind: f64, t: f64) -> (Splashes, f64) {
     let classes = few(host, 1.0, wind, t);
-    host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s: 1e-4, most_drops: Some(1000) }).unwrap();
+    host.view
+        .set_rain(RainSettings {
+            model: RainModel::Drops,
+            shutter_s: 1e-4,
+            most_drops: Some(1000),
+            ..RainSettings::default()
+        })
+        .unwrap();
     let flux = classes.flux.iter().filter(|f| f.0 >= LEAST_MM).map(|f| f.2).sum();
     (Splashes::new(&classes), flux)
 }

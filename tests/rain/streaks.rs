@@ -70,7 +70,8 @@ pub fn alone(streak: &Streak, all: &[Streak]) -> bool {
     })
 }
 
-/// Length of a dark bar in the picture from its spread: one of even darkness has length^2 / 12.
+/// How far a drop went that left a dark bar in the picture, from the bar's spread: that of an even way is its square over 12, and a
+/// disc's own is a quarter of its radius' square.
 fn drawn_length(streak: &Streak, pixels: &[f64]) -> Option<f64> {
     let reach = streak.half.abs() + 2.0 * streak.end + 3.0;
     let (low, high) = (streak.middle - reach, streak.middle + reach);
@@ -87,7 +88,7 @@ fn drawn_length(streak: &Streak, pixels: &[f64]) -> Option<f64> {
         }
     }
     // Fainter ones are lost in the steps of half floats.
-    (sum > 0.3).then(|| (12.0 * (second / sum - (first / sum).powi(2))).sqrt())
+    (sum > 0.3).then(|| (12.0 * (second / sum - (first / sum).powi(2) - 0.25 * streak.end.powi(2))).sqrt())
 }
 
 #[test]
@@ -102,7 +103,14 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
     let mut t = 10.0;
     for (speed, shutter_s) in [(0.0, 0.02), (25.0, 0.008)] {
         host.velocity_m_s = DVec3::X * speed;
-        host.view.set_rain(RainSettings { model: RainModel::Drops, shutter_s, most_drops: Some(MOST) }).unwrap();
+        host.view
+            .set_rain(RainSettings {
+                model: RainModel::Drops,
+                shutter_s,
+                most_drops: Some(MOST),
+                ..RainSettings::default()
+            })
+            .unwrap();
         let mut ratios = vec![Vec::new(); CLASSES];
         for _ in 0..90 {
             t += 0.37;
@@ -111,7 +119,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
             let all = streaks(&host, &classes, t, shutter_s);
             for streak in all.iter().filter(|s| s.half.length() > 6.0 && alone(s, &all)) {
                 if let Some(length) = drawn_length(streak, &pixels) {
-                    ratios[streak.id.1 as usize].push((length - 2.0 * streak.end) / (2.0 * streak.half.length()));
+                    ratios[streak.id.1 as usize].push(length / (2.0 * streak.half.length()));
                 }
             }
         }

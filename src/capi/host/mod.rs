@@ -140,11 +140,11 @@ unsafe fn target<T: layout::Layout>(p: *const c_void) -> Result<T> {
 }
 
 /// Names what the Rust side calls `color` or `cd_m2_per_unit` as the header does.
-fn in_frame(e: Error) -> Error {
+pub(super) fn in_frame(e: Error) -> Error {
     let starts = |names: &[&str]| names.iter().any(|n| e.message.starts_with(n));
     let prefix = if starts(&["depth mapping", "cd_m2_per_unit"]) {
         "frame."
-    } else if starts(&["color", "depth", "mask"]) {
+    } else if starts(&["color", "depth", "mask", "surface_classes", "normals"]) {
         "frame.target."
     } else {
         ""

@@ -44,15 +44,21 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
     let desc = description(&unsafe { target::<wk_opengl_target>(c.target)? })?;
     // Before the host's images are touched.
     let mut frame = frame::from_c(c, Images::default(), true)?;
+    object.lock().check_call(&frame, stages).map_err(in_frame)?;
     let gpu = object.cell.gpu();
-    let _entered = gpu.enter()?;
+    let entered = gpu.enter()?;
     let images = desc.map(|desc| host.target(&gpu.device, &desc)).transpose().map_err(|e| e.within("frame."))?;
     if let Some(images) = &images {
         frame.color = Some(&images.color);
         frame.depth = images.depth_read.as_ref();
         frame.mask = images.mask.as_ref();
+        frame.surface_classes = images.surface_classes.as_ref();
+        frame.normals = images.normals.as_ref();
     }
-    object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+    let recorded = object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame);
+    drop(entered);
+    recorded?;
+    host.check()
 }
 
 pub(in crate::capi) fn set_occluder_maps<'a>(
@@ -67,7 +73,10 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
         let named = |e: Error| {
             Error::new(
                 e.status,
-                e.message.replace("target.depth", "target").replace("target", &format!("maps[{i}].opengl")),
+                e.message
+                    .replace("target.generation", &format!("maps[{i}].generation"))
+                    .replace("target.depth", "target")
+                    .replace("target", &format!("maps[{i}].opengl")),
             )
         };
         let none = || {
@@ -83,17 +92,26 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
 /// The target as the Rust side takes it; `None` without a colour image.
 fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
     let (color, depth, mask) = (image(&c.color), image(&c.depth), image(&c.mask));
+    let (surface_classes, normals) = (image(&c.surface_classes), image(&c.normals));
     let Some(color) = color else {
-        if depth.is_some() || mask.is_some() {
-            let text = "frame.target.color must be given where depth or mask are";
+        if [depth, mask, surface_classes, normals].iter().any(Option::is_some) {
+            let text = "frame.target.color must be given where depth, mask, surface_classes or normals are";
             return Err(Error::new(Status::InvalidArgument, text));
         }
         return Ok(None);
     };
+    for (name, other) in [("depth", depth), ("mask", mask)] {
+        if other == Some(color) && !matches!(color, GlImage::Framebuffer { .. }) {
+            let text = format!("frame.target.{name} must be another image than frame.target.color, got the same name");
+            return Err(Error::new(Status::InvalidArgument, text));
+        }
+    }
     Ok(Some(GlTargetDesc {
         color,
         depth,
         mask,
+        surface_classes,
+        normals,
         width: c.width,
         height: c.height,
         generation: c.generation,

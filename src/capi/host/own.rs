@@ -12,7 +12,7 @@ use crate::{
         handles::Object,
         occluder::wk_occluder_map,
         surface::SurfaceObject,
-        texture::TextureObject,
+        texture::*,
         view::ViewObject,
     },
     error::{Error, Result, Status},
@@ -33,13 +33,41 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     let color = of_device::<TextureObject>(call, here, "frame.target.color", target.color)?;
     let depth = of_device::<TextureObject>(call, here, "frame.target.depth", target.depth)?;
     let mask = of_device::<TextureObject>(call, here, "frame.target.mask", target.mask)?;
+    let classes = of_device::<TextureObject>(call, here, "frame.target.surface_classes", target.surface_classes)?;
+    let normals = of_device::<TextureObject>(call, here, "frame.target.normals", target.normals)?;
     let surface = of_device::<SurfaceObject>(call, here, "frame.target.surface", target.surface)?;
+    let mut frame = frame::from_c(c, Images::default(), false)?;
+    object.lock().check_call(&frame, stages).map_err(in_frame)?;
+    let formats = &[
+        WK_FORMAT_RGBA8_UNORM,
+        WK_FORMAT_RGBA8_SRGB,
+        WK_FORMAT_BGRA8_UNORM,
+        WK_FORMAT_BGRA8_SRGB,
+        WK_FORMAT_RGBA16_FLOAT,
+        WK_FORMAT_RGBA32_FLOAT,
+    ];
+    check_format("frame.target.color", &color, formats)?;
+    check_format("frame.target.depth", &depth, &[WK_FORMAT_R32_FLOAT])?;
+    let formats = &[WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM, WK_FORMAT_RGBA8_SRGB, WK_FORMAT_BGRA8_UNORM];
+    check_format("frame.target.mask", &mask, formats)?;
     let window = surface.map(|s| s.lock().acquire()).transpose()?;
     let get = |t: &Option<Arc<TextureObject>>| t.as_ref().map(|t| t.texture.clone());
     let (color, depth, mask) = (window.or_else(|| get(&color)), get(&depth), get(&mask));
-    let images = Images { color: color.as_ref(), depth: depth.as_ref(), mask: mask.as_ref(), ..Images::default() };
-    let frame = frame::from_c(c, images, false)?;
+    let (classes, normals) = (get(&classes), get(&normals));
+    (frame.color, frame.depth, frame.mask) = (color.as_ref(), depth.as_ref(), mask.as_ref());
+    (frame.surface_classes, frame.normals) = (classes.as_ref(), normals.as_ref());
     object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame)
+}
+
+/// Refuses a texture whose format cannot serve, in the header's names.
+fn check_format(param: &str, texture: &Option<Arc<TextureObject>>, accepted: &[wk_format]) -> Result<()> {
+    let Some(texture) = texture else { return Ok(()) };
+    if accepted.contains(&texture.format) {
+        return Ok(());
+    }
+    let names: Vec<_> = accepted.iter().map(|f| name_of(*f)).collect();
+    let text = format!("{param} must have one of the formats {}, got {}", names.join(", "), name_of(texture.format));
+    Err(Error::unsupported(text))
 }
 
 pub(in crate::capi) fn set_occluder_maps<'a>(

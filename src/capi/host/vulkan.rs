@@ -119,11 +119,14 @@ pub(in crate::capi) unsafe fn record(
             import(host, "frame.target.color", target.color, ImageRole::Colour),
             import(host, "frame.target.depth", target.depth, ImageRole::Depth),
             import(host, "frame.target.mask", target.mask, ImageRole::Sampled),
+            import(host, "frame.target.surface_classes", target.surface_classes, ImageRole::Sampled),
+            import(host, "frame.target.normals", target.normals, ImageRole::Sampled),
         ];
         (imports, target)
     };
-    let [color, depth, mask] = all_of(imports)?;
-    check_distinct([("depth", &depth), ("mask", &mask)], &color)?;
+    let [color, depth, mask, classes, normals] = all_of(imports)?;
+    let read = [("depth", &depth), ("mask", &mask), ("surface_classes", &classes), ("normals", &normals)];
+    check_distinct(read, &color)?;
     // SAFETY: as above.
     let (waits, signals) = unsafe {
         (
@@ -133,10 +136,18 @@ pub(in crate::capi) unsafe fn record(
     };
     let layer = |i: &Option<Imported>| i.as_ref().map_or(0, |i| i.image.layer);
     let images = Images {
-        layers: ImageLayers { color: layer(&color), depth: layer(&depth), mask: layer(&mask) },
+        layers: ImageLayers {
+            color: layer(&color),
+            depth: layer(&depth),
+            mask: layer(&mask),
+            surface_classes: layer(&classes),
+            normals: layer(&normals),
+        },
         color: color.as_ref().map(|i| &i.texture),
         depth: depth.as_ref().map(|i| &i.texture),
         mask: mask.as_ref().map(|i| &i.texture),
+        surface_classes: classes.as_ref().map(|i| &i.texture),
+        normals: normals.as_ref().map(|i| &i.texture),
     };
     let frame = frame::from_c(c, images, false)?;
     let gpu = object.cell.gpu();
@@ -153,7 +164,11 @@ pub(in crate::capi) unsafe fn record(
         });
         encoder.transition_resources(std::iter::empty(), transitions);
     }
-    let lent: Vec<_> = [&color, &depth, &mask].into_iter().flatten().map(|i| (i.image, i.role, &i.texture)).collect();
+    let lent: Vec<_> = [&color, &depth, &mask, &classes, &normals]
+        .into_iter()
+        .flatten()
+        .map(|i| (i.image, i.role, &i.texture))
+        .collect();
     let over = HandOver { images: &lent, wait: waits.as_slice(), signal: signals.as_slice() };
     // SAFETY: as above; the queue is used by the header's contract.
     unsafe { host.submit(encoder, &over) }.map_err(|e| match e.status {
@@ -201,7 +216,7 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
 }
 
 /// Refuses what is read and drawn into at the same time.
-fn check_distinct(read: [(&str, &Option<Imported>); 2], color: &Option<Imported>) -> Result<()> {
+fn check_distinct(read: [(&str, &Option<Imported>); 4], color: &Option<Imported>) -> Result<()> {
     let place = |i: &Imported| (i.image.image, i.image.layer);
     let is_color = |i: &Imported| color.as_ref().is_some_and(|c| place(c) == place(i));
     match read.into_iter().find(|(_, image)| image.as_ref().is_some_and(is_color)) {
@@ -214,9 +229,11 @@ fn check_distinct(read: [(&str, &Option<Imported>); 2], color: &Option<Imported>
 }
 
 /// The images, or what is wrong with all of them in one sentence.
-fn all_of<T>(images: [Result<T>; 3]) -> Result<[T; 3]> {
+fn all_of<T>(images: [Result<T>; 5]) -> Result<[T; 5]> {
     let wrong: Vec<Error> = match images {
-        [Ok(color), Ok(depth), Ok(mask)] => return Ok([color, depth, mask]),
+        [Ok(color), Ok(depth), Ok(mask), Ok(classes), Ok(normals)] => {
+            return Ok([color, depth, mask, classes, normals]);
+        }
         some => some.into_iter().filter_map(Result::err).collect(),
     };
     let text = wrong.iter().map(|e| e.message.as_str()).collect::<Vec<_>>().join("; ");

@@ -3,7 +3,7 @@
 //! wgpu's own backend holds a table of its own; this one exists because saving and restoring a host's state needs
 //! functions that table lacks (the compatibility profile's, per-viewport and per-buffer getters).
 
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 
 use super::names::*;
 
@@ -154,6 +154,16 @@ gl_functions! {
         WaitSync = c"glWaitSync" (sync: Sync, flags: u32, timeout_ns: u64);
         DeleteSync = c"glDeleteSync" (sync: Sync);
         Flush = c"glFlush" ();
+        CreateShader = c"glCreateShader" (kind: u32) -> u32;
+        CompileShader = c"glCompileShader" (shader: u32);
+        DeleteShader = c"glDeleteShader" (shader: u32);
+        CreateProgram = c"glCreateProgram" () -> u32;
+        AttachShader = c"glAttachShader" (program: u32, shader: u32);
+        LinkProgram = c"glLinkProgram" (program: u32);
+        DeleteProgram = c"glDeleteProgram" (program: u32);
+        DrawArrays = c"glDrawArrays" (mode: u32, first: i32, count: i32);
+        BeginQuery = c"glBeginQuery" (target: u32, query: u32);
+        EndQuery = c"glEndQuery" (target: u32);
         PauseTransformFeedback = c"glPauseTransformFeedback" ();
         ResumeTransformFeedback = c"glResumeTransformFeedback" ();
     }
@@ -188,6 +198,11 @@ gl_functions! {
         GetFramebufferAttachmentParameteriv = c"glGetFramebufferAttachmentParameteriv"
             (target: u32, attachment: u32, name: u32, out: *mut i32);
         GetRenderbufferParameteriv = c"glGetRenderbufferParameteriv" (target: u32, name: u32, out: *mut i32);
+        ShaderSource = c"glShaderSource" (shader: u32, n: i32, texts: *const *const c_char, lengths: *const i32);
+        GenQueries = c"glGenQueries" (n: i32, out: *mut u32);
+        DeleteQueries = c"glDeleteQueries" (n: i32, names: *const u32);
+        GetQueryiv = c"glGetQueryiv" (target: u32, name: u32, out: *mut i32);
+        GetQueryObjectuiv = c"glGetQueryObjectuiv" (query: u32, name: u32, out: *mut u32);
         ReadPixels = c"glReadPixels" (x: i32, y: i32, w: i32, h: i32, format: u32, ty: u32, out: *mut c_void);
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct Workshop<'a> {
 
 /// An OpenGL object that a wgpu texture stands for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Object {
+pub(super) enum Object {
     /// Name and target.
     Texture(u32, u32),
     Renderbuffer(u32),
@@ -37,6 +37,15 @@ impl Object {
     fn name(self) -> u32 {
         let (Self::Texture(name, _) | Self::Renderbuffer(name) | Self::Framebuffer(name)) = self;
         name
+    }
+
+    /// Attaches it to the bound framebuffer.
+    pub(super) fn attach(self, api: &Api, attachment: u32) {
+        match self {
+            Self::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
+            Self::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
+            Self::Framebuffer(_) => {}
+        }
     }
 
     fn is_multisampled_texture(self) -> bool {
@@ -99,14 +108,20 @@ impl Workshop<'_> {
             parts.push(self.part(desc, image, Side::Depth)?);
         }
         let samples = parts[0].facts.samples;
-        if let Some(other) = parts.iter().find(|p| p.facts.samples != samples) {
+        // Depth of several samples beside a resolved picture is copied to depth of one; OpenGL ES cannot do that.
+        let resolved = samples == 1 && !self.ask.info.is_es();
+        if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
             let accepted = format!("an image with as many samples as target.color, {samples}");
             return Err(Error::range("target.depth", &accepted, other.facts.samples));
         }
         let resolve = self.resolves(desc.multisample, samples)?;
+        let read = |image: Option<GlImage>, side| image.map(|image| self.read_part(desc, image, side)).transpose();
+        let mask_part = read(desc.mask, Side::Mask)?;
+        let classes_part = read(desc.surface_classes, Side::Classes)?;
+        let normals_part = read(desc.normals, Side::Normals)?;
         let samples = if resolve { 1 } else { samples };
         for part in &mut parts {
-            self.provide_copy(part, resolve, samples, made)?;
+            self.provide_copy(part, part.facts.samples > samples, samples, made)?;
         }
         // wgpu cannot attach multisampled textures: they need a framebuffer of ours, colour and depth together.
         let attached = || parts.iter().map(|p| (p.side, p.attached(samples), p.facts.internal));
@@ -120,16 +135,15 @@ impl Workshop<'_> {
             Some(part) => self.depth(part, samples, through)?,
             None => (None, None),
         };
-        let mask = match desc.mask {
-            Some(image) => {
-                let part = self.mask_part(desc, image)?;
-                let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
-                parts.push(part);
-                Some(texture)
-            }
-            None => None,
+        let mut wrap = |part: Option<Part>| {
+            let Some(part) = part else { return Ok(None) };
+            let texture = self.wrap(part.attached(1), part.format()?, part.facts, 1, READ)?;
+            parts.push(part);
+            Ok(Some(texture))
         };
-        Ok((GlTarget { id, color, color_read, depth, depth_read, mask, samples }, parts))
+        let (mask, surface_classes, normals) = (wrap(mask_part)?, wrap(classes_part)?, wrap(normals_part)?);
+        let target = GlTarget { id, color, color_read, depth, depth_read, mask, surface_classes, normals, samples };
+        Ok((target, parts))
     }
 
     /// A target that is only read: its depth stands for its colour too.
@@ -149,17 +163,20 @@ impl Workshop<'_> {
             depth: None,
             depth_read: Some(texture),
             mask: None,
+            surface_classes: None,
+            normals: None,
             samples: 1,
         };
         Ok((target, vec![part]))
     }
 
-    /// Asks about the mask.
-    fn mask_part(&self, desc: GlTargetDesc, image: GlImage) -> Result<Part> {
+    /// Asks about what is only read beside colour and depth.
+    fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
         if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
-            return Err(Error::unsupported("target.mask must be a texture of target GL_TEXTURE_2D"));
+            let text = format!("{} must be a texture of target GL_TEXTURE_2D", side.parameter());
+            return Err(Error::unsupported(text));
         }
-        self.part(desc, image, Side::Mask)
+        self.part(desc, image, side)
     }
 
     /// Whether multisampled images are copied to images of one sample.
@@ -272,15 +289,12 @@ impl Workshop<'_> {
         api.BindFramebuffer(FRAMEBUFFER, framebuffer);
         for (side, image, internal) in images {
             let attachment = match side {
-                Side::Color | Side::Mask => COLOR_ATTACHMENT0,
+                Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_ATTACHMENT0,
                 Side::Depth if formats::has_stencil(*internal) => DEPTH_STENCIL_ATTACHMENT,
                 Side::Depth => DEPTH_ATTACHMENT,
             };
-            match *image {
-                Object::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),
-                Object::Renderbuffer(name) => api.FramebufferRenderbuffer(FRAMEBUFFER, attachment, RENDERBUFFER, name),
-                Object::Framebuffer(_) => {}
-            }
+            image.attach(api, attachment);
+            made.attached.push((framebuffer, attachment, *image));
         }
         if images.iter().all(|(side, ..)| *side == Side::Depth) {
             let none = NONE;

@@ -30,9 +30,19 @@ const DEPTH: &[(u32, &str, Format)] = &[
     (DEPTH32F_STENCIL8, "GL_DEPTH32F_STENCIL8", Format::Depth32FloatStencil8),
 ];
 
-/// The formats of a mask, of which red is read.
+/// The formats of a mask or of classes, of which red is read.
 const MASK: &[(u32, &str, Format)] =
     &[(R8, "GL_R8", Format::R8Unorm), (RGBA8, "GL_RGBA8", Format::Rgba8Unorm), (RGB8, "GL_RGB8", Format::Rgba8Unorm)];
+
+/// The formats of normals.
+const NORMALS: &[(u32, &str, Format)] = &[
+    (RGBA8, "GL_RGBA8", Format::Rgba8Unorm),
+    (RGB8, "GL_RGB8", Format::Rgba8Unorm),
+    (RGB10_A2, "GL_RGB10_A2", Format::Rgb10a2Unorm),
+    (RGBA16F, "GL_RGBA16F", Format::Rgba16Float),
+    (RGB16F, "GL_RGB16F", Format::Rgba16Float),
+    (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
+];
 
 /// What an attachment is asked for when its internal format is not known by a sized name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,7 +95,8 @@ pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
     let table = match side {
         Side::Color => COLOR,
         Side::Depth => DEPTH,
-        Side::Mask => MASK,
+        Side::Mask | Side::Classes => MASK,
+        Side::Normals => NORMALS,
     };
     if let Some((_, _, format)) = table.iter().find(|(name, ..)| *name == internal) {
         return Ok(*format);
@@ -132,6 +143,14 @@ mod tests {
             assert!(error.message.contains(part), "{}", error.message);
         }
         assert!(format(RGBA8, Side::Depth).is_err() && format(DEPTH_COMPONENT16, Side::Mask).is_err());
+        // Signs need two halves or a float's; a class is a byte.
+        for (bad, side, name) in
+            [(R8, Side::Normals, "target.normals"), (RGBA16F, Side::Classes, "target.surface_classes")]
+        {
+            let error = format(bad, side).unwrap_err();
+            assert!(error.message.starts_with(name) && error.message.contains("GL_RGBA8"), "{}", error.message);
+        }
+        assert!(format(RGB16F, Side::Normals).is_ok() && format(R8, Side::Classes).is_ok());
     }
 
     #[test]

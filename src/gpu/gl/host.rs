@@ -8,22 +8,20 @@ use std::{
 use super::{
     Handover, MakeCurrent, WhichContext,
     api::{Api, Sync as Fence},
-    build::Workshop,
     check::{self, GlInfo},
     gate::Gate,
-    image::{Ask, GlImage},
+    image::GlImage,
     mark::Mark,
     names::*,
     state::HostState,
     target::{Entry, GlTarget, GlTargetDesc, Multisample},
+    window::WindowSize,
+    windows::Windows,
 };
 use crate::{
     error::{Error, Result, Status},
     gpu::HostBinding,
 };
-
-/// Targets kept before the longest unused one goes.
-const CACHED_TARGETS: usize = 32;
 
 /// The host's callback with its argument.
 #[derive(Clone, Copy)]
@@ -63,7 +61,7 @@ pub(super) struct Backend {
 /// How this device shares OpenGL with its host.
 pub(super) enum Sharing {
     /// A second context, with the functions of the host's own.
-    Shared { switch: Switch, host: Box<Api>, handover: Handover },
+    Shared { switch: Switch, host: Box<Api>, handover: Handover, windows: Windows },
     /// The host's context, with what must be put back.
     HostContext { state: Box<HostState>, switch: Option<Switch> },
 }
@@ -79,6 +77,8 @@ pub(super) struct Inner {
     pub(super) scratch: u32,
     pub(super) tier0: bool,
     pub(super) targets: Vec<Entry>,
+    /// Made when the host's window is first a target.
+    pub(super) window: Option<WindowSize>,
     /// Targets in use since the last enter, by id.
     pub(super) active: Vec<u64>,
     pub(super) next_id: u64,
@@ -149,6 +149,14 @@ impl GlHost {
         outcome
     }
 
+    /// What went wrong when the host was last left, where nothing could be answered; told once.
+    ///
+    /// # Errors
+    /// That.
+    pub fn check(&self) -> Result<()> {
+        self.inner().fault.take().map_or(Ok(()), Err)
+    }
+
     /// Undoes one [`GlHost::begin`]; the last one copies pictures back, puts the host's state back, and makes the host's
     /// context wait for Welkin's.
     pub fn leave(&self) {
@@ -194,6 +202,8 @@ impl GlHost {
             color: image,
             depth: Some(image),
             mask: None,
+            surface_classes: None,
+            normals: None,
             width,
             height,
             generation,
@@ -213,12 +223,24 @@ impl HostBinding for GlHost {
         Self::leave(self);
     }
 
+    fn reading(&self, color: &wgpu::Texture) -> Option<wgpu::Texture> {
+        self.inner().entry_of(color)?.target.color_read.clone()
+    }
+
+    fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
+        let inner = self.inner();
+        inner.entry_of(color).map_or(Ok(()), |entry| entry.read_again(&inner.api))
+    }
+
     fn closing(&self) {
         let mut inner = self.inner();
         let targets = std::mem::take(&mut inner.targets);
         for mut entry in targets {
             inner.end_of(&entry);
             entry.made.delete(&inner.api);
+        }
+        if let Some(window) = inner.window.take() {
+            window.delete(&inner.api);
         }
         inner.active.clear();
         inner.rest(&self.info);
@@ -252,7 +274,8 @@ impl Inner {
             return Err(fault);
         }
         match &mut self.sharing {
-            Sharing::Shared { switch, host, handover } => {
+            Sharing::Shared { switch, host, handover, windows } => {
+                windows.enter(host, *switch)?;
                 let fence = match handover {
                     Handover::Fence => host.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0),
                     Handover::Flush => std::ptr::null(),
@@ -285,7 +308,7 @@ impl Inner {
         let mut fault = self.finish_targets().err();
         self.rest(info);
         match &mut self.sharing {
-            Sharing::Shared { switch, host, handover } => {
+            Sharing::Shared { switch, host, handover, windows } => {
                 let raised = self.api.take_error();
                 let fence = match handover {
                     Handover::Fence => self.api.FenceSync(SYNC_GPU_COMMANDS_COMPLETE, 0),
@@ -295,6 +318,10 @@ impl Inner {
                 match switch.to(WhichContext::Host) {
                     Ok(()) => {
                         wait(host, fence);
+                        fault = fault.or_else(|| windows.check_back(host).err());
+                        if self.closed {
+                            windows.remove(host);
+                        }
                         let active = &self.active;
                         for entry in self.targets.iter().filter(|e| active.contains(&e.target.id)) {
                             entry.images().for_each(|image| bind_again(host, image));
@@ -350,91 +377,6 @@ impl Inner {
             api.BindRenderbuffer(RENDERBUFFER, 0);
         }
     }
-
-    /// Finds or builds a target and begins it.
-    fn target(&mut self, info: &GlInfo, device: &wgpu::Device, desc: &GlTargetDesc) -> Result<Arc<GlTarget>> {
-        self.refuse_foreign_framebuffers(desc)?;
-        if let Some(i) = self.targets.iter().position(|e| same_objects(&e.desc, desc)) {
-            let entry = &self.targets[i];
-            let begun = self.active.contains(&entry.target.id);
-            if begun && entry.desc == *desc {
-                entry.refresh(&self.api)?;
-                return Ok(entry.target.clone());
-            }
-            let fresh = entry.desc == *desc && entry.is_current(self.ask(info))?;
-            if fresh {
-                self.next_id += 1;
-                self.targets[i].used = self.next_id;
-                return self.begin_target(i);
-            }
-            self.drop_target(i);
-        }
-        if self.targets.len() >= CACHED_TARGETS {
-            let active = &self.active;
-            let oldest = (0..self.targets.len())
-                .filter(|i| !active.contains(&self.targets[*i].target.id))
-                .min_by_key(|i| self.targets[*i].used);
-            if let Some(i) = oldest {
-                self.drop_target(i);
-            }
-        }
-        self.next_id += 1;
-        let entry = Workshop { ask: self.ask(info), device, tier0: self.tier0 }.build(*desc, self.next_id)?;
-        self.targets.push(entry);
-        self.begin_target(self.targets.len() - 1)
-    }
-
-    fn ask<'a>(&'a self, info: &'a GlInfo) -> Ask<'a> {
-        let encodes = match &self.sharing {
-            Sharing::HostContext { state, .. } => info.is_es() || state.was_on(FRAMEBUFFER_SRGB),
-            Sharing::Shared { .. } => true,
-        };
-        Ask { api: &self.api, info, scratch: self.scratch, encodes }
-    }
-
-    /// Ends `entry` if it is in use.
-    fn end_of(&mut self, entry: &Entry) {
-        if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
-            self.active.swap_remove(at);
-            if let Err(e) = entry.end(&self.api) {
-                self.fault.get_or_insert(e);
-            }
-        }
-    }
-
-    fn begin_target(&mut self, i: usize) -> Result<Arc<GlTarget>> {
-        let entry = &mut self.targets[i];
-        if let Err(e) = entry.begin(&self.api) {
-            self.drop_target(i);
-            return Err(e);
-        }
-        self.active.push(entry.target.id);
-        Ok(entry.target.clone())
-    }
-
-    fn drop_target(&mut self, i: usize) {
-        let mut entry = self.targets.swap_remove(i);
-        self.end_of(&entry);
-        entry.made.delete(&self.api);
-    }
-
-    /// Framebuffers belong to one context: in a shared one their names mean nothing.
-    fn refuse_foreign_framebuffers(&self, desc: &GlTargetDesc) -> Result<()> {
-        let foreign = matches!(self.sharing, Sharing::Shared { .. })
-            && [Some(desc.color), desc.depth].into_iter().flatten().any(|i| matches!(i, GlImage::Framebuffer { .. }));
-        if foreign {
-            return Err(Error::unsupported(
-                "target.color must be a texture or renderbuffer in a shared context: framebuffers, the window's \
-                 included, are not shared; make the device in the host's own context for those",
-            ));
-        }
-        Ok(())
-    }
-}
-
-/// Whether two descriptions name the same images, used in the same way.
-fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
-    (a.color, a.depth, a.mask, a.multisample) == (b.color, b.depth, b.mask, b.multisample)
 }
 
 /// Makes sure that the marked context is current.

@@ -37,6 +37,8 @@ pub(super) enum Side {
     Color,
     Depth,
     Mask,
+    Classes,
+    Normals,
 }
 
 impl Side {
@@ -46,6 +48,8 @@ impl Side {
             Self::Color => "target.color",
             Self::Depth => "target.depth",
             Self::Mask => "target.mask",
+            Self::Classes => "target.surface_classes",
+            Self::Normals => "target.normals",
         }
     }
 }
@@ -170,7 +174,7 @@ fn count_bits(api: &Api, framebuffer: u32, attachment: u32, side: Side) -> Bits 
     }
     let component = get(FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) as u32;
     match side {
-        Side::Color | Side::Mask => Bits {
+        Side::Color | Side::Mask | Side::Classes | Side::Normals => Bits {
             red: get(FRAMEBUFFER_ATTACHMENT_RED_SIZE),
             green: get(FRAMEBUFFER_ATTACHMENT_GREEN_SIZE),
             alpha: get(FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE),
@@ -260,7 +264,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
         ));
     }
     let attachment = match (side, name) {
-        (Side::Color | Side::Mask, _) => match api.uint(DRAW_BUFFER0) {
+        (Side::Color | Side::Mask | Side::Classes | Side::Normals, _) => match api.uint(DRAW_BUFFER0) {
             NONE => {
                 return Err(Error::new(
                     Status::InvalidArgument,
@@ -279,6 +283,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
     // A window may be able to encode and yet get what the host encoded itself.
     bits.srgb &= ask.encodes;
     let samples = api.uint(SAMPLES).max(1);
+    let attached_size = if name == 0 { None } else { attached_size(ask, attachment, samples) };
     api.BindFramebuffer(FRAMEBUFFER, 0);
     api.take_error();
     if side == Side::Depth && bits.depth == 0 {
@@ -287,7 +292,40 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
             format!("target.depth must name a framebuffer that has depth, framebuffer {name} has none"),
         ));
     }
-    Ok(Facts { width: size.0, height: size.1, internal: sized(bits, side)?, samples })
+    let (width, height) = attached_size.unwrap_or(size);
+    Ok(Facts { width, height, internal: sized(bits, side)?, samples })
+}
+
+/// The size of what is attached to the bound framebuffer, where OpenGL tells.
+fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u32)> {
+    let api = ask.api;
+    let get = |pname| {
+        let mut value = 0;
+        // SAFETY: attachment parameters are one integer each.
+        unsafe { api.GetFramebufferAttachmentParameteriv(DRAW_FRAMEBUFFER, attachment, pname, &mut value) };
+        value
+    };
+    let name = get(FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) as u32;
+    if get(FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) as u32 == RENDERBUFFER {
+        return renderbuffer_facts(api, name, Side::Color).ok().map(|f| (f.width, f.height));
+    }
+    if !ask.info.at_least((1, 0), (3, 1)) {
+        return None;
+    }
+    let (target, level) = (target_of(samples), get(FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL));
+    let was = api.uint(if samples > 1 { TEXTURE_BINDING_2D_MULTISAMPLE } else { TEXTURE_BINDING_2D });
+    api.BindTexture(target, name);
+    // Layers of arrays and faces of cubes have other targets.
+    let size = (api.take_error() == NO_ERROR).then(|| {
+        [TEXTURE_WIDTH, TEXTURE_HEIGHT].map(|pname| {
+            let mut value = 0;
+            // SAFETY: level parameters are one integer each.
+            unsafe { api.GetTexLevelParameteriv(target, level, pname, &mut value) };
+            value as u32
+        })
+    });
+    api.BindTexture(target, was);
+    size.map(|[w, h]| (w, h)).filter(|s| s.0 > 0 && s.1 > 0)
 }
 
 /// A texture's parameters that change what wgpu reads from it. wgpu's backend sets some of them and restores none; they

@@ -33,8 +33,15 @@ impl Mark {
         live.iter().any(|&(array, number)| reads(api, array) == Some(number))
     }
 
-    /// Marks the current context.
+    /// Marks the current context as one that has a device.
     pub(super) fn set(api: &Api) -> Self {
+        let mark = Self::leave(api);
+        LIVE.lock().unwrap_or_else(PoisonError::into_inner).push((mark.array, mark.number));
+        mark
+    }
+
+    /// Marks the current context, so that it is known again.
+    pub(super) fn leave(api: &Api) -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let (array_was, buffer_was) = (api.uint(VERTEX_ARRAY_BINDING), api.uint(ARRAY_BUFFER_BINDING));
         let array = api.one(Api::GenVertexArrays);
@@ -49,7 +56,6 @@ impl Mark {
         }
         api.BindVertexArray(array_was);
         api.BindBuffer(ARRAY_BUFFER, buffer_was);
-        LIVE.lock().unwrap_or_else(PoisonError::into_inner).push((array, number));
         Self { array, buffer, number }
     }
 
@@ -63,6 +69,11 @@ impl Mark {
         api.delete(Api::DeleteVertexArrays, self.array);
         api.delete(Api::DeleteBuffers, self.buffer);
         self.forget();
+    }
+
+    /// Takes off what a context of the same share group can reach: its vertex array goes with its context.
+    pub(super) fn remove_shared(&self, api: &Api) {
+        api.delete(Api::DeleteBuffers, self.buffer);
     }
 
     /// Strikes the mark off the list: its context is gone.

@@ -29,6 +29,7 @@
 mod api;
 mod blit;
 mod build;
+mod cache;
 mod check;
 mod face;
 mod formats;
@@ -40,6 +41,8 @@ pub(crate) mod names;
 mod open;
 mod state;
 mod target;
+mod window;
+mod windows;
 
 use std::ffi::{c_char, c_void};
 

@@ -18,6 +18,7 @@ use super::{
     mark::Mark,
     names::*,
     state::HostState,
+    windows::Windows,
 };
 use crate::{
     error::{Error, Result, Status},
@@ -108,7 +109,8 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             proof.remove(&host);
             let (parts, api, info) = outcome?;
             back?;
-            let sharing = Sharing::Shared { switch, host: Box::new(host), handover: desc.handover };
+            let windows = Windows::new(&host);
+            let sharing = Sharing::Shared { switch, host: Box::new(host), handover: desc.handover, windows };
             parts.into_device(api, info, sharing, desc)
         }
     }
@@ -319,6 +321,7 @@ impl Parts {
             tier0: desc.force_tier0,
             scratch: self.scratch,
             targets: Vec::new(),
+            window: None,
             active: Vec::new(),
             next_id: 0,
             fault: None,

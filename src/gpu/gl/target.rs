@@ -7,8 +7,8 @@
 //! | renderbuffer                      | drawn to directly                               | attached directly           |
 //! | framebuffer (the window's or any) | copied in, drawn to, copied back                | copied in (back, if asked)  |
 //!
-//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy, each time the target is
-//! asked for, so that colour and depth can be read as they are at that moment.
+//! wgpu can neither read renderbuffers nor copy multisampled images on OpenGL: there we copy. Depth each time the target is
+//! asked for, so that it can be read as it is at that moment; colour before each draw that reads it.
 //!
 //! No name of the host is ever deleted: each wgpu texture carries a drop callback, which tells wgpu that it does not own
 //! the object.
@@ -18,6 +18,7 @@ use std::sync::Arc;
 use super::{
     api::Api,
     blit::{self, End},
+    build::Object,
     formats,
     image::{self, Ask, Facts, GlImage, Parameters, Side},
     names::*,
@@ -45,6 +46,10 @@ pub struct GlTargetDesc {
     pub depth: Option<GlImage>,
     /// Where red is 1 the host's pixel stays: a texture of one sample, if there is one.
     pub mask: Option<GlImage>,
+    /// What each pixel shows is made of: a texture of one sample, if there is one.
+    pub surface_classes: Option<GlImage>,
+    /// Normals of what each pixel shows: a texture of one sample, if there is one.
+    pub normals: Option<GlImage>,
     /// Width in pixels; must be the images' own.
     pub width: u32,
     /// Height in pixels; must be the images' own.
@@ -67,7 +72,8 @@ pub struct GlTarget {
     pub id: u64,
     /// What to draw to (`RENDER_ATTACHMENT`; `COPY_SRC` and `TEXTURE_BINDING` as well where `color_read` is `None`).
     pub color: wgpu::Texture,
-    /// The picture as it was when the target was asked for (`TEXTURE_BINDING`), where wgpu cannot copy `color` itself.
+    /// The picture to read (`TEXTURE_BINDING`), where wgpu cannot copy `color` itself;
+    /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it, and [`View::record`](crate::frame::View::record) does.
     pub color_read: Option<wgpu::Texture>,
     /// Depth to attach.
     pub depth: Option<wgpu::Texture>,
@@ -75,6 +81,10 @@ pub struct GlTarget {
     pub depth_read: Option<wgpu::Texture>,
     /// The mask, to read.
     pub mask: Option<wgpu::Texture>,
+    /// The classes, to read.
+    pub surface_classes: Option<wgpu::Texture>,
+    /// The normals, to read.
+    pub normals: Option<wgpu::Texture>,
     /// Samples of colour and depth.
     pub samples: u32,
 }
@@ -117,6 +127,8 @@ pub(super) struct Entry {
 pub(super) struct Made {
     pub(super) framebuffers: Vec<u32>,
     pub(super) textures: Vec<u32>,
+    /// What is attached where: framebuffer, attachment, image.
+    pub(super) attached: Vec<(u32, u32, Object)>,
 }
 
 impl Made {
@@ -148,6 +160,13 @@ impl Entry {
     /// A refused copy.
     pub(super) fn begin(&mut self, api: &Api) -> Result<()> {
         let size = (self.desc.width, self.desc.height);
+        // Anew, or a framebuffer would hold on to an object that the host has deleted and made again under its name; another
+        // context's changes are promised only then, too (OpenGL 4.6 core specification, section 5.3.3, rule 4).
+        for (framebuffer, attachment, object) in &self.made.attached {
+            api.BindFramebuffer(FRAMEBUFFER, *framebuffer);
+            object.attach(api, *attachment);
+        }
+        api.BindFramebuffer(FRAMEBUFFER, 0);
         for part in &mut self.parts {
             if let Some(parameters) = &mut part.parameters {
                 parameters.take(api);
@@ -155,11 +174,18 @@ impl Entry {
             if let Some(copy) = &part.copy {
                 blit::copy(api, copy.from, copy.to, mask(part.side, part.facts.internal), size)?;
             }
-            if let Some(copy) = &part.reading {
-                blit::copy(api, copy.from, copy.to, COLOR_BUFFER_BIT, size)?;
-            }
         }
         Ok(())
+    }
+
+    /// Copies the picture as it is now to where it is read.
+    ///
+    /// # Errors
+    /// A refused copy.
+    pub(super) fn read_again(&self, api: &Api) -> Result<()> {
+        let size = (self.desc.width, self.desc.height);
+        let copies = self.parts.iter().filter_map(|part| part.reading.as_ref());
+        copies.into_iter().try_for_each(|copy| blit::copy(api, copy.from, copy.to, COLOR_BUFFER_BIT, size))
     }
 
     /// Copies anew what is only read, after something was drawn since [`Entry::begin`].
@@ -170,7 +196,7 @@ impl Entry {
         let size = (self.desc.width, self.desc.height);
         for part in &self.parts {
             let only_read = part.copy.as_ref().filter(|copy| !copy.drawn_to);
-            for copy in only_read.into_iter().chain(&part.reading) {
+            if let Some(copy) = only_read {
                 blit::copy(api, copy.from, copy.to, mask(part.side, part.facts.internal), size)?;
             }
         }
@@ -208,7 +234,7 @@ impl Entry {
 /// What a copy of an image carries.
 pub(super) fn mask(side: Side, internal: u32) -> u32 {
     match side {
-        Side::Color | Side::Mask => COLOR_BUFFER_BIT,
+        Side::Color | Side::Mask | Side::Classes | Side::Normals => COLOR_BUFFER_BIT,
         Side::Depth if formats::has_stencil(internal) => DEPTH_BUFFER_BIT | STENCIL_BUFFER_BIT,
         Side::Depth => DEPTH_BUFFER_BIT,
     }

@@ -8,13 +8,14 @@
 //! Inside the callbacks no Welkin function may be called.
 //!
 //! # Images and order
-//! An image is handed over for one submission ([`VulkanHost::submit`]) in the layout that the host left it in
+//! An image, or one layer of an array, is handed over for one submission ([`VulkanHost::submit`]) in the layout that the host left it in
 //! and comes back in the layout that it asks for. Work that the host submitted to the *same queue* before is
 //! waited for without a semaphore, and so is Welkin's by what the host submits to that queue afterwards: no
 //! barrier of the host's own is needed. Semaphores order work with other queues.
 //!
 //! # What the host must have enabled
-//! Nothing beyond Vulkan 1.1 and a queue that draws and computes. Timeline semaphores, robust access, 16-bit
+//! Nothing beyond Vulkan 1.1 and a queue that draws and computes, except `VK_KHR_swapchain` for images in `PRESENT_SRC_KHR`
+//! and `sampleRateShading` for colour of several samples. Timeline semaphores, robust access, 16-bit
 //! storage and the like are used where the host says that it enabled them ([`EnabledFeatures`]), and otherwise
 //! not: wgpu is shown only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
 //! `VK_KHR_storage_buffer_storage_class`.

@@ -63,6 +63,7 @@ impl Bench {
             position_m: EYE,
             velocity_m_s: self.velocity_m_s,
             exposure_s: EXPOSURE_S,
+            gain: 1.0,
         };
         let air = Air { displacement_m: WIND * TIME_S, velocity_m_s: WIND, time_s: TIME_S, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };

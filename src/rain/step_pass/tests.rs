@@ -70,6 +70,7 @@ impl Bench {
             position_m,
             velocity_m_s: DVec3::ZERO,
             exposure_s: 1.0 / 60.0,
+            gain: 1.0,
         };
         let air = Air { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };

@@ -1,11 +1,12 @@
-//! The weather from outside: every report in the repository's data, malformed ones, presets, and what follows from them.
+//! Every report in the repository's data, malformed ones, presets, and what follows from them.
 
+use crate::host::Dice;
 use welkin::Status;
 use welkin::weather::{
     AerosolKind, CloudKind, Conditions, FogKind, LoftedKind, MetarReport, PrecipitationKind, Timeline, Weather, derive,
 };
 
-const REPORTS: &str = include_str!("../examples/data/metar.txt");
+const REPORTS: &str = include_str!("../../examples/data/metar.txt");
 const KNOT: f64 = 1852.0 / 3600.0;
 
 fn reports() -> Vec<&'static str> {
@@ -271,19 +272,6 @@ fn a_refusal_gives_the_column_and_what_was_expected() {
     assert!(Weather::from_metar(&"METAR ".repeat(2000)).unwrap_err().message.contains("4096"));
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014): enough for picking damage.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % n as u64) as usize
-    }
-}
-
 /// One random damage to a report: characters replaced, words dropped, doubled, swapped, taken from other reports, or cut.
 fn damage(text: &str, words: &[&str], dice: &mut Dice) -> String {
     let mut chars: Vec<char> = text.chars().collect();
@@ -408,4 +396,4 @@ fn the_same_weather_gives_the_same_bits_on_every_machine() {
 }
 
 /// See [`the_same_weather_gives_the_same_bits_on_every_machine`].
-const GOLDEN_HASH: u64 = 0x4f46_d782_24d8_1b2e;
+const GOLDEN_HASH: u64 = 0x952c_25a5_e9d6_fd42;

@@ -1,0 +1,21 @@
+/* OpenGL's light 0 from Welkin's sun, moon and sky: for fixed-function lighting and shaders that read gl_LightSource. */
+#ifndef LIGHT_HPP
+#define LIGHT_HPP
+
+#include <osg/View>
+
+#include "welkin_osg.hpp"
+
+/* A pre-draw callback, to be added after View::attach: it runs on the thread that draws, and so needs no lock. */
+class WeatherLight : public osg::Camera::DrawCallback {
+public:
+    /* Takes the view's light over and makes it stand still in the world. */
+    WeatherLight(welkin_osg::View *weather, osg::View *view);
+    void operator()(osg::RenderInfo &info) const override;
+
+private:
+    osg::ref_ptr<welkin_osg::View> weather_;
+    osg::ref_ptr<osg::Light> light_;
+};
+
+#endif

@@ -1,0 +1,61 @@
+#include "weather.hpp"
+
+#include <iostream>
+
+#include "window.hpp"
+
+using welkin_osg::check;
+
+welkin_osg::Weather *WeatherOfWindows::of(osg::GraphicsContext *window)
+{
+    osg::ref_ptr<welkin_osg::Weather> &weather = weathers_[window];
+    if (!weather) weather = new welkin_osg::Weather;
+    return weather;
+}
+
+void WeatherOfWindows::operator()(osg::Object *object)
+{
+    auto *window = dynamic_cast<osg::GraphicsContext *>(object);
+    if (window) mend_multisampling(*window);
+    if (window && !of(window)->context()) ok = open(*of(window), window) && ok;
+}
+
+bool WeatherOfWindows::open(welkin_osg::Weather &weather, osg::GraphicsContext *window)
+{
+    wk_context_desc place = WK_CONTEXT_DESC_INIT;
+    place.world_kind = WK_WORLD_TANGENT; /* OSG's z up is Welkin's default */
+    place.latitude_deg = site_.latitude_deg;
+    place.longitude_deg = site_.longitude_deg;
+    place.cache_dir = options_.cache.empty() ? nullptr : options_.cache.c_str();
+    if (!weather.open(window, options_.shared ? WK_OPENGL_SHARED : WK_OPENGL_HOST_CONTEXT, place)) return false;
+
+    wk_weather report = WK_WEATHER_INIT;
+    wk_cloud_layer layers[16];
+    double utc = 0.0;
+    if (!check(wk_weather_from_metar(options_.metar.c_str(), layers, 16, sizeof layers[0], &report, nullptr)) ||
+        !check(wk_utc_from_calendar(2026, 6, 21, 0, 0, 0.0, &utc)))
+        return false;
+    report.station_altitude_m = site_.pad[2]; /* reports do not carry it; wind counts its height from there */
+    wk_context *context = weather.context();
+    if (!check(wk_context_set_clock(context, utc + 3600.0 * options_.hour_utc, 0.0)) ||
+        !check(wk_context_set_weather(context, &report, 0.0, 0.0)))
+        return false;
+
+    /* Behind a progress bar rather than in the first frame; with --cache quick from the second start on. */
+    const auto progress = [](void *, double share) -> int32_t {
+        std::cerr << "\rsky " << int(100.0 * share) << " %" << (share < 1.0 ? "" : "\n");
+        return 0;
+    };
+    return check(wk_context_build_sky(context, progress, nullptr));
+}
+
+void WeatherOfWindows::close()
+{
+    for (auto &of_window : weathers_) {
+        osg::GraphicsContext *window = of_window.first.get();
+        const bool alive = window->valid() && window->isRealized() && window->makeCurrent();
+        of_window.second->close(); /* of a window that is gone Welkin gives its objects up */
+        if (alive) window->releaseContext();
+    }
+    weathers_.clear();
+}

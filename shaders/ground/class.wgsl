@@ -1,0 +1,44 @@
+// What the ground is made of, and how water shows on it. The table is src/ground/class.rs.
+//!include "ground/normal.wgsl"
+
+const VEGETATION: u32 = 4u;
+
+fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
+    return SurfaceLook(
+        mix(a.soaks, b.soaks, share),
+        mix(a.film, b.film, share),
+        mix(a.slope, b.slope, share),
+        mix(a.relief_mm, b.relief_mm, share),
+        mix(a.most_albedo, b.most_albedo, share),
+        mix(a.hollows, b.hollows, share),
+        mix(a.level, b.level, share),
+        0.0,
+    );
+}
+
+// Whether plants grow there, from the colour: excess green, (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995), which is 0
+// for grey and below 0 for soil.
+fn plants(albedo: vec3f) -> f32 {
+    let excess = (2.0 * albedo.g - albedo.r - albedo.b) / max(albedo.r + albedo.g + albedo.b, 1e-6);
+    return smoothstep(0.08, 0.3, excess);
+}
+
+// Of the class of this number; `unspecified` where there is none.
+fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
+    if number == 0u || number >= SURFACE_CLASSES {
+        return unspecified;
+    }
+    return ground.looks[number];
+}
+
+// What the host's image says, else its terrain, else the context's default, of which green parts are plants.
+fn surface_look(surface: HostSurface, here: TerrainPoint, albedo: vec3f) -> SurfaceLook {
+    var look = mix_looks(ground.looks[0], ground.looks[VEGETATION], plants(albedo));
+    if TERRAIN {
+        let n = vec4u(here.classes + 0.5);
+        let south = mix_looks(look_of(n.x, look), look_of(n.y, look), here.part.x);
+        let north = mix_looks(look_of(n.z, look), look_of(n.w, look), here.part.x);
+        look = mix_looks(look, mix_looks(south, north, here.part.y), here.share);
+    }
+    return look_of(surface.number, look);
+}

@@ -1,0 +1,184 @@
+//! What a host sets on a context beside weather and time, as it is saved.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::terrain_saved::{values, words};
+use crate::{
+    error::{Error, Result},
+    fog::Law,
+    frame::Exposure,
+    rain::{MAX_SHELTERS, Planes, Shelter},
+    scene::{HostLight, MAX_LIGHTS},
+    wind::{MAX_NODES, WindGrid, WindGridKind},
+};
+
+/// Exposure, fog law, shelters, lamps and wind grid as text.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SavedSettings {
+    exposure: Exposure,
+    fog_law: Option<Law>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    shelters: Vec<SavedShelter>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    lights: Vec<SavedLight>,
+    wind_grid: Option<SavedWindGrid>,
+}
+
+/// The same as a context holds them.
+pub(super) struct Settings {
+    pub exposure: Exposure,
+    pub fog_law: Option<Law>,
+    pub shelters: Vec<Shelter>,
+    pub lights: Vec<HostLight>,
+    pub wind_grid: Option<Arc<WindGrid>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedShelter {
+    center_m: [f64; 3],
+    axes: [f64; 9],
+    half_size_m: [f64; 3],
+    velocity_m_s: [f64; 3],
+    planes: Vec<[f64; 4]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedLight {
+    position_m: [f64; 3],
+    direction: [f64; 3],
+    intensity_cd: [f64; 3],
+    inner_deg: f64,
+    outer_deg: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedWindGrid {
+    origin_m: [f64; 3],
+    cell_m: [f64; 3],
+    nodes: [u32; 3],
+    added: bool,
+    /// Bits of east, north and up of each node ([`words`]).
+    velocities_m_s: String,
+}
+
+impl SavedSettings {
+    pub fn of(
+        exposure: Exposure,
+        fog_law: &Option<Law>,
+        shelters: &[Shelter],
+        lights: &[HostLight],
+        wind_grid: Option<&WindGrid>,
+    ) -> Self {
+        Self {
+            exposure,
+            fog_law: *fog_law,
+            shelters: shelters.iter().map(SavedShelter::of).collect(),
+            lights: lights.iter().map(SavedLight::of).collect(),
+            wind_grid: wind_grid.map(SavedWindGrid::of),
+        }
+    }
+
+    /// Refuses what cannot be set.
+    ///
+    /// # Errors
+    /// As the setters of [`super::Context`].
+    pub fn checked(&self) -> Result<Settings> {
+        self.exposure.validate()?;
+        self.fog_law.as_ref().map_or(Ok(()), Law::validate)?;
+        let most = |name: &str, count: usize, most: usize| match count {
+            count if count > most => Err(Error::range(name, &format!("at most {most}"), count)),
+            _ => Ok(()),
+        };
+        most("shelters", self.shelters.len(), MAX_SHELTERS)?;
+        most("lights", self.lights.len(), MAX_LIGHTS)?;
+        let shelters = self.shelters.iter().map(SavedShelter::shelter).collect::<Result<_>>()?;
+        let lights = self.lights.iter().map(SavedLight::light).collect::<Result<_>>()?;
+        let wind_grid = self.wind_grid.as_ref().map(SavedWindGrid::grid).transpose()?.map(Arc::new);
+        Ok(Settings { exposure: self.exposure, fog_law: self.fog_law, shelters, lights, wind_grid })
+    }
+}
+
+impl SavedShelter {
+    fn of(s: &Shelter) -> Self {
+        let Shelter { center_m, axes, half_size_m, velocity_m_s, planes } = s;
+        Self {
+            center_m: center_m.to_array(),
+            axes: axes.to_cols_array(),
+            half_size_m: half_size_m.to_array(),
+            velocity_m_s: velocity_m_s.to_array(),
+            planes: planes.as_slice().to_vec(),
+        }
+    }
+
+    fn shelter(&self) -> Result<Shelter> {
+        let shelter = Shelter {
+            center_m: DVec3::from(self.center_m),
+            axes: DMat3::from_cols_array(&self.axes),
+            half_size_m: DVec3::from(self.half_size_m),
+            velocity_m_s: DVec3::from(self.velocity_m_s),
+            planes: Planes::new(&self.planes)?,
+        };
+        shelter.validate()?;
+        Ok(shelter)
+    }
+}
+
+impl SavedLight {
+    fn of(l: &HostLight) -> Self {
+        let HostLight { position_m, direction, intensity_cd, inner_deg, outer_deg } = *l;
+        let (position_m, direction) = (position_m.to_array(), direction.to_array());
+        Self { position_m, direction, intensity_cd, inner_deg, outer_deg }
+    }
+
+    fn light(&self) -> Result<HostLight> {
+        let light = HostLight {
+            position_m: DVec3::from(self.position_m),
+            direction: DVec3::from(self.direction),
+            intensity_cd: self.intensity_cd,
+            inner_deg: self.inner_deg,
+            outer_deg: self.outer_deg,
+        };
+        light.validate()?;
+        Ok(light)
+    }
+}
+
+impl SavedWindGrid {
+    fn of(g: &WindGrid) -> Self {
+        let WindGrid { origin, cell_m, nodes, kind, velocities_m_s } = g;
+        Self {
+            origin_m: origin.to_array(),
+            cell_m: cell_m.to_array(),
+            nodes: *nodes,
+            added: *kind == WindGridKind::Added,
+            velocities_m_s: words(velocities_m_s.as_flattened().iter().map(|v| u64::from(v.to_bits()))),
+        }
+    }
+
+    fn grid(&self) -> Result<WindGrid> {
+        let unfit = || Error::range("wind_grid", "nodes within the limits and three numbers for each", "others");
+        if self.nodes.iter().zip(MAX_NODES).any(|(n, most)| *n > most) {
+            return Err(unfit());
+        }
+        let count = self.nodes.iter().map(|n| *n as usize).product::<usize>();
+        let bits = values(&self.velocities_m_s, 3 * count).ok_or_else(unfit)?;
+        let numbers = bits.into_iter().map(|b| Some(f32::from_bits(b.try_into().ok()?)));
+        let numbers: Vec<f32> = numbers.collect::<Option<_>>().ok_or_else(unfit)?;
+        let grid = WindGrid {
+            origin: DVec3::from(self.origin_m),
+            cell_m: DVec3::from(self.cell_m),
+            nodes: self.nodes,
+            kind: if self.added { WindGridKind::Added } else { WindGridKind::Whole },
+            velocities_m_s: numbers.as_chunks::<3>().0.to_vec(),
+        };
+        grid.validate()?;
+        Ok(grid)
+    }
+}

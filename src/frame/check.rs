@@ -1,0 +1,92 @@
+//! What a call is refused for, before anything is done for it: a refusal costs nothing and changes nothing.
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    Frame, View,
+    target::{Stages, can_copy, check_classes, check_color, check_depth, check_mask, check_normals},
+};
+use crate::{
+    context::Scene,
+    error::{Error, Result, Status},
+    scene::{Camera, ViewRays},
+};
+
+/// The camera's rays in the local east-north-up, in which the shaders work.
+pub(super) fn rays(frame: &Frame<'_>, scene: &Scene) -> Result<ViewRays> {
+    let view = DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose());
+    let local = Camera { position: DVec3::ZERO, view, projection: frame.camera.projection };
+    ViewRays::new(&local, &frame.depth_mapping)
+}
+
+impl View {
+    fn check_order(&self, frame_id: u64, stages: Stages) -> Result<()> {
+        if frame_id != self.report.frame_id || self.recorded == Stages(0) {
+            return Ok(());
+        }
+        let last = 31 - self.recorded.0.leading_zeros();
+        let first = stages.0.trailing_zeros();
+        if first <= last {
+            return Err(Error::new(
+                Status::WrongOrder,
+                format!(
+                    "stages {:#x} of frame_id {frame_id} come after {:#x}: each stage once, in rising order of its bit",
+                    stages.0, self.recorded.0
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Refuses what is wrong with a call, its images aside. Before anything is done for it, so that it costs nothing and changes
+    /// nothing.
+    ///
+    /// # Errors
+    /// As [`View::record`].
+    pub(crate) fn check_call(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        Stages::from_bits(stages.0)?;
+        self.check_order(frame.frame_id, stages)?;
+        frame.camera.validate()?;
+        frame.depth_mapping.validate()?;
+        frame.validate()
+    }
+
+    /// Refuses images that cannot be drawn into or read, whatever there is to draw now: a host should not learn of them by the
+    /// first rain.
+    pub(super) fn check_images(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        if !stages.draw() {
+            return Ok(());
+        }
+        let color = frame.color.ok_or_else(|| Error::range("color", "given for stages other than PREPARE", "none"))?;
+        check_color(color)?;
+        if !can_copy(color) {
+            self.reading(color)?;
+        }
+        if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
+            return Err(Error::unsupported(
+                "color.samples above 1: this device cannot shade per sample; resolve first",
+            ));
+        }
+        if let Some(depth) = frame.depth {
+            check_depth(depth, color)?;
+        }
+        if let Some(mask) = frame.mask {
+            check_mask(mask, color)?;
+        }
+        frame.surface_classes.map_or(Ok(()), |t| check_classes(t, color))?;
+        frame.normals.map_or(Ok(()), |t| check_normals(t, color))?;
+        for (name, image) in frame.image_layers().into_iter().skip(1) {
+            if image.is_some() && image == frame.color_layer() {
+                return Err(Error::range(name, "another texture than color", "the same"));
+            }
+        }
+        self.check_lens(frame, stages)
+    }
+
+    /// Where `color` is read if wgpu cannot copy it.
+    pub(super) fn reading(&self, color: &wgpu::Texture) -> Result<wgpu::Texture> {
+        self.device.reading(color).ok_or_else(|| {
+            Error::range("color.usage", "one with RENDER_ATTACHMENT | COPY_SRC", format!("{:?}", color.usage()))
+        })
+    }
+}

@@ -1,0 +1,92 @@
+//! The weather's light in the host's own numbers: what a host sets its lamps and ambient light to, so that its scene is lit as
+//! Welkin lights the sky.
+//!
+//! A surface of albedo a that lies in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky) (Lambert
+//! 1760). A scene-linear host computes just that, in its unit. A display host has no luminance: its numbers are what Welkin's tone
+//! curve T would have made of L at the exposure e. T bends, so that no pair of lights is right for every albedo; this one is right
+//! for a grey card of albedo 0.18, in shade and where it faces the sun:
+//!
+//! ambient = T(e a E_sky / pi) / a,   direct = (T(e a (E_sun + E_sky) / pi) - T(e a E_sky / pi)) / a
+//!
+//! A host that multiplies numbers encoded by the sRGB curve (fixed-function OpenGL without an sRGB framebuffer) needs them with
+//! both sides encoded: enc(T) / enc(a).
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::{ColorSpace, Frame, ToneCurve, tone::srgb_encode};
+use crate::{context::Context, error::Result, sky::spectral::luminance};
+
+/// Albedo of the photographer's grey card.
+const GREY: f64 = 0.18;
+
+/// Light for the host's own shading of one frame. A surface of colour c (in the frame's numbers) whose normal is n shows
+/// c * (ambient + direct * max(n . direction, 0)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameLight {
+    /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
+    pub direction: DVec3,
+    /// Its direct light on a surface that faces it, after air, clouds and fog.
+    pub direct: [f64; 3],
+    /// Light of sky, clouds and fog on level ground.
+    pub ambient: [f64; 3],
+    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+    pub ambient_below: [f64; 3],
+    /// Display units per cd/m^2 with which Welkin draws the frame.
+    pub exposure: f64,
+}
+
+impl Frame<'_> {
+    /// The light of sun, moon and sky at the camera, in the numbers of the frame's [`ColorSpace`] at its exposure. The images are
+    /// not looked at.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field that is out of range.
+    pub fn light(&self, context: &Context) -> Result<FrameLight> {
+        self.validate()?;
+        let scene = context.scene_at(self.camera.position, context.time_s())?;
+        let exposure = self.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
+        let ground = &scene.ground;
+        let of_moon = luminance(&ground.moon_lux) > luminance(&ground.sun_lux);
+        let (main, facing, other, rest) = if of_moon {
+            (&scene.moon, ground.moon_lux, &scene.sun, ground.sun_lux)
+        } else {
+            (&scene.sun, ground.sun_lux, &scene.moon, ground.moon_lux)
+        };
+        let level = |light: &crate::context::Light| light.direction.z.max(0.0);
+        let sky = [0, 1, 2].map(|i| ground.sky_lux[i] + rest[i] * level(other));
+        let albedo = scene.planet.ground_albedo;
+        let up = [0, 1, 2].map(|i| albedo[i] * (sky[i] + facing[i] * level(main)));
+        let numbers =
+            Numbers { space: self.color_space, unit: self.cd_m2_per_unit, exposure, curve: context.tone_curve() };
+        let zip = |a: [f64; 3], b: [f64; 3], f: &dyn Fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
+        Ok(FrameLight {
+            direction: scene.world_to_enu.transpose() * main.direction,
+            direct: zip(sky, facing, &|sky, facing| numbers.of(sky + facing) - numbers.of(sky)),
+            ambient: sky.map(|e| numbers.of(e)),
+            ambient_below: up.map(|e| numbers.of(e)),
+            exposure,
+        })
+    }
+}
+
+/// What the host computes with.
+struct Numbers {
+    space: ColorSpace,
+    unit: f64,
+    exposure: f64,
+    curve: ToneCurve,
+}
+
+impl Numbers {
+    /// What white shows under `lux`, as the grey card has it.
+    fn of(&self, lux: f64) -> f64 {
+        let shown = || self.curve.apply(self.exposure * GREY * lux / PI);
+        match self.space {
+            ColorSpace::SceneLinear => lux / (PI * self.unit),
+            ColorSpace::DisplayLinear => shown() / GREY,
+            ColorSpace::DisplaySrgb => srgb_encode(shown()) / srgb_encode(GREY),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Whether a scene-linear host can mean the unit that it gives: a scene lit without units, its white at 1, is black in daylight
+//! at 1 cd/m^2 a unit, and nothing else would say why.
+//!
+//! Formats that end at 1 tell by themselves. Of floats a few rows of the host's picture are read back without waiting, in a
+//! view's third frame and in every 1024th from there. What is found wrong is logged as a warning, once until it was right again.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU32, Ordering},
+};
+
+use super::{ColorSpace, Frame, target::can_copy};
+use crate::gpu::Device;
+
+/// Rows looked at, spread over the picture.
+const ROWS: u32 = 8;
+/// The frame of a view that is looked at first, and how many lie between two.
+const FIRST: u64 = 3;
+const EVERY: u64 = 1024;
+/// White in the weather's light over the brightest thing in the picture, from which on the unit cannot be right. A room whose lamps are
+/// off has less.
+const DARKER: f64 = 2000.0;
+/// The same the other way round, by day.
+const BRIGHTER: f64 = 2000.0;
+const DAY_CD_M2: f64 = 100.0;
+
+const IDLE: u32 = 0;
+const RECORDED: u32 = 1;
+const MAPPING: u32 = 2;
+const READY: u32 = 3;
+
+/// What a readback under way was of.
+#[derive(Clone, Copy)]
+struct Looked {
+    format: wgpu::TextureFormat,
+    width: u32,
+    pitch: u32,
+    rows: u32,
+    unit: f64,
+    white: f64,
+    /// The sky may be in the picture already.
+    with_sky: bool,
+}
+
+/// The watch over one view's unit.
+#[derive(Default)]
+pub(super) struct UnitWatch {
+    frames: u64,
+    told: bool,
+    buffer: Option<wgpu::Buffer>,
+    state: Arc<AtomicU32>,
+    looked: Option<Looked>,
+}
+
+impl UnitWatch {
+    /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is the
+    /// luminance of white on level ground, `with_sky` says that BACKGROUND may be in the picture already.
+    pub fn watch(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+        (white_cd_m2, with_sky): (f64, bool),
+    ) {
+        self.advance(device);
+        let Some(color) = frame.color else { return };
+        if frame.color_space != ColorSpace::SceneLinear {
+            return;
+        }
+        self.frames += 1;
+        if self.frames % EVERY != FIRST {
+            return;
+        }
+        use wgpu::TextureFormat as F;
+        let bytes = match color.format() {
+            F::Rgba16Float => 8,
+            F::Rgba32Float => 16,
+            F::Rg11b10Ufloat => return,
+            _ => return self.judge(frame.cd_m2_per_unit, white_cd_m2, frame.cd_m2_per_unit),
+        };
+        if color.sample_count() > 1 || !can_copy(color) || self.state.load(Ordering::Acquire) != IDLE {
+            return;
+        }
+        let rows = ROWS.min(color.height());
+        let pitch = (color.width() * bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let size = u64::from(pitch * rows);
+        if self.buffer.as_ref().is_none_or(|b| b.size() != size) {
+            self.buffer = Some(device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("unit watch"),
+                size,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }));
+        }
+        let Some(buffer) = &self.buffer else { return };
+        for i in 0..rows {
+            let origin = wgpu::Origin3d { x: 0, y: (2 * i + 1) * color.height() / (2 * rows), z: frame.layers.color };
+            let offset = u64::from(i * pitch);
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo { origin, ..color.as_image_copy() },
+                wgpu::TexelCopyBufferInfo {
+                    buffer,
+                    layout: wgpu::TexelCopyBufferLayout { offset, bytes_per_row: Some(pitch), rows_per_image: None },
+                },
+                wgpu::Extent3d { width: color.width(), height: 1, depth_or_array_layers: 1 },
+            );
+        }
+        let (unit, white) = (frame.cd_m2_per_unit, white_cd_m2);
+        self.looked = Some(Looked { format: color.format(), width: color.width(), pitch, rows, unit, white, with_sky });
+        self.state.store(RECORDED, Ordering::Release);
+    }
+
+    /// Takes what has arrived, without waiting.
+    fn advance(&mut self, device: &Device) {
+        let Some(buffer) = &self.buffer else { return };
+        match self.state.load(Ordering::Acquire) {
+            RECORDED => {
+                self.state.store(MAPPING, Ordering::Release);
+                let state = self.state.clone();
+                buffer.map_async(wgpu::MapMode::Read, .., move |done| {
+                    state.store(if done.is_ok() { READY } else { IDLE }, Ordering::Release);
+                });
+            }
+            MAPPING => {
+                let _ = device.device.poll(wgpu::PollType::Poll);
+            }
+            READY => {
+                let found = buffer.get_mapped_range(..).ok().zip(self.looked).and_then(|(b, l)| brightest(&b, &l));
+                buffer.unmap();
+                self.state.store(IDLE, Ordering::Release);
+                if let (Some(found), Some(looked)) = (found, self.looked) {
+                    self.judge(found, looked.white, looked.unit);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Warns if a picture whose brightest pixels have `found` cd/m^2 cannot be lit by a light in which white has `white`.
+    fn judge(&mut self, found: f64, white: f64, unit: f64) {
+        let wrong = found * DARKER < white || (white > DAY_CD_M2 && found > white * BRIGHTER);
+        if wrong && !self.told {
+            log::warn!(
+                "the host's picture reaches {found:.3} cd/m2 where the weather's light makes white {white:.0} cd/m2: with color_space \
+                 SCENE_LINEAR and cd_m2_per_unit {unit} its objects will show {}. A host whose white is 1 sets DISPLAY_SRGB or \
+                 DISPLAY_LINEAR and asks wk_context_get_frame_light how to light its scene; another gives the luminance of its 1 in \
+                 cd_m2_per_unit",
+                if found < white { "black" } else { "white" }
+            );
+        }
+        self.told = wrong;
+    }
+}
+
+/// Luminance of the brightest pixels, cd/m^2; none of a picture in which nothing is drawn. With the sky in it, that of the darker
+/// fifth that is not black: what is not sky.
+fn brightest(bytes: &[u8], looked: &Looked) -> Option<f64> {
+    let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
+    let float =
+        |b: &[u8], i: usize| f64::from(f32::from_le_bytes([b[4 * i], b[4 * i + 1], b[4 * i + 2], b[4 * i + 3]]));
+    let wide = looked.format == wgpu::TextureFormat::Rgba32Float;
+    let texel = if wide { 16 } else { 8 };
+    let mut all: Vec<f64> = Vec::new();
+    for row in bytes.chunks_exact(looked.pitch as usize).take(looked.rows as usize) {
+        let texels = row.chunks_exact(texel).take(looked.width as usize);
+        let green = texels.map(|b| if wide { float(b, 1) } else { half(b, 1) } * looked.unit);
+        all.extend(green.filter(|l| l.is_finite() && *l > 0.0));
+    }
+    all.sort_unstable_by(f64::total_cmp);
+    let last = if looked.with_sky { all.len() / 5 } else { all.len().saturating_sub(1) };
+    all.get(last).copied()
+}

@@ -1,0 +1,118 @@
+//! Whether the window is as large as the host says. OpenGL does not tell its size, but which samples of a draw pass: none of those
+//! outside it.
+//!
+//! Asked in every frame by some lines of pixels that change nothing, and answered in a later one, since waiting would stall; only a
+//! window that is new is waited for.
+
+use std::ffi::c_char;
+
+use super::{api::Api, check::GlInfo, names::*};
+use crate::error::{Error, Result};
+
+/// Beyond the window's right and upper edge, its last column, its last row, its first pixel.
+const LINES: usize = 4;
+
+/// Program and queries of one context.
+pub(super) struct WindowSize {
+    program: u32,
+    queries: [u32; LINES],
+    asked: Option<(u32, u32)>,
+}
+
+const VERTEX: &str = "void main() {
+    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}";
+const FRAGMENT: &str = "out vec4 color; void main() { color = vec4(0.0); }";
+
+impl WindowSize {
+    pub(super) fn new(api: &Api, info: &GlInfo) -> Self {
+        let head = if info.is_es() { "#version 300 es\nprecision highp float;\n" } else { "#version 330\n" };
+        let program = api.CreateProgram();
+        for (kind, body) in [(VERTEX_SHADER, VERTEX), (FRAGMENT_SHADER, FRAGMENT)] {
+            let shader = api.CreateShader(kind);
+            let text = format!("{head}{body}");
+            let (start, length) = (text.as_ptr().cast::<c_char>(), text.len() as i32);
+            // SAFETY: one string with its length is passed.
+            unsafe { api.ShaderSource(shader, 1, &start, &length) };
+            api.CompileShader(shader);
+            api.AttachShader(program, shader);
+            api.DeleteShader(shader);
+        }
+        api.LinkProgram(program);
+        let mut queries = [0; LINES];
+        // SAFETY: as many names are asked for as there is room for.
+        unsafe { api.GenQueries(LINES as i32, queries.as_mut_ptr()) };
+        Self { program, queries, asked: None }
+    }
+
+    pub(super) fn delete(&self, api: &Api) {
+        api.DeleteProgram(self.program);
+        // SAFETY: as many names are passed as there are.
+        unsafe { api.DeleteQueries(LINES as i32, self.queries.as_ptr()) };
+    }
+
+    /// Asks about a window said to be of `size`, unless an answer is out or the host counts samples itself. In the state that wgpu
+    /// takes for granted, which stays, with a vertex array bound.
+    pub(super) fn ask(&mut self, api: &Api, (width, height): (u32, u32)) {
+        let busy = [ANY_SAMPLES_PASSED, ANY_SAMPLES_PASSED_CONSERVATIVE].iter().any(|target| {
+            let mut current = 0;
+            // SAFETY: one integer is written.
+            unsafe { api.GetQueryiv(*target, CURRENT_QUERY, &mut current) };
+            current != 0
+        });
+        if self.asked.is_some() || busy {
+            return;
+        }
+        let (w, h) = (width as i32, height as i32);
+        let lines: [&[[i32; 4]]; LINES] =
+            [&[[w, 0, 1, h + 1], [0, h, w + 1, 1]], &[[w - 1, 0, 1, h]], &[[0, h - 1, w, 1]], &[[0, 0, 1, 1]]];
+        api.BindFramebuffer(FRAMEBUFFER, 0);
+        api.Viewport(0, 0, w + 1, h + 1);
+        api.Enable(SCISSOR_TEST);
+        api.ColorMask(0, 0, 0, 0);
+        api.DepthMask(0);
+        api.UseProgram(self.program);
+        for (query, boxes) in self.queries.iter().zip(lines) {
+            api.BeginQuery(ANY_SAMPLES_PASSED, *query);
+            for [x, y, w, h] in boxes {
+                api.Scissor(*x, *y, *w, *h);
+                api.DrawArrays(TRIANGLES, 0, 3);
+            }
+            api.EndQuery(ANY_SAMPLES_PASSED);
+        }
+        api.UseProgram(0);
+        api.DepthMask(1);
+        api.ColorMask(1, 1, 1, 1);
+        api.Disable(SCISSOR_TEST);
+        api.take_error();
+        self.asked = Some((width, height));
+    }
+
+    /// Takes the answer, if it is there or `wait` says so.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the window has another size than was asked about.
+    pub(super) fn check(&mut self, api: &Api, wait: bool) -> Result<()> {
+        let Some((width, height)) = self.asked else { return Ok(()) };
+        let get = |query: u32, what: u32| {
+            let mut value = 0;
+            // SAFETY: one integer is written.
+            unsafe { api.GetQueryObjectuiv(query, what, &mut value) };
+            value != 0
+        };
+        if !wait && !self.queries.iter().all(|q| get(*q, QUERY_RESULT_AVAILABLE)) {
+            return Ok(());
+        }
+        self.asked = None;
+        let [beyond, column, row, first] = self.queries.map(|q| get(q, QUERY_RESULT));
+        let relation = match (beyond, first && !(column && row)) {
+            (true, _) => "larger",
+            // Where not even the first pixel is drawn, the window is hidden.
+            (_, true) => "smaller",
+            _ => return Ok(()),
+        };
+        let accepted = "the window's size now (tell it anew when the window is resized)";
+        let got = format!("{width} x {height} for a {relation} one");
+        Err(Error::range("target.width and target.height", accepted, got))
+    }
+}

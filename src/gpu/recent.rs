@@ -1,0 +1,83 @@
+//! Things that are made when they are first needed, of which no more are held than there is room for.
+//!
+//! Pipelines come in as many variants as hosts have formats, and weathers parts. One that has not been used for longest goes when
+//! another one is made, so that memory levels off however long a session changes between them.
+
+/// Values by their keys, at most `MOST` of them.
+pub(crate) struct Recent<K, V, const MOST: usize> {
+    all: Vec<Held<K, V>>,
+    uses: u64,
+}
+
+struct Held<K, V> {
+    key: K,
+    value: V,
+    used: u64,
+}
+
+impl<K, V, const MOST: usize> Recent<K, V, MOST> {
+    pub const fn new() -> Self {
+        Self { all: Vec::new(), uses: 0 }
+    }
+
+    /// The value of the key that `is` knows, made with its key if there is none.
+    ///
+    /// # Errors
+    /// Those of `make`; nothing goes then.
+    pub fn get_or_make<E>(
+        &mut self,
+        is: impl Fn(&K) -> bool,
+        make: impl FnOnce() -> Result<(K, V), E>,
+    ) -> Result<&V, E> {
+        self.uses += 1;
+        let at = match self.all.iter().position(|held| is(&held.key)) {
+            Some(at) => at,
+            None => self.put(make()?),
+        };
+        self.all[at].used = self.uses;
+        Ok(&self.all[at].value)
+    }
+
+    /// Puts it into free room, or into that of what was not used for longest.
+    fn put(&mut self, (key, value): (K, V)) -> usize {
+        let held = Held { key, value, used: 0 };
+        if self.all.len() < MOST {
+            self.all.push(held);
+            return self.all.len() - 1;
+        }
+        let oldest = (0..self.all.len()).min_by_key(|at| self.all[*at].used).unwrap_or(0);
+        self.all[oldest] = held;
+        oldest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn no_more_are_held_than_there_is_room_for_and_what_is_in_use_stays() {
+        let mut held = Recent::<u32, Arc<u32>, 8>::new();
+        let mut made = Vec::new();
+        let mut ask = |key: u32| {
+            let make = || {
+                let value = Arc::new(key);
+                made.push(Arc::downgrade(&value));
+                Ok::<_, ()>((key, value))
+            };
+            assert_eq!(**held.get_or_make(|k| *k == key, make).unwrap(), key);
+            made.iter().filter(|m| m.strong_count() > 0).count()
+        };
+        for round in 0..100 {
+            // Three that every frame uses among ever others.
+            let others = [0, 1, 2, 1000 + round];
+            assert!(others.into_iter().map(&mut ask).max() <= Some(8));
+        }
+        // Those three were made once.
+        assert_eq!(made.len(), 103);
+        assert!(held.get_or_make(|k| *k == 7, || Err("no shader")).is_err());
+        assert_eq!(made.iter().filter(|m| m.strong_count() > 0).count(), 8);
+    }
+}

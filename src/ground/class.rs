@@ -1,0 +1,131 @@
+//! What the ground is made of, and what water does to the look of each.
+//!
+//! | class | darkens | film | rises over a film | puddles |
+//! |---|---|---|---|---|
+//! | soil | as wet ground does | little: it soaks in, and clods are rough | 10 mm | of the host's terrain |
+//! | rock | as wet ground does | in parts, on rough faces | 10 mm | of the host's terrain |
+//! | paved | as wet ground does | all of it | 1 mm | all |
+//! | vegetation | hardly: leaves shed water | none | 50 mm | where they drown it |
+//! | water | no | none: the host draws it | 0 mm | none |
+//! | building | as wet ground does | most of it | 1 mm | of the host's terrain |
+//!
+//! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), soil as much as asphalt: dark
+//! soils have an albedo of 0.05 wet and light ones 0.4 dry (Oke 1987, table 1.1). Shares of film and slopes are chosen: no
+//! measured mirror of wet soil, rock and roofs was found.
+
+use crate::error::{Error, Result};
+
+/// What the ground is made of; the numbers are those of the C header, of grids and of images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum SurfaceClass {
+    /// Not said. In a grid or an image: as the context's default. As that default: natural ground, soil where the host's
+    /// colour is not green and vegetation where it is.
+    #[default]
+    Unspecified = 0,
+    /// Earth, sand, gravel: darkens, and mirrors hardly.
+    Soil = 1,
+    /// Bare rock: darkens, and shines in parts.
+    Rock = 2,
+    /// Asphalt, concrete, paving: darkens, gets a film that mirrors, and puddles.
+    Paved = 3,
+    /// Grass, crops, shrubs, trees: hardly changes.
+    Vegetation = 4,
+    /// Water that the host draws: rain leaves it as it is.
+    Water = 5,
+    /// Roofs and walls: darken and shine, without puddles.
+    Building = 6,
+}
+
+/// How many there are.
+pub(crate) const CLASSES: usize = 7;
+
+impl SurfaceClass {
+    /// All of them, by their numbers.
+    pub const ALL: [Self; CLASSES] =
+        [Self::Unspecified, Self::Soil, Self::Rock, Self::Paved, Self::Vegetation, Self::Water, Self::Building];
+
+    /// The class of this number.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming `param` for a number above 6.
+    pub fn from_number(param: &str, number: u8) -> Result<Self> {
+        let known = Self::ALL.get(usize::from(number)).copied();
+        known.ok_or_else(|| Error::range(param, "a WK_SURFACE_CLASS_ value, 0 to 6", number))
+    }
+
+    /// This, or `other` where nothing is said.
+    pub fn or(self, other: Self) -> Self {
+        if self == Self::Unspecified { other } else { self }
+    }
+
+    /// Whether the pattern of hollows that no heights are known of has puddles there.
+    pub fn has_hollows(self) -> bool {
+        self.look().hollows > 0.0
+    }
+
+    /// How water shows on it; what is not specified is soil.
+    pub(crate) fn look(self) -> SurfaceLook {
+        let look = |soaks, film, slope, relief_mm, most_albedo| SurfaceLook {
+            soaks,
+            film,
+            slope,
+            relief_mm,
+            most_albedo,
+            hollows: 0.0,
+            level: 0.0,
+            pad: 0.0,
+        };
+        match self {
+            Self::Unspecified | Self::Soil => look(1.0, 0.1, 0.5, 10.0, 0.45),
+            Self::Rock => look(1.0, 0.3, 0.4, 10.0, 0.6),
+            Self::Paved => SurfaceLook { hollows: 1.0, level: 1.0, ..look(1.0, 1.0, 0.0, 1.0, 0.9) },
+            Self::Vegetation => look(0.15, 0.0, 0.6, 50.0, 0.4),
+            Self::Water => look(0.0, 0.0, 0.0, 0.0, 0.9),
+            Self::Building => look(1.0, 0.7, 0.1, 1.0, 0.9),
+        }
+    }
+}
+
+/// How water shows on a class: `SurfaceLook` of `shaders/ground/uniform.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct SurfaceLook {
+    /// Share of the darkening of wet ground.
+    pub soaks: f32,
+    /// Share of it that a closed film covers.
+    pub film: f32,
+    /// Root mean square slope, along one axis, of what the film lies on, beyond the film's own.
+    pub slope: f32,
+    /// Depth that standing water must have to be level over most of it, mm; 0 keeps none.
+    pub relief_mm: f32,
+    /// Largest albedo that its colour is taken for.
+    pub most_albedo: f32,
+    /// Share of the pattern's puddles that it has.
+    pub hollows: f32,
+    /// How sure it is that it lies level, where nothing else says how it lies.
+    pub level: f32,
+    pub pad: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_the_headers_and_none_is_made_up() {
+        for (i, class) in SurfaceClass::ALL.into_iter().enumerate() {
+            assert_eq!((class as usize, SurfaceClass::from_number("x", i as u8).unwrap()), (i, class));
+        }
+        let e = SurfaceClass::from_number("ground_grid.surface_classes[5]", 7).unwrap_err();
+        assert_eq!(e.message, "ground_grid.surface_classes[5] must be a WK_SURFACE_CLASS_ value, 0 to 6, got 7");
+    }
+
+    #[test]
+    fn only_what_is_paved_holds_puddles_of_its_own_and_leaves_never_mirror() {
+        let with = |f: fn(&SurfaceClass) -> bool| SurfaceClass::ALL.into_iter().filter(f).collect::<Vec<_>>();
+        assert_eq!(with(|c| c.has_hollows()), [SurfaceClass::Paved]);
+        assert_eq!(with(|c| c.look().film == 0.0), [SurfaceClass::Vegetation, SurfaceClass::Water]);
+        assert_eq!(SurfaceClass::Unspecified.look(), SurfaceClass::Soil.look());
+    }
+}

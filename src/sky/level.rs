@@ -1,0 +1,102 @@
+//! How the tables of one detail are built: passes, cut into strips of even work.
+
+use super::passes::Blocks;
+use super::recipe::{Pass, passes};
+use super::settings::SkySettings;
+use crate::gpu::Device;
+
+/// A part of a pass: rows of its target.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strip {
+    pub pass: usize,
+    pub first_row: u32,
+    pub rows: u32,
+    pub cost: f64,
+}
+
+/// A pass is cut into strips of at most this share of a whole build.
+pub(crate) const STRIP_SHARE: f64 = 1.0 / 1024.0;
+/// How fine tables over a planet are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Detail {
+    /// As [`SkySettings::draft`] has them: soon built, shown until the whole ones are.
+    Draft,
+    /// As the settings say.
+    Whole,
+}
+
+/// How the tables of one detail are built.
+pub(crate) struct Level {
+    pub settings: SkySettings,
+    pub blocks: Blocks,
+    pub passes: Vec<Pass>,
+    /// Of one triple.
+    pub strips: Vec<Strip>,
+    /// Of all triples.
+    pub total_cost: f64,
+}
+
+impl Level {
+    /// With strips of at most `strip_cost`, or of a share of the whole.
+    pub fn new(device: &Device, settings: &SkySettings, strip_cost: Option<f64>) -> Self {
+        let passes = passes(settings);
+        let (strips, cost) = strips(settings, &passes, strip_cost);
+        Self {
+            settings: *settings,
+            blocks: Blocks::new(device, settings, &passes),
+            passes,
+            strips,
+            total_cost: cost * f64::from(settings.layers()),
+        }
+    }
+
+    /// Strips of all triples.
+    pub fn strip_count(&self) -> usize {
+        self.strips.len() * self.settings.layers() as usize
+    }
+
+    /// Cost of the first `count` of them.
+    pub fn cost_of(&self, count: usize) -> f64 {
+        let (whole, rest) = (count / self.strips.len(), count % self.strips.len());
+        let triple = self.total_cost / f64::from(self.settings.layers());
+        whole as f64 * triple + self.strips[..rest].iter().map(|s| s.cost).sum::<f64>()
+    }
+}
+
+/// Cuts the passes into strips of at most `most`, or of [`STRIP_SHARE`] of all; also the cost of all.
+pub(crate) fn strips(settings: &SkySettings, passes: &[Pass], most: Option<f64>) -> (Vec<Strip>, f64) {
+    let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_time(settings);
+    let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();
+    let most = most.unwrap_or(STRIP_SHARE * total);
+    let mut out = Vec::new();
+    for (pass, p) in passes.iter().enumerate() {
+        let height = p.draws[0].size(settings).1;
+        let each = ((most / row_cost(p)) as u32).clamp(1, height);
+        for first_row in (0..height).step_by(each as usize) {
+            let rows = each.min(height - first_row);
+            out.push(Strip { pass, first_row, rows, cost: row_cost(p) * f64::from(rows) });
+        }
+    }
+    (out, total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::settings::SkyModel;
+    use super::*;
+
+    #[test]
+    fn strips_cover_every_pass_and_are_small() {
+        for (_, model) in SkyModel::NAMES {
+            let s = SkySettings::with_model(model);
+            let list = passes(&s);
+            let (strips, total) = strips(&s, &list, None);
+            assert!(strips.iter().all(|x| x.cost <= total / 32.0), "{model:?}");
+            assert!((strips.iter().map(|x| x.cost).sum::<f64>() / total - 1.0).abs() < 1e-9);
+            for (i, p) in list.iter().enumerate() {
+                let rows: u32 = strips.iter().filter(|x| x.pass == i).map(|x| x.rows).sum();
+                assert_eq!(rows, p.draws[0].size(&s).1);
+            }
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! Saved states: they hold all that decides what a context shows, come back whole or not at all, and are told apart by format.
+
+use std::{
+    ffi::{c_char, c_void},
+    path::Path,
+    ptr::null_mut,
+};
+
+use welkin::capi::{
+    area::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, rain::*, status::*, timeline::*, weather::*,
+    weather_kinds::*, wind::*, wind_grid::*,
+};
+
+use super::world::{World, init, message, update};
+
+/// The format that is written now, and its state that is kept here.
+const FORMAT: u32 = 2;
+const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/abi_calls/states");
+
+/// A context that ends with its scope.
+struct Own(*mut wk_context);
+
+impl Own {
+    fn new(world: &World, desc: &wk_context_desc) -> Self {
+        let mut context = null_mut();
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_context_create(world.device, desc, &mut context) }, WK_OK, "{}", message());
+        Self(context)
+    }
+
+    /// One that simulates the ground.
+    fn simulated(world: &World) -> Self {
+        let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
+        let next = (&raw const simulation).cast();
+        Self::new(world, &wk_context_desc { next, seed: 7, ..init("wk_context_desc") })
+    }
+
+    fn hash(&self) -> u64 {
+        let mut hash = 0;
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_context_state_hash(self.0, &mut hash) }, WK_OK, "{}", message());
+        hash
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let mut size = 0;
+        // SAFETY: live pointers with the sizes given.
+        unsafe {
+            assert_eq!(wk_context_save(self.0, null_mut(), 0, &mut size), WK_OK, "{}", message());
+            let mut state = vec![0; size];
+            assert_eq!(wk_context_save(self.0, state.as_mut_ptr().cast(), size, &mut size), WK_OK, "{}", message());
+            state
+        }
+    }
+
+    fn load(&self, state: &[u8]) -> wk_status {
+        // SAFETY: a live handle, and as many bytes.
+        unsafe { wk_context_load(self.0, state.as_ptr().cast(), state.len()) }
+    }
+}
+
+impl Drop for Own {
+    fn drop(&mut self) {
+        // SAFETY: live.
+        assert_eq!(unsafe { wk_context_destroy(self.0) }, WK_OK);
+    }
+}
+
+fn ok(status: wk_status) {
+    assert_eq!(status, WK_OK, "{}", message());
+}
+
+/// Calls a setter with something else than what a new context has.
+type Set = unsafe fn(*mut wk_context);
+
+unsafe fn set_rain(context: *mut wk_context) {
+    let rain = wk_weather {
+        precipitation_kind: WK_PRECIPITATION_RAIN,
+        precipitation_rate_mm_h: 12.0,
+        visibility_m: 4000.0,
+        wind_speed_m_s: 6.0,
+        ..init("wk_weather")
+    };
+    // SAFETY, here and below: live pointers with the sizes given.
+    ok(unsafe { wk_context_set_weather(context, &rain, 100.0, 300.0) });
+}
+
+unsafe fn set_clock(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_clock(context, 1.7e9, 5.0) });
+}
+
+unsafe fn set_sun(context: *mut wk_context) {
+    let sun = wk_given_direction { azimuth_deg: 140.0, elevation_deg: 40.0, ..init("wk_given_direction") };
+    ok(unsafe { wk_context_set_sun(context, &sun) });
+}
+
+unsafe fn set_moon(context: *mut wk_context) {
+    let moon = wk_given_direction { azimuth_deg: -90.0, elevation_deg: 10.0, ..init("wk_given_direction") };
+    ok(unsafe { wk_context_set_moon(context, &moon) });
+}
+
+unsafe fn set_exposure(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_exposure(context, WK_EXPOSURE_EV100, 13.0) });
+}
+
+unsafe fn set_fog_law(context: *mut wk_context) {
+    let law = wk_fog_law { curve: WK_FOG_CURVE_LINEAR, has: WK_FOG_LAW_HAS_COLOR, ..init("wk_fog_law") };
+    ok(unsafe { wk_context_set_fog_law(context, &law) });
+}
+
+unsafe fn set_ground_grid(context: *mut wk_context) {
+    let mut heights = [0.0f32; 25];
+    heights[12] = -0.2;
+    let grid = wk_ground_grid {
+        origin_m: [-4.0, -4.0, 0.0],
+        cell_m: 2.0,
+        nodes: [5, 5],
+        heights_m: heights.as_ptr(),
+        height_count: 25,
+        ..init("wk_ground_grid")
+    };
+    ok(unsafe { wk_context_set_ground_grid(context, &grid) });
+}
+
+unsafe fn set_lights(context: *mut wk_context) {
+    let lights = [init("wk_light"), wk_light { inner_deg: 3.0, ..init("wk_light") }];
+    ok(unsafe { wk_context_set_lights(context, lights.as_ptr(), 2, size_of::<wk_light>() as u32) });
+}
+
+unsafe fn set_rain_areas(context: *mut wk_context) {
+    let area = wk_rain_area { center_m: [900.0, 400.0, 0.0], ..init("wk_rain_area") };
+    ok(unsafe { wk_context_set_rain_areas(context, &area, 1, size_of::<wk_rain_area>() as u32) });
+}
+
+unsafe fn set_shelters(context: *mut wk_context) {
+    let mut shape = wk_shelter_shape { plane_count: 1, ..init("wk_shelter_shape") };
+    shape.planes[..4].copy_from_slice(&[0.0, 0.6, 0.8, 0.5]);
+    let next = (&raw const shape).cast::<c_void>();
+    let shelters = [
+        wk_shelter { center_m: [1.0, 2.0, 3.0], next, ..init("wk_shelter") },
+        wk_shelter { velocity_m_s: [9.0, 0.0, 0.0], ..init("wk_shelter") },
+    ];
+    ok(unsafe { wk_context_set_shelters(context, shelters.as_ptr(), 2, size_of::<wk_shelter>() as u32) });
+}
+
+unsafe fn set_wind_grid(context: *mut wk_context) {
+    let velocities = [[1.5f32, -0.0, 0.25]; 8];
+    let grid = wk_wind_grid {
+        kind: WK_WIND_GRID_ADDED,
+        velocities_m_s: velocities.as_ptr().cast(),
+        velocity_count: 8,
+        ..init("wk_wind_grid")
+    };
+    ok(unsafe { wk_context_set_wind_grid(context, &grid) });
+}
+
+unsafe fn set_time(context: *mut wk_context) {
+    ok(unsafe { wk_context_update(context, 7.25) });
+}
+
+unsafe fn set_all(context: *mut wk_context) {
+    SETTERS[..12].iter().for_each(|(_, set)| unsafe { set(context) });
+}
+
+/// Every function that changes what a context shows.
+const SETTERS: [(&str, Set); 13] = [
+    ("wk_context_set_clock", set_clock),
+    ("wk_context_set_exposure", set_exposure),
+    ("wk_context_set_fog_law", set_fog_law),
+    ("wk_context_set_ground_grid", set_ground_grid),
+    ("wk_context_set_lights", set_lights),
+    ("wk_context_set_moon", set_moon),
+    ("wk_context_set_rain_areas", set_rain_areas),
+    ("wk_context_set_shelters", set_shelters),
+    ("wk_context_set_sun", set_sun),
+    ("wk_context_set_weather", set_rain),
+    ("wk_context_set_wind_grid", set_wind_grid),
+    ("wk_context_update", set_time),
+    ("all at once", set_all),
+];
+
+/// Images of the host's, each channel's own like its depth; the header says so.
+const NOT_STATE: [&str; 1] = ["wk_context_set_occluder_maps"];
+
+#[test]
+fn what_any_setter_sets_is_in_the_hash_and_comes_back_with_the_state() {
+    let world = World::new();
+    let symbols = include_str!("../abi/symbols.txt").lines();
+    for name in symbols.filter(|s| s.starts_with("wk_context_set_")) {
+        let known = SETTERS.iter().any(|(of, _)| *of == name) || NOT_STATE.contains(&name);
+        assert!(known, "{name} has no line here: what it sets must be in the hash and in the state");
+    }
+    let fresh = || Own::simulated(&world);
+    let plain = fresh();
+    for (name, set) in SETTERS {
+        let context = fresh();
+        // SAFETY: live.
+        unsafe { set(context.0) };
+        assert_ne!(context.hash(), plain.hash(), "{name} is not in the hash");
+        let state = context.save();
+        let second = fresh();
+        assert_eq!(second.load(&state), WK_OK, "{name}: {}", message());
+        assert_eq!(second.hash(), context.hash(), "{name} does not come back");
+        assert!(second.save() == state, "{name} does not come back");
+        // And what was there before goes.
+        assert_eq!(second.load(&plain.save()), WK_OK, "{name}: {}", message());
+        assert_eq!(second.hash(), plain.hash(), "{name} stays behind");
+    }
+}
+
+#[test]
+fn a_state_of_another_place_or_kind_is_refused_by_name() {
+    let world = World::new();
+    let desc = || init::<wk_context_desc>("wk_context_desc");
+    let own = Own::new(&world, &desc());
+    let (state, hash) = (own.save(), own.hash());
+    let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
+    let planet = welkin::sky::Planet::earth().with_air_scaled(1.01).to_toml() + "\0";
+    for (other, name) in [
+        (wk_context_desc { latitude_deg: 50.5, ..desc() }, "latitude_deg (50.0 in the state, 50.5 here)"),
+        (wk_context_desc { longitude_deg: -10.0, ..desc() }, "longitude_deg (10.0 in the state, -10.0 here)"),
+        (wk_context_desc { altitude_m: 3.0, ..desc() }, "altitude_m"),
+        (wk_context_desc { grid_bearing_deg: 1.0, ..desc() }, "grid_bearing_deg"),
+        (wk_context_desc { world_kind: WK_WORLD_TANGENT, ..desc() }, "world_kind"),
+        (wk_context_desc { world_kind: WK_WORLD_ECEF, ..desc() }, "world_kind"),
+        (wk_context_desc { axes: WK_AXES_Y_UP, ..desc() }, "axes"),
+        (wk_context_desc { seed: 1, ..desc() }, "seed"),
+        (wk_context_desc { tone_curve: WK_TONE_FILMIC, ..desc() }, "tone_curve"),
+        (wk_context_desc { planet_toml: planet.as_ptr().cast::<c_char>(), ..desc() }, "planet_toml"),
+        (wk_context_desc { next: (&raw const simulation).cast(), ..desc() }, "ground_model"),
+    ] {
+        let context = Own::new(&world, &other);
+        let before = context.hash();
+        assert_ne!(before, hash, "{name} is not in the hash");
+        assert_eq!(context.load(&state), WK_ERROR_INVALID_ARGUMENT, "{name}");
+        assert!(message().contains(name), "{name}: {}", message());
+        assert_eq!(context.hash(), before, "{name}: a refused state changes nothing");
+    }
+    // All that differs is named at once, and what a state restores may differ.
+    let other = wk_context_desc { latitude_deg: 0.0, seed: 9, ..desc() };
+    assert_eq!(Own::new(&world, &other).load(&state), WK_ERROR_INVALID_ARGUMENT);
+    assert!(message().contains("latitude_deg") && message().contains("seed"), "{}", message());
+    let other = wk_context_desc { exposure_value: 1.0, utc_at_zero_s: 0.0, ..desc() };
+    let context = Own::new(&world, &other);
+    assert_ne!(context.hash(), hash);
+    ok(context.load(&state));
+    assert_eq!(context.hash(), hash);
+}
+
+#[test]
+fn one_byte_changed_anywhere_is_refused_and_so_is_any_cut() {
+    let world = World::new();
+    let (first, second) = (Own::simulated(&world), Own::simulated(&world));
+    // SAFETY: live.
+    unsafe { set_all(first.0) };
+    let state = first.save();
+    let before = second.hash();
+    for at in 0..state.len() {
+        let mut bad = state.clone();
+        bad[at] ^= 1 << (at * 5 % 8);
+        assert_eq!(second.load(&bad), WK_ERROR_PARSE, "byte {at}");
+    }
+    for cut in (0..state.len()).step_by(7) {
+        assert_eq!(second.load(&state[..cut]), WK_ERROR_PARSE, "cut at {cut}");
+    }
+    assert_eq!(second.load(&[state.as_slice(), b"\n"].concat()), WK_ERROR_PARSE, "longer");
+    assert_eq!(second.hash(), before, "a refused state changes nothing");
+    ok(second.load(&state));
+    assert_eq!(second.hash(), first.hash());
+}
+
+/// The state of each format that was ever written. That of the present one is written anew by WELKIN_BLESS=1, which is right
+/// only as long as no release wrote it: afterwards a state that no longer loads needs another format.
+#[test]
+fn states_of_older_formats_load_or_are_refused_by_their_number() {
+    let world = World::new();
+    let context = Own::simulated(&world);
+    // SAFETY: live.
+    unsafe { set_all(context.0) };
+    update(context.0, 1234.5);
+    let own = Path::new(FIXTURES).join(format!("format{FORMAT}.state"));
+    if std::env::var_os("WELKIN_BLESS").is_some() {
+        std::fs::write(&own, context.save()).unwrap();
+    }
+    let kept = std::fs::read(&own).unwrap();
+    let (second, third) = (Own::simulated(&world), Own::simulated(&world));
+    let wanted = "what is new must mean at its default what there was before";
+    assert_eq!(second.load(&kept), WK_OK, "{wanted}: {}", message());
+    ok(third.load(&second.save()));
+    assert!(third.save() == second.save());
+    // It holds what was set when it was written, and goes on.
+    let mut ground = init::<wk_ground>("wk_ground");
+    let mut wind = init::<wk_wind>("wk_wind");
+    // SAFETY: live pointers.
+    unsafe {
+        ok(wk_context_get_ground(second.0, &[0.0; 3], &mut ground));
+        ok(wk_context_get_wind_at(second.0, &[0.5; 3], 1234.5, &mut wind));
+    }
+    assert!(ground.in_puddle == 1 && ground.water_mm > 5.0, "{}", ground.water_mm);
+    assert!((0.2..0.3).contains(&wind.velocity_m_s[2]), "the wind grid's updraught: {:?}", wind.velocity_m_s);
+    update(second.0, 2000.0);
+    let before = second.hash();
+    for old in 1..FORMAT {
+        let state = std::fs::read(Path::new(FIXTURES).join(format!("format{old}.state"))).unwrap();
+        assert_eq!(second.load(&state), WK_ERROR_PARSE);
+        let wanted = format!("it is of format {old}, this version of Welkin reads format {FORMAT} alone");
+        assert!(message().contains(&wanted), "{}", message());
+    }
+    let newer = String::from_utf8(kept).unwrap().replacen("welkin state 2 ", "welkin state 3 ", 1);
+    assert_eq!(second.load(newer.as_bytes()), WK_ERROR_PARSE);
+    assert!(message().contains("it is of format 3"), "{}", message());
+    assert_eq!(second.hash(), before);
+}
+
+#[test]
+fn a_leap_is_answered_with_pending_until_all_steps_are_done() {
+    let world = World::new();
+    let context = Own::simulated(&world);
+    let side = 128u32;
+    let heights: Vec<f32> = (0..side * side).map(|i| (i.wrapping_mul(2_654_435_761) >> 20) as f32 * 1e-4).collect();
+    let grid = wk_ground_grid {
+        nodes: [side; 2],
+        heights_m: heights.as_ptr(),
+        height_count: side * side,
+        ..init("wk_ground_grid")
+    };
+    let state_time = || {
+        let mut state_time_s = f64::NAN;
+        // SAFETY: live pointers.
+        ok(unsafe { wk_context_get_state_time(context.0, &mut state_time_s) });
+        state_time_s
+    };
+    let (mut calls, mut last) = (0, 0.0);
+    // SAFETY, for all: live pointers.
+    unsafe {
+        set_rain(context.0);
+        ok(wk_context_set_ground_grid(context.0, &grid));
+        let end_s = 20_000.0;
+        // Two thousand steps of 16 384 cells take longer than 50 ms on any machine.
+        while wk_context_update(context.0, end_s) == WK_PENDING {
+            calls += 1;
+            let now = state_time();
+            assert!(now >= last + 10.0 && now < end_s, "at least a step a call: {last} {now}");
+            last = now;
+            let mut size = 0;
+            assert_eq!(wk_context_save(context.0, null_mut(), 0, &mut size), WK_ERROR_WRONG_ORDER);
+            assert!(message().contains("wk_context_update has answered WK_OK"), "{}", message());
+            let mut hash = 0;
+            assert_eq!(wk_context_state_hash(context.0, &mut hash), WK_ERROR_WRONG_ORDER);
+            assert_eq!(wk_context_update(context.0, end_s - 1.0), WK_ERROR_WRONG_ORDER, "time does not run back");
+        }
+        assert!(calls > 0);
+        assert_eq!((state_time(), wk_context_update(context.0, end_s)), (end_s, WK_OK));
+        let mut ground = init::<wk_ground>("wk_ground");
+        ok(wk_context_get_ground(context.0, &[50.0, 50.0, 0.0], &mut ground));
+        assert!(ground.wetness > 0.5, "{}", ground.wetness);
+    }
+    assert_ne!(context.hash(), 0);
+}

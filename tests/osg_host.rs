@@ -1,0 +1,229 @@
+//! The OpenSceneGraph host as its users meet it: installed Welkin, CMake, a display without a screen. It checks its own
+//! pictures and OpenGL state; here they are asked for in every way in which it draws, and looked at.
+#![cfg(target_os = "linux")]
+
+mod x_server;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use x_server::Server;
+
+/// Debian's package with what the host is built against.
+const PACKAGE: &str = "libopenscenegraph-dev";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs a command to its end; what it said on both streams if it succeeds.
+fn run(command: &mut Command) -> String {
+    let shown = format!("{command:?}");
+    let output = command.env_remove("MAKEFLAGS").env_remove("MAKELEVEL").env_remove("MFLAGS").output();
+    let output = output.unwrap_or_else(|e| panic!("{shown}: {e}"));
+    let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{shown}: {}\n{said}", output.status);
+    said
+}
+
+/// The tests' folder, kept from run to run: what is up to date in it is not made again.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("osg_host")
+}
+
+/// Where Welkin is installed for them.
+fn tree() -> PathBuf {
+    folder().join("tree")
+}
+
+/// Welkin installed, and the host built against it, by the first test that asks.
+fn built() -> PathBuf {
+    fs::create_dir_all(folder()).expect("the target directory is writable");
+    let lock = fs::File::create(folder().join("lock")).expect("the folder is ours");
+    lock.lock().expect("the other tests let go");
+    let build = folder().join("build");
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    run(Command::new("make").current_dir(root()).arg("install").args([
+        format!("PROFILE={profile}"),
+        format!("PREFIX={}", tree().display()),
+        "DESTDIR=".to_string(),
+    ]));
+    let mut cmake = Command::new("cmake");
+    cmake.arg("-S").arg(root().join("examples/osg_host")).arg("-B").arg(&build);
+    cmake.arg(format!("-DCMAKE_PREFIX_PATH={}", tree().display()));
+    let said =
+        run(cmake.args(["-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS=-O2 -Werror", "-DCMAKE_CXX_FLAGS=-Werror"]));
+    assert!(!said.contains("skipped"), "install {PACKAGE}: {said}");
+    run(Command::new("cmake").arg("--build").arg(&build));
+    build.join("osg_host")
+}
+
+struct Host {
+    program: PathBuf,
+    server: Server,
+    folder: PathBuf,
+}
+
+impl Host {
+    fn new(test: &str) -> Self {
+        let folder = folder().join(test);
+        fs::create_dir_all(&folder).expect("the folder is ours");
+        Self { program: built(), server: Server::start(), folder }
+    }
+
+    /// What the host says with these arguments, of which only METAR reports have spaces; Welkin and OSG have nothing to complain of.
+    fn run(&self, arguments: &str, metar: Option<&str>) -> String {
+        let mut host = Command::new(&self.program);
+        host.env("DISPLAY", &self.server.display).arg("--data").arg(root().join("examples/data"));
+        host.arg("--cache").arg(folder().join("cache")).args(arguments.split_whitespace());
+        host.args(metar.iter().flat_map(|report| ["--metar", report]));
+        let said = run(&mut host);
+        let faults = ["WK_ERROR", "FBO", "OpenGL error", "Warning"];
+        assert!(!faults.iter().any(|f| said.contains(f)), "{arguments}: {said}");
+        said
+    }
+
+    fn picture(&self, name: &str, arguments: &str) -> image::RgbImage {
+        self.picture_of(None, name, arguments)
+    }
+
+    fn picture_of(&self, metar: Option<&str>, name: &str, arguments: &str) -> image::RgbImage {
+        let path = self.folder.join(name);
+        let _ = fs::remove_file(&path);
+        self.run(&format!("{arguments} --out {}", path.display()), metar);
+        image::open(&path).unwrap_or_else(|e| panic!("{name}: {e}")).into_rgb8()
+    }
+}
+
+/// Mean of green over a rectangle, and its standard deviation.
+fn green(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> (f64, f64) {
+    let values = (y0..y1).flat_map(|y| (x0..x1).map(move |x| f64::from(picture.get_pixel(x, y)[1])));
+    let (n, sum, squares) = values.fold((0.0, 0.0, 0.0), |(n, s, q), v| (n + 1.0, s + v, q + v * v));
+    (sum / n, (squares / n - (sum / n).powi(2)).max(0.0).sqrt())
+}
+
+/// Off, on, off in every kind of target: each run compares its pictures and more than a thousand values of OpenGL's state.
+#[test]
+fn weather_comes_and_goes_without_a_trace() {
+    let host = Host::new("check");
+    for target in [
+        "--msaa none",
+        "--msaa none --shared --reversed",
+        "--msaa osg --reversed",
+        "--window --msaa none",
+        "--msaa none --cab",
+    ] {
+        let said = host.run(&format!("--check --frames 2 --size 160 90 {target}"), None);
+        assert!(
+            said.contains("\nok\n") && said.contains("leaves 0 %") && said.contains(" 0 changed"),
+            "{target}: {said}"
+        );
+    }
+}
+
+/// Two windows of one viewer draw the same in all of OSG's threading models, by both ways to live beside OpenGL.
+#[test]
+fn every_threading_model_draws_the_same_two_windows() {
+    let host = Host::new("threads");
+    let accept = std::env::var_os("WELKIN_ACCEPT").is_some();
+    let ways = ["--window --msaa none", "--msaa none --shared"];
+    for (i, way) in ways.iter().enumerate() {
+        let mut first: Option<[image::RgbImage; 2]> = None;
+        for threads in ["single", "context", "draw", "camera"] {
+            if i > 0 && !accept && threads == "context" {
+                continue;
+            }
+            let arguments = format!("{way} --windows 2 --threading {threads} --frames 3 --size 160 90");
+            let one = host.picture(&format!("{i}-{threads}.png"), &arguments);
+            let two =
+                image::open(host.folder.join(format!("{i}-{threads}-1.png"))).expect("a second picture").into_rgb8();
+            assert_ne!(one, two, "the second window looks elsewhere");
+            match &first {
+                None => first = Some([one, two]),
+                Some(first) => assert!(*first == [one, two], "{way} --threading {threads} draws another picture"),
+            }
+        }
+    }
+}
+
+#[test]
+fn windows_are_resized_and_closed() {
+    let host = Host::new("windows");
+    for way in ["--msaa osg --threading draw", "--shared --msaa none", "--window --msaa none"] {
+        let resized = host.picture("resized.png", &format!("--resize --frames 2 --size 320 180 {way}"));
+        assert_eq!(resized.dimensions(), (240, 90), "{way}");
+        // The weather reaches every corner of the new size: the same overcast sky left and right.
+        let (left, right) = (green(&resized, [0, 0, 20, 10]).0, green(&resized, [220, 0, 240, 10]).0);
+        assert!((left - right).abs() < 10.0 && left > 100.0, "{way}: {left} {right}");
+        host.run(&format!("--close --frames 2 --size 160 90 {way}"), None);
+    }
+}
+
+/// Four panes at 40, 160, 640 and 2560 m, each as large in the picture: what differs is the veil before them.
+#[test]
+fn glass_fades_into_the_air_before_it() {
+    let host = Host::new("glass");
+    for way in ["--msaa none --reversed", "--window --msaa none"] {
+        let picture = host.picture("panes.png", &format!("{way} --frames 2 --size 640 360"));
+        let beside = |x: u32| green(&picture, [x - 3, 166, x + 3, 171]).0 - green(&picture, [x - 3, 180, x + 3, 186]).0;
+        let contrasts = [238, 265, 292, 319].map(beside);
+        assert!(contrasts[0] > 20.0, "the near pane is seen, {way}: {contrasts:?}");
+        assert!(
+            contrasts.is_sorted_by(|a, b| *a > b + 3.0),
+            "each fades more than the one before, {way}: {contrasts:?}"
+        );
+        assert!(contrasts[3] < 0.35 * contrasts[0], "the farthest is nearly gone, {way}: {contrasts:?}");
+    }
+}
+
+/// Drops stand on the glass of the cab, whose box keeps the rain off the driver; without rain it is clear.
+#[test]
+fn the_cab_has_rain_on_its_windscreen() {
+    let host = Host::new("cab");
+    let view = "--cab --msaa none --reversed --frames 2 --size 640 360";
+    let rain = host.picture("rain.png", view);
+    let mist = "METAR KTRI 121800Z 24012KT 3SM BR OVC030 12/11 A2978";
+    let dry = host.picture_of(Some(mist), "dry.png", view);
+    const THROUGH_THE_GLASS: [u32; 4] = [200, 50, 440, 120];
+    let (wet, clear) = (green(&rain, THROUGH_THE_GLASS).1, green(&dry, THROUGH_THE_GLASS).1);
+    assert!(wet > 4.0 && clear < 0.5 * wet, "drops on grey sky: {wet}, without: {clear}");
+}
+
+/// The tutorial's program, as it stands in the docs.
+#[test]
+fn the_tutorial_compiles_and_runs() {
+    let host = Host::new("tutorial");
+    let text = fs::read_to_string(root().join("docs/hosts-openscenegraph.md")).expect("the tutorial");
+    let code = text.split("```cpp\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a program in it");
+    let source = host.folder.join("rain.cpp");
+    fs::write(&source, code).expect("the folder is ours");
+    let mut flags = Command::new("pkg-config");
+    flags.env("PKG_CONFIG_PATH", tree().join("lib/pkgconfig")).args(["--cflags", "--libs", "openscenegraph", "welkin"]);
+    let flags = run(&mut flags);
+    let mut cc = Command::new("g++");
+    cc.args(["-std=c++17", "-Wall", "-Wextra", "-Werror", "-I"]).arg(root().join("examples/osg_host")).arg(&source);
+    cc.arg("-o").arg(host.folder.join("rain")).args(flags.split_whitespace()).arg("-lGL");
+    run(cc.arg(format!("-Wl,-rpath,{}", tree().join("lib").display())));
+    let mut program = Command::new(host.folder.join("rain"));
+    program.current_dir(&host.folder).env("DISPLAY", &host.server.display).env("OSG_RUN_FRAME_COUNT", "3");
+    let said = run(&mut program);
+    assert_eq!(said, "", "it has nothing to complain of");
+    assert!(host.folder.join("weather-cache").is_dir(), "the sky's tables are kept for the next start");
+}
+
+/// Who has no OpenSceneGraph reads why there is no host, and the build goes on.
+#[test]
+fn without_openscenegraph_the_host_is_skipped_with_a_line() {
+    built();
+    let build = folder().join("without");
+    let _ = fs::remove_dir_all(&build);
+    let mut cmake = Command::new("cmake");
+    cmake.arg("-S").arg(root().join("examples/osg_host")).arg("-B").arg(&build);
+    cmake.arg(format!("-DCMAKE_PREFIX_PATH={}", tree().display()));
+    let said = run(cmake.arg("-DCMAKE_DISABLE_FIND_PACKAGE_OpenSceneGraph=ON"));
+    assert!(said.contains("osg_host is skipped") && said.contains(PACKAGE), "{said}");
+    run(Command::new("cmake").arg("--build").arg(&build));
+}

@@ -1,0 +1,317 @@
+//! One weather becomes another without a jump: over a microsecond of a change of an hour nothing that a host can ask for moves by
+//! more than a millionth of itself.
+
+use glam::DVec3;
+use welkin::{
+    context::{Context, GivenDirection},
+    weather::*,
+};
+
+use crate::host::{Dice, Host};
+
+/// Begin and length of the changes, s. So near 0 a microsecond is 5e9 times what f64 can tell apart at their end.
+const START_S: f64 = 100.0;
+const LENGTH_S: f64 = 3600.0;
+const MICROSECOND: f64 = 1e-6;
+
+/// What may change in a microsecond, of the larger of the value and a thousandth of the larger end.
+const MOST: f64 = 1e-6;
+
+/// Places in a change that are looked at for the largest changes between them.
+const PLACES: usize = 48;
+
+/// Every number of some conditions. No field can be forgotten: the patterns name all.
+pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
+    let Conditions {
+        extinction_per_m,
+        air,
+        aerosol,
+        fog,
+        precipitation,
+        clouds,
+        clear_sky,
+        cloud_light: CloudLightOverride { weight, direct, diffuse },
+        wind,
+        sea,
+        surface: SurfaceCover { wetness, puddles, ice, snow_depth_m },
+        ozone_du,
+    } = *c;
+    out.extend([extinction_per_m, ozone_du, weight, direct, diffuse, wetness, puddles, ice, snow_depth_m]);
+    let Air {
+        temperature_c,
+        relative_humidity,
+        pressure_hpa,
+        station_pressure_hpa,
+        station_altitude_m,
+        rayleigh_density_ratio,
+        rayleigh_scale_height_m,
+        rayleigh_extinction_per_m,
+    } = air;
+    out.extend([temperature_c, relative_humidity, pressure_hpa, station_pressure_hpa, station_altitude_m]);
+    out.extend([rayleigh_density_ratio, rayleigh_scale_height_m, rayleigh_extinction_per_m]);
+    let AerosolLayer {
+        extinction_per_m,
+        angstrom_exponent,
+        absorption_angstrom_exponent,
+        single_scattering_albedo,
+        asymmetry,
+        scale_height_m,
+        reference_altitude_m,
+    } = aerosol;
+    out.extend([extinction_per_m, angstrom_exponent, absorption_angstrom_exponent, single_scattering_albedo]);
+    out.extend([asymmetry, scale_height_m, reference_altitude_m]);
+    let FogLayer {
+        extinction_per_m,
+        angstrom_exponent,
+        single_scattering_albedo,
+        asymmetry,
+        base_m,
+        top_m,
+        softness_m,
+        coverage,
+        patch_size_m,
+        lifted,
+    } = fog;
+    out.extend([extinction_per_m, angstrom_exponent, single_scattering_albedo, asymmetry, base_m, top_m, softness_m]);
+    out.extend([coverage, patch_size_m, lifted]);
+    let Falling {
+        rain_mm_h,
+        drizzle_mm_h,
+        snow_mm_h,
+        ice_pellets_mm_h,
+        hail_mm_h,
+        freezing,
+        showers,
+        thunder,
+        extinction_per_m,
+    } = precipitation;
+    out.extend([rain_mm_h, drizzle_mm_h, snow_mm_h, ice_pellets_mm_h, hail_mm_h, freezing, showers, thunder]);
+    out.push(extinction_per_m);
+    for slab in clouds {
+        let CloudSlab {
+            cover,
+            base_m,
+            thickness_m,
+            optical_depth,
+            droplet_radius_um,
+            asymmetry,
+            convection,
+            ice_fraction,
+        } = slab;
+        out.extend([cover, base_m, thickness_m, optical_depth, droplet_radius_um, asymmetry, convection, ice_fraction]);
+    }
+    let WindProfile {
+        east_m_s,
+        north_m_s,
+        gust_m_s,
+        turbulence_intensity,
+        wander_deg,
+        roughness_length_m,
+        sea_roughness_length_m,
+    } = wind;
+    out.extend([east_m_s, north_m_s, gust_m_s, turbulence_intensity, wander_deg, roughness_length_m]);
+    out.push(sea_roughness_length_m);
+    let SeaState { significant_wave_height_m, swell_height_m, swell_period_s, swell_east, swell_north, temperature_c } =
+        sea;
+    out.extend([significant_wave_height_m, swell_height_m, swell_period_s, swell_east, swell_north, temperature_c]);
+    out.extend([c.visibility_m(), c.cloud_cover(), clear_sky]);
+}
+
+/// Light at a place: what arrives, what lies above the fog, what the picture's sky is made of.
+fn light(context: &Context, up_m: f64, t: f64) -> Vec<f64> {
+    let scene = context.scene_at(DVec3::Z * up_m, t).unwrap();
+    let mut out = vec![scene.ground.total_lux, scene.ground.adaptation_cd_m2, luminance(scene.ground.sky_lux)];
+    // Shares of a picture change by parts of the whole.
+    out.extend([scene.above_fog.total_lux, 1.0 + scene.deck_cover, 1.0 + scene.medium_share]);
+    for lit in [scene.ground, scene.above_fog] {
+        out.extend([lit.sun_lux, lit.moon_lux, lit.sky_lux].as_flattened());
+    }
+    out.extend([scene.sun.direct_share, scene.moon.direct_share]);
+    out.extend(scene.deck_cd_m2);
+    out
+}
+
+fn luminance(rgb: [f64; 3]) -> f64 {
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+/// What one sees through along a level and a rising line, and what falls.
+fn sight_and_rain(context: &Context, t: f64) -> Vec<f64> {
+    let mut out = Vec::new();
+    for to in [DVec3::new(300.0, 900.0, 40.0), DVec3::new(900.0, -400.0, 700.0)] {
+        out.extend(context.between(DVec3::Z * 2.0, to, t).unwrap().transmittance);
+    }
+    let rain = context.rain_at(DVec3::Z * 2.0, t).unwrap();
+    out.extend([rain.rate_mm_h, rain.extinction_per_m, rain.number_per_m3, rain.liquid_g_m3, rain.drops_per_m2_s]);
+    out.extend([rain.ice_mm_h, rain.stones_per_m3, rain.stone_extinction_per_m, rain.stones_per_m2_s]);
+    out
+}
+
+/// The largest change over a microsecond, in what may be.
+#[derive(Clone, Copy, Default)]
+struct Steepest {
+    change: f64,
+    number: usize,
+    at_s: f64,
+}
+
+/// The steepest change of `f` that is found between the first and the last of `seams`: of all numbers round each of them, and of the
+/// first `followed` where between [`PLACES`] moments they change most, followed by halves down to the microsecond.
+fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Steepest {
+    let ends: Vec<_> = seams.iter().map(|t| f(*t)).collect();
+    let part = |i: usize, a: &[f64], b: &[f64]| {
+        let larger_end = ends.iter().map(|end| end[i].abs()).fold(0.0, f64::max);
+        let size = a[i].abs().max(b[i].abs()).max(1e-3 * larger_end);
+        if a[i] == b[i] { 0.0 } else { (b[i] - a[i]).abs() / (size * MOST) }
+    };
+    let mut worst = Steepest::default();
+    let mut take = |change: f64, number: usize, at_s: f64| {
+        if change.is_nan() || change > worst.change {
+            worst = Steepest { change, number, at_s };
+        }
+    };
+    for (seam, end) in seams.iter().zip(&ends) {
+        let [before, after] = [f(seam - MICROSECOND), f(seam + MICROSECOND)];
+        (0..end.len()).for_each(|i| take(part(i, &before, end).max(part(i, end, &after)), i, *seam));
+    }
+    if followed == 0 {
+        return worst;
+    }
+    let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
+    let place = |k: usize| from_s + (to_s - from_s) * k as f64 / PLACES as f64;
+    let grid: Vec<_> = (0..=PLACES).map(|k| f(place(k))).collect();
+    for i in 0..followed.min(ends[0].len()) {
+        let steep = |k: &usize| part(i, &grid[*k], &grid[*k + 1]);
+        let k = (0..PLACES).max_by(|a, b| steep(a).total_cmp(&steep(b))).unwrap();
+        let (mut a, mut b) = ((place(k), grid[k].clone()), (place(k + 1), grid[k + 1].clone()));
+        // A change that is small over a longer time is small over a microsecond of it, or turns back there.
+        while b.0 - a.0 > MICROSECOND && part(i, &a.1, &b.1) > 1.0 {
+            let t = 0.5 * (a.0 + b.0);
+            let middle = (t, f(t));
+            if part(i, &a.1, &middle.1) > part(i, &middle.1, &b.1) { b = middle } else { a = middle }
+        }
+        take(if b.0 - a.0 > MICROSECOND { 0.0 } else { part(i, &a.1, &b.1) }, i, a.0);
+    }
+    worst
+}
+
+/// Where and how light is looked at: sun and moon are put somewhere, and the eye so far above the station.
+fn lit(host: &Host, n: usize) -> (Context, f64) {
+    let mut context = host.context();
+    let elevation_deg = [50.0, 12.0, 2.0, -7.0][n % 4];
+    context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg })).unwrap();
+    context.set_moon(Some(GivenDirection { azimuth_deg: 250.0, elevation_deg: 30.0 })).unwrap();
+    (context, [2.0, 700.0, 2600.0][n / 4 % 3])
+}
+
+/// What of a context jumps at the `seams` of its weather's changes, or, if asked, between them.
+fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool) -> Vec<String> {
+    let conditions = |t: f64| {
+        let mut out = Vec::with_capacity(192);
+        numbers(&context.conditions_at(DVec3::ZERO, t).unwrap(), &mut out);
+        out
+    };
+    let followed = |numbers: usize| if between { numbers } else { 0 };
+    let found = [
+        ("conditions", steepest(&conditions, followed(usize::MAX), seams)),
+        ("light", steepest(&|t| light(context, up_m, t), followed(6), seams)),
+        ("sight and rain", steepest(&|t| sight_and_rain(context, t), followed(8), seams)),
+    ];
+    let jumping = found.into_iter().filter(|(_, s)| s.change.is_nan() || s.change > 1.0);
+    jumping
+        .map(|(what, s)| format!("number {} of {what} by {} of what it may at {} s", s.number, s.change, s.at_s))
+        .collect()
+}
+
+fn is_long() -> bool {
+    std::env::var_os("WELKIN_ACCEPT").is_some()
+}
+
+#[test]
+fn no_preset_becomes_another_with_a_jump() {
+    let host = Host::new();
+    let presets: Vec<(&str, Weather)> = Weather::preset_names().map(|n| (n, Weather::preset(n).unwrap())).collect();
+    let (mut pairs, mut faults) = (0, Vec::new());
+    for (a, from) in &presets {
+        for (b, to) in presets.iter().filter(|(b, _)| b != a) {
+            let (mut context, up_m) = lit(&host, pairs);
+            context.set_weather(from, 0.0, 0.0).unwrap();
+            context.set_weather(to, START_S, LENGTH_S).unwrap();
+            let found = jumps(&context, up_m, &[START_S, START_S + LENGTH_S], is_long() || pairs % 29 == 0);
+            faults.extend(found.into_iter().map(|f| format!("{a} to {b}: {f}")));
+            pairs += 1;
+        }
+    }
+    assert_eq!(pairs, presets.len() * (presets.len() - 1));
+    assert!(faults.is_empty(), "{} of {pairs}, among them {:#?}", faults.len(), &faults[..faults.len().min(10)]);
+}
+
+#[test]
+fn a_change_hides_no_less_of_the_sky_than_one_of_its_ends_and_no_more_than_the_other() {
+    let all: Vec<Conditions> =
+        Weather::preset_names().map(|n| derive(&Weather::preset(n).unwrap()).unwrap()).chain(layered()).collect();
+    for (i, a) in all.iter().enumerate() {
+        for (j, b) in all.iter().enumerate() {
+            let ends = [a.cloud_cover(), b.cloud_cover()];
+            let (least, most) = (ends[0].min(ends[1]) - 1e-12, ends[0].max(ends[1]) + 1e-12);
+            for t in (0..=64).map(|k| f64::from(k) / 64.0) {
+                let c = a.lerp(b, t);
+                let cover = c.cloud_cover();
+                assert!((least..=most).contains(&cover), "{i} to {j} at {t}: {cover} between {ends:?}");
+                for ((a, b), c) in a.clouds.iter().zip(&b.clouds).zip(&c.clouds) {
+                    let within = a.cover.min(b.cover)..=a.cover.max(b.cover);
+                    assert!(within.contains(&c.cover), "{i} to {j} at {t}: {} outside {within:?}", c.cover);
+                }
+            }
+        }
+    }
+}
+
+/// Skies of one to sixteen layers, high and low.
+fn layered() -> Vec<Conditions> {
+    let mut dice = Dice(3);
+    let skies = (1..=MAX_CLOUD_LAYERS).map(|count| {
+        let mut layer = || CloudLayer::new(dice.below(9) as f64 / 8.0, 10.0 * dice.below(1200) as f64);
+        Weather { clouds: (0..count).map(|_| layer()).collect(), ..Weather::default() }
+    });
+    skies.map(|w| derive(&w).unwrap()).collect()
+}
+
+/// Reports that differ in the number of their layers, in what falls, in fog and in what the wind lifts.
+const REPORTS: [&str; 12] = [
+    "METAR EGLL 060850Z 21006KT CAVOK 20/10 Q1020",
+    "METAR EGLL 060850Z 21006KT 9999 FEW010 SCT030 BKN080 OVC200 15/10 Q1012",
+    "METAR EGLL 060850Z 09012KT 3000 RA OVC006 11/10 Q1003",
+    "METAR EGLL 060850Z 27025G40KT 1500 +SHRA BKN012CB OVC040 11/10 Q0998",
+    "METAR EGLL 060850Z 00000KT 0150 FG VV001 03/03 Q1025",
+    "METAR EGLL 060850Z 03003KT 9000 MIFG FEW200 02/02 Q1025",
+    "METAR EGLL 060850Z 03003KT 4000 BCFG BKN003 02/02 Q1025",
+    "METAR EGLL 060850Z 02030KT 0300 +SN BLSN VV002 M06/M07 Q0985",
+    "METAR EGLL 060850Z 18008KT 2500 -DZ BR BKN003 OVC009 09/08 Q1008",
+    "METAR EGLL 060850Z 32035KT 0600 DS SKC 38/05 Q1001",
+    "METAR EGLL 060850Z 24015G30KT 2000 TSRAGR SCT010 BKN025CB OVC090 18/17 Q1002",
+    "METAR EGLL 060850Z 06010KT 1200 FZRA OVC004 M01/M02 Q1006",
+];
+
+/// Changes that begin while others are under way, among reports and presets.
+#[test]
+fn no_chain_of_changes_jumps() {
+    let host = Host::new();
+    let reports = REPORTS.map(|text| Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}")).weather);
+    let presets = Weather::preset_names().map(|n| Weather::preset(n).unwrap());
+    let all: Vec<Weather> = reports.into_iter().chain(presets).collect();
+    let mut dice = Dice(17);
+    for n in 0..if is_long() { 400 } else { 8 } {
+        let (mut context, up_m) = lit(&host, n);
+        let (mut start, mut seams) = (START_S, Vec::new());
+        context.set_weather(&all[dice.below(all.len())], 0.0, 0.0).unwrap();
+        for _ in 0..3 {
+            context.set_weather(&all[dice.below(all.len())], start, LENGTH_S).unwrap();
+            seams.extend([start, start + LENGTH_S]);
+            start += dice.below(LENGTH_S as usize + 200) as f64;
+        }
+        seams.sort_by(f64::total_cmp);
+        let found = jumps(&context, up_m, &seams, true);
+        assert!(found.is_empty(), "chain {n}, changes at {seams:?}: {found:?}");
+    }
+}
