@@ -152,7 +152,7 @@ fn apart(a: &[u16], b: &[u16]) -> f64 {
 fn report(script: &Script, device: &Device, times: &[f64], ends: &[f64], pictures: &[Vec<u16>]) {
     let end = script.then.map_or(times.len(), |_| CHANGE as usize);
     let slowest = |times: &[f64]| (0..times.len() - 8).map(|i| times[i] / median(&times[i + 1..])).fold(0.0, f64::max);
-    let worst = |p: &[Vec<u16>]| p.windows(2).map(|w| apart(&w[0], &w[1])).fold(0.0, f32::max);
+    let worst = |p: &[Vec<u16>]| p.windows(2).map(|w| apart(&w[0], &w[1])).fold(0.0, f64::max);
     println!("{}, {}:", script.name, device.caps().adapter_name);
     let last = &pictures[end - 1];
     let settled = pictures[..end].iter().rposition(|p| apart(p, last) > 1.0).map_or(0, |i| i + 1);
