@@ -65,7 +65,7 @@ impl Context {
 
     /// Whether saved ones can be some of ours over `timeline`.
     pub(super) fn are_valid(&self, areas: &[KeptArea], timeline: &Timeline) -> bool {
-        let is_place = |center_m: [f64; 3]| self.desc.world.frame_at(DVec3::from(center_m)).place.validate().is_ok();
+        let is_place = |center_m: [f64; 3]| self.desc.world.place_at("center_m", DVec3::from(center_m)).is_ok();
         let is_timed = |kept: &KeptArea| match (kept.area.motion, kept.carried_m) {
             (AreaMotion::Own(_), carried) => carried.is_none(),
             (AreaMotion::WithWind, Some(carried)) => carried.iter().all(|v| v.is_finite()),
