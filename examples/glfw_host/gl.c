@@ -31,10 +31,10 @@ bool gl_load(const platform *p)
     return true;
 }
 
-static GLuint compile(GLenum kind, const char *source)
+static GLuint compile(GLenum kind, const char *const *parts, GLsizei count)
 {
     GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, NULL);
+    glShaderSource(shader, count, parts, NULL);
     glCompileShader(shader);
     GLint ok = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
@@ -47,9 +47,11 @@ static GLuint compile(GLenum kind, const char *source)
     return shader;
 }
 
-GLuint gl_program(const char *vertex, const char *fragment)
+GLuint gl_program(const char *vertex, const char *fragment, const char *fragment_end)
 {
-    GLuint program = glCreateProgram(), v = compile(GL_VERTEX_SHADER, vertex), f = compile(GL_FRAGMENT_SHADER, fragment);
+    const char *const parts[] = {fragment, fragment_end};
+    GLuint v = compile(GL_VERTEX_SHADER, &vertex, 1), f = compile(GL_FRAGMENT_SHADER, parts, fragment_end ? 2 : 1);
+    GLuint program = glCreateProgram();
     glAttachShader(program, v);
     glAttachShader(program, f);
     glLinkProgram(program);

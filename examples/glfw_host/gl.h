@@ -83,6 +83,7 @@ extern PFNGLCLIPCONTROLPROC glClipControl;
 bool gl_load(const platform *p);
 
 /* Compiles and links; exits with the driver's message if the program's own GLSL is wrong. */
-GLuint gl_program(const char *vertex, const char *fragment);
+/* A long fragment shader goes on in fragment_end: C99 promises no string of more than 4095 characters. Else NULL. */
+GLuint gl_program(const char *vertex, const char *fragment, const char *fragment_end);
 
 #endif

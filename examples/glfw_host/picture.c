@@ -49,7 +49,7 @@ bool picture_create(picture *p, int width, int height)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glBindTexture(GL_TEXTURE_2D, 0);
     glGenVertexArrays(1, &p->array);
-    p->program = gl_program(PRESENT_VERTEX, PRESENT_FRAGMENT);
+    p->program = gl_program(PRESENT_VERTEX, PRESENT_FRAGMENT, NULL);
     if (!complete)
         fprintf(stderr, "this OpenGL cannot draw to %d x %d half floats\n", width, height);
     return complete;

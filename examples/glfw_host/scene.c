@@ -77,8 +77,8 @@ bool scene_create(scene *s, const char *terrain_png)
     }
     upload(s);
     create_shadow_map(s);
-    s->program = gl_program(SCENE_VERTEX, SCENE_FRAGMENT);
-    s->shadow_program = gl_program(SHADOW_VERTEX, SHADOW_FRAGMENT);
+    s->program = gl_program(SCENE_VERTEX, SCENE_FRAGMENT, SCENE_FRAGMENT_END);
+    s->shadow_program = gl_program(SHADOW_VERTEX, SHADOW_FRAGMENT, NULL);
     return true;
 }
 

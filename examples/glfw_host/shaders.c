@@ -80,8 +80,10 @@ const char *const SCENE_FRAGMENT =
     "    if (abs(v_road) < 3.55) return 3.0;\n"
     "    if (abs(v_road) < 4.9 || length(v_position.xy - pad) < 10.5) return 1.0;\n"
     "    return n.z < 0.75 ? 2.0 : 4.0;\n"
-    "}\n"
+    "}\n";
 
+/* How the ground and all else is lit. */
+const char *const SCENE_FRAGMENT_END =
     "float sun_visibility(float cosine) {\n"
     "    if (any(lessThan(v_shadow, vec3(0.0))) || any(greaterThan(v_shadow, vec3(1.0)))) return v_sunlit;\n"
     "    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));\n"

@@ -2,7 +2,7 @@
 #ifndef SHADERS_H
 #define SHADERS_H
 
-extern const char *const SCENE_VERTEX, *const SCENE_FRAGMENT;
+extern const char *const SCENE_VERTEX, *const SCENE_FRAGMENT, *const SCENE_FRAGMENT_END;
 extern const char *const SHADOW_VERTEX, *const SHADOW_FRAGMENT;
 extern const char *const PRESENT_VERTEX, *const PRESENT_FRAGMENT;
 

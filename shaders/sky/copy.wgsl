@@ -5,8 +5,8 @@
 
 // Texel by texel.
 @fragment
-fn copy(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    return textureLoad(copied, vec2u(position.xy), 0);
+fn copy(in: FullscreenVarying) -> @location(0) vec4f {
+    return textureLoad(copied, vec2u(in.position.xy), 0);
 }
 
 // Sun angles and altitudes of the light that is drawn; those of the one that is read follow from its size.
@@ -17,8 +17,8 @@ const LIGHT_TILES: u32 = 7u;
 // The table of light, tile by tile, from one of another size: between its texels as look-ups would read it. Of one of the
 // same size it is every texel itself.
 @fragment
-fn light(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let px = vec2u(position.xy);
+fn light(in: FullscreenVarying) -> @location(0) vec4f {
+    let px = vec2u(in.position.xy);
     let size = textureDimensions(copied) / vec2u(LIGHT_TILES, 1u);
     let tile = px.x / SUNS;
     let at = vec2u(px.x - tile * SUNS, px.y);

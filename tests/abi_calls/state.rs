@@ -154,17 +154,22 @@ unsafe fn set_wind_grid(context: *mut wk_context) {
     ok(unsafe { wk_context_set_wind_grid(context, &grid) });
 }
 
+unsafe fn set_default_surface_class(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_default_surface_class(context, WK_SURFACE_CLASS_PAVED) });
+}
+
 unsafe fn set_time(context: *mut wk_context) {
     ok(unsafe { wk_context_update(context, 7.25) });
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..12].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..13].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 13] = [
+const SETTERS: [(&str, Set); 14] = [
     ("wk_context_set_clock", set_clock),
+    ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),
     ("wk_context_set_fog_law", set_fog_law),
     ("wk_context_set_ground_grid", set_ground_grid),

@@ -19,7 +19,7 @@ fn what_is_refused_is_named_and_neither_submits_nor_changes_anything() {
     let device = host.device.clone();
     let (color, depth) = (host.color.clone(), host.depth.clone());
     let red = texture(&device, wgpu::TextureFormat::R8Unorm, 1);
-    let many = texture(&device, wgpu::TextureFormat::Depth32Float, 4);
+    let many = texture(&device, wgpu::TextureFormat::Rgba16Float, 4);
     // In 8 bits, so that it can be a mask.
     let plain = texture(&device, wgpu::TextureFormat::Rgba8Unorm, 1);
     let good = || Frame::new(5, camera(), &color, Some(&depth));
@@ -34,7 +34,7 @@ fn what_is_refused_is_named_and_neither_submits_nor_changes_anything() {
         ("color format Depth32Float", Frame { color: Some(&depth), ..good() }, all),
         ("depth format", Frame { depth: Some(&color), ..good() }, all),
         ("mask must be another texture than color", Frame { color: Some(&plain), mask: Some(&plain), ..good() }, all),
-        ("depth.samples", Frame { depth: Some(&many), ..good() }, all),
+        ("depth.samples", Frame { color: Some(&many), ..good() }, all),
         ("cd_m2_per_unit", Frame { cd_m2_per_unit: 0.0, ..good() }, all),
         ("exposure.factor", Frame { exposure: Some(Exposure::Factor(-1.0)), ..good() }, all),
         ("camera_velocity_m_s", Frame { camera_velocity_m_s: DVec3::splat(1e9), ..good() }, all),

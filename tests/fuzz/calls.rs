@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, ground::*, ground_grid::*, ground_texture::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*,
     light::*, occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*,
     veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
@@ -514,6 +514,10 @@ pub const CALLS: &[(&str, Call)] = &[
         get("wk_between", |p| unsafe {
             wk_context_get_between_at(context, segment.ptr().cast(), 1, segment.size(), time, p.cast(), size)
         })
+    }),
+    ("wk_context_get_frame_light", |d, w| {
+        let (context, mut frame) = (handle(d, &w.contexts), Struct::random(d, "wk_frame", 20));
+        get("wk_frame_light", |p| unsafe { wk_context_get_frame_light(context, frame.ptr().cast(), p.cast()) })
     }),
     ("wk_context_get_ambient", |d, w| {
         let (context, at) = (handle(d, &w.contexts), position(d));
