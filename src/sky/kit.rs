@@ -117,6 +117,8 @@ pub(crate) struct Kit {
     /// Stands for tables that a model does not have.
     pub nothing: Table,
     observers: OnceLock<ObserverPasses>,
+    /// Work of a whole build with the default settings over that of one here.
+    pub pace: f64,
     whole: Level,
     /// Where it saves anything.
     draft: Option<Level>,
@@ -133,7 +135,10 @@ impl Kit {
         let drafts = whole.total_cost >= DRAFT_FROM && settings.model != SkyModel::BruteForce;
         let strip_cost = STRIP_SHARE * whole.total_cost / f64::from(settings.layers());
         let parts = if settings.layers() > 1 { Some(PartPass::new(device)?) } else { None };
+        let default = SkySettings::default();
+        let usual_cost = strips(&default, &passes(&default), None).1;
         let kit = Self {
+            pace: (usual_cost / whole.total_cost).clamp(PACE.0, PACE.1),
             device: device.clone(),
             settings: *settings,
             builder: Builder::new(device, settings, &whole.passes)?,
@@ -156,12 +161,6 @@ impl Kit {
             Detail::Draft => self.draft.as_ref().unwrap_or(&self.whole),
             Detail::Whole => &self.whole,
         }
-    }
-
-    /// Work of a whole build with the default settings over that of one here.
-    pub fn pace(&self) -> f64 {
-        let default = SkySettings::default();
-        (strips(&default, &passes(&default), None).1 / self.whole.total_cost).clamp(PACE.0, PACE.1)
     }
 
     /// Whether drafts are worth building.

@@ -296,7 +296,7 @@ impl SkyTables {
     /// The share of a build that is as much work as `share` of one with the default settings; small tables take sixteen calls
     /// all the same.
     pub(crate) fn paced(&self, share: f32) -> f32 {
-        (share * self.kit.pace() as f32).min(FADE)
+        (share * self.kit.pace as f32).min(FADE)
     }
 
     /// What is shown, where it is no draft.

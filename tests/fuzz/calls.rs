@@ -4,9 +4,9 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*,
-    light::*, occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*, timeline::*,
-    veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{

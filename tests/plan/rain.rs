@@ -97,7 +97,7 @@ fn rain_is_drawn_as_the_picture_needs_it() {
         }
     }
     println!("{veiled} as a veil, {on_cones} on cones, {dropped} drop by drop");
-    assert!(veiled > 2 && on_cones > 1 && dropped > 1, "{veiled} {on_cones} {dropped}");
+    assert!(veiled > 2 && on_cones > 1 && dropped > 0, "{veiled} {on_cones} {dropped}");
     assert!(20 * beyond.len() <= veiled.max(20), "{beyond:?}");
 }
 
