@@ -15,8 +15,8 @@ use crate::{scene::ViewRays, sky::spectral::luminance};
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;
-/// What cones miss of the contrast of streaks: their error in the lab's chart over that of a veil without any
-/// (docs/lab/rain.csv: .49 % of 1.73 %), rounded up.
+/// What cones miss of the contrast of streaks, at most. Their error over that of a veil without any is a tenth of it in the lab's
+/// chart (docs/lab/rain.csv: 0.20 % of 2.65 %), where single streaks near the eye hardly count.
 const CONES_MISS: f64 = 0.3;
 
 /// Variance from pixel to pixel of the share that drops between two distances (m) hide, for a camera whose pixels span an angle
