@@ -3197,7 +3197,7 @@ typedef struct wk_frame {
     wk_frame_flags flags;
     /** Default WK_COLOR_SCENE_LINEAR. */
     wk_color_space color_space;
-    /** Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range (0, 1e9], default 1. */
+    /** Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range [1e-9, 1e9], default 1. */
     double cd_m2_per_unit;
     /** Default WK_EXPOSURE_OF_CONTEXT. */
     wk_exposure_mode exposure_mode;

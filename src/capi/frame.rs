@@ -106,7 +106,7 @@ pub struct wk_frame {
     pub flags: wk_frame_flags,
     /// Default WK_COLOR_SCENE_LINEAR.
     pub color_space: wk_color_space,
-    /// Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range (0, 1e9], default 1.
+    /// Luminance of the value 1 in a scene-linear colour image, cd/m^2. Range [1e-9, 1e9], default 1.
     pub cd_m2_per_unit: f64,
     /// Default WK_EXPOSURE_OF_CONTEXT.
     pub exposure_mode: wk_exposure_mode,

@@ -102,7 +102,7 @@ pub struct Frame<'a> {
     pub layers: ImageLayers,
     /// What the numbers in `color` mean.
     pub color_space: ColorSpace,
-    /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, (0, 1e9], default 1.
+    /// Luminance of the value 1 in a scene-linear `color`, cd/m^2, [1e-9, 1e9], default 1.
     pub cd_m2_per_unit: f64,
     /// Exposure of this frame; `None` takes the context's.
     pub exposure: Option<Exposure>,
@@ -174,8 +174,9 @@ impl<'a> Frame<'a> {
                 return Err(Error::range(&format!("{name}.layer"), &accepted, l.index));
             }
         }
-        if !(self.cd_m2_per_unit.is_finite() && self.cd_m2_per_unit > 0.0 && self.cd_m2_per_unit <= 1e9) {
-            return Err(Error::range("cd_m2_per_unit", "in (0, 1e9] cd/m^2", self.cd_m2_per_unit));
+        // Below that the sun's own number is infinite.
+        if !(1e-9..=1e9).contains(&self.cd_m2_per_unit) {
+            return Err(Error::range("cd_m2_per_unit", "in [1e-9, 1e9] cd/m^2", self.cd_m2_per_unit));
         }
         let speed = self.camera_velocity_m_s.length();
         if speed.is_nan() || speed > 2000.0 {

@@ -283,7 +283,7 @@ fn a_host_asks_how_to_light_a_frame_in_its_own_numbers() {
         let wrong = wk_frame { cd_m2_per_unit: 0.0, ..init("wk_frame") };
         refused(
             wk_context_get_frame_light(world.context, &wrong, &mut light),
-            "frame.cd_m2_per_unit must be in (0, 1e9]",
+            "frame.cd_m2_per_unit must be in [1e-9, 1e9]",
         );
     }
     assert_eq!(light(WK_COLOR_SCENE_LINEAR, 1.0).direct[1].max(0.1), 0.1, "no sun below the horizon");
