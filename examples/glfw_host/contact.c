@@ -42,7 +42,12 @@ static bool save(demo *d, sheet *s, int row, const char *out, uint8_t *rgb)
     for (char *c = name; *c; c++)
         *c = *c == ' ' ? '_' : *c;
     snprintf(path, sizeof path, "%s/%02d_%s.png", out, d->report + 1, name);
-    return png_write_rgb8(path, rgb, p->width, p->height);
+    if (!png_write_rgb8(path, rgb, p->width, p->height))
+        return false;
+    /* All of them take minutes on a software driver: whoever waits sees each one come. */
+    printf("%s\n", path);
+    fflush(stdout);
+    return true;
 }
 
 static bool draw_all(demo *d, sheet *s, int first, int rows, const char *out, uint8_t *rgb, cost *sum)
