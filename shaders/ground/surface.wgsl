@@ -241,7 +241,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     var film_level = ground.film_level;
     var film_slope = ground.film_slope;
     if TERRAIN {
-        // Water is level whatever lies below it, and shows where it reaches over that.
+        // Standing water is level, and shows where it covers the relief of the ground.
         let over = smoothstep(0.2 * look.relief_mm, 2.0 * look.relief_mm, here.water.standing);
         let stands = select(0.0, over, look.relief_mm > 0.0) * smoothstep(0.5, 0.8, mix(1.0, level, facing.sure));
         pool = mix(pool, stands, here.share);

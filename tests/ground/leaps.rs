@@ -8,14 +8,14 @@ use welkin::{
     context::{Context, GivenDirection, GroundCell},
     fog::Law,
     ground::GroundGrid,
-    rain::{AreaMotion, AreaShape, RainArea},
+    rain::RainArea,
     sky::sun::Utc,
     weather::{Weather, Wind},
 };
 
 use crate::{
     host::Host,
-    terrain::{grid, rain, roof, simulated},
+    terrain::{grid, put_terrain, rain, roof, simulated},
 };
 
 const STEP_S: f64 = 10.0;
@@ -29,17 +29,7 @@ fn day(host: &Host) -> Context {
         context.set_weather(&rain(8.0, 4.0), start_s + 100.0, 137.0).unwrap();
         context.set_weather(&clear, start_s + 2000.0, 61.0).unwrap();
     }
-    context.set_shelters(&[roof([-12.0, 8.0, 4.0], [5.0, 4.0, 0.2])]).unwrap();
-    let area = RainArea {
-        center_m: [30.0, 10.0, 0.0],
-        shape: AreaShape::Ellipse([25.0, 25.0]),
-        rim_m: 15.0,
-        rate_mm_h: 40.0,
-        motion: AreaMotion::Own([-0.01, 0.0]),
-        ..RainArea::default()
-    };
-    context.set_rain_areas(&[area]).unwrap();
-    context.set_ground_grid(Some(grid())).unwrap();
+    put_terrain(&mut context);
     context
 }
 

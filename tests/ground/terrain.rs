@@ -54,12 +54,8 @@ fn at(x: f64, y: f64) -> DVec3 {
     DVec3::new(x, y, 0.0)
 }
 
-/// Half an hour of rain from 100 s on, then sun and wind; half of the terrain under a roof, a shower over a part of it.
-fn shower(host: &Host) -> Context {
-    let mut context = simulated(host);
-    context.set_weather(&rain(12.0, 4.0), 100.0, 137.0).unwrap();
-    let clear = Weather { wind: Wind::of(6.0, 200.0), ..Weather::preset("clear").unwrap() };
-    context.set_weather(&clear, 1900.0, 61.0).unwrap();
+/// Sets the terrain, a roof over a part of it, and a shower over another.
+pub fn put_terrain(context: &mut Context) {
     context.set_shelters(&[roof([-12.0, 8.0, 4.0], [5.0, 4.0, 0.2])]).unwrap();
     let area = RainArea {
         center_m: [30.0, 10.0, 0.0],
@@ -71,6 +67,15 @@ fn shower(host: &Host) -> Context {
     };
     context.set_rain_areas(&[area]).unwrap();
     context.set_ground_grid(Some(grid())).unwrap();
+}
+
+/// Half an hour of rain from 100 s on, then sun and wind; half of the terrain under a roof, a shower over a part of it.
+fn shower(host: &Host) -> Context {
+    let mut context = simulated(host);
+    context.set_weather(&rain(12.0, 4.0), 100.0, 137.0).unwrap();
+    let clear = Weather { wind: Wind::of(6.0, 200.0), ..Weather::preset("clear").unwrap() };
+    context.set_weather(&clear, 1900.0, 61.0).unwrap();
+    put_terrain(&mut context);
     context
 }
 

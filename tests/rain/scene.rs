@@ -171,7 +171,7 @@ impl Host {
         self.upload(&self.depth, bytemuck::cast_slice(&depths), 4);
     }
 
-    /// Uploads black before what [`Host::draw`] drew last.
+    /// Uploads a black picture; the depth stays that of the last [`Host::draw`].
     pub fn paint_black(&self) {
         self.upload(&self.color, &vec![0; 8 * (self.size.0 * self.size.1) as usize], 8);
     }

@@ -195,7 +195,7 @@ const ALONE: &str = "WELKIN_TEST_ALONE";
 
 #[test]
 fn images_are_forgotten_after_they_were_destroyed() {
-    // What keeps the layer from giving out a number twice is switched off for a whole process.
+    // The validation layer's unique handles are switched off for a whole process, so this test has one to itself.
     if std::env::var_os(ALONE).is_some() {
         return forgotten_after_they_were_destroyed();
     }

@@ -128,7 +128,7 @@ impl Given {
         (field.set)(self, number(dice, field.range));
     }
 
-    /// As it is accepted: what depends on another number is brought into its range.
+    /// The weather with each number that depends on another brought into its range, so that it is accepted.
     pub fn accepted(mut self) -> Self {
         let w = &mut self.weather;
         if w.precipitation.kind == PrecipitationKind::None {

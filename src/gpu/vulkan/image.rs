@@ -356,22 +356,7 @@ fn usages(usage: vk::ImageUsageFlags, depth: bool) -> (wgpu::TextureUsages, Text
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
-    fn image(format: vk::Format, usage: vk::ImageUsageFlags) -> HostImage {
-        HostImage {
-            image: ash::vk::Handle::from_raw(1),
-            format,
-            width: 4,
-            height: 4,
-            samples: 1,
-            usage,
-            array_layers: 1,
-            layer: 0,
-            layout: vk::ImageLayout::GENERAL,
-            final_layout: vk::ImageLayout::GENERAL,
-        }
-    }
+    use super::{super::layouts::tests::image, *};
 
     #[test]
     fn one_image_is_one_import_whatever_its_layouts() {

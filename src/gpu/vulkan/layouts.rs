@@ -81,10 +81,11 @@ pub(super) fn usage_names(usage: vk::ImageUsageFlags, between: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn image(format: vk::Format, usage: vk::ImageUsageFlags) -> HostImage {
+    /// A small image of a host, in any layout.
+    pub fn image(format: vk::Format, usage: vk::ImageUsageFlags) -> HostImage {
         HostImage {
             image: ash::vk::Handle::from_raw(1),
             format,
