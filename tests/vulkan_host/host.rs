@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
+use crate::reuse;
 use ash::vk;
 use welkin::gpu::vulkan::{EnabledFeatures, HostImage, VulkanHostDesc};
 
@@ -16,7 +17,8 @@ pub struct Setup {
     pub extensions: Vec<&'static CStr>,
     pub core: vk::PhysicalDeviceFeatures,
     pub timeline: bool,
-    /// Whether the validation layer gives each object a number of its own, never used again; a driver does not.
+    /// Whether the validation layer gives each object a number of its own, never used again. A driver does not: without,
+    /// a new image has the number of the one that was destroyed last.
     pub unique_handles: bool,
 }
 
@@ -196,7 +198,7 @@ impl Host {
             .usage(usage);
         // SAFETY: plain Vulkan by its rules.
         unsafe {
-            let image = self.device.create_image(&info, None).unwrap();
+            let image = self.device.create_image(&info, self.images().as_ref()).unwrap();
             let needs = self.device.get_image_memory_requirements(image);
             let memory = self.allocate(needs, vk::MemoryPropertyFlags::DEVICE_LOCAL);
             self.device.bind_image_memory(image, memory, 0).unwrap();
@@ -215,6 +217,11 @@ impl Host {
             };
             Owned { image, memory }
         }
+    }
+
+    /// Where images have their handles.
+    fn images(&self) -> Option<vk::AllocationCallbacks<'static>> {
+        (!self.setup.unique_handles).then(reuse::callbacks)
     }
 
     fn allocate(&self, needs: vk::MemoryRequirements, flags: vk::MemoryPropertyFlags) -> vk::DeviceMemory {
@@ -391,7 +398,7 @@ impl Host {
     pub fn destroy_image(&self, owned: Owned) {
         // SAFETY: plain Vulkan by its rules; the tests wait for the queue first.
         unsafe {
-            self.device.destroy_image(owned.image.image, None);
+            self.device.destroy_image(owned.image.image, self.images().as_ref());
             self.device.free_memory(owned.memory, None);
         }
     }

@@ -206,36 +206,20 @@ fn images_are_forgotten_after_they_were_destroyed() {
     assert!(output.status.success() && said.contains("1 passed"), "{said}{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// New images after the old ones are destroyed, of which the colour has the number of an old one, if such a number comes again.
-fn reborn(host: &Host, old: &[[Owned; 2]]) -> Option<[Owned; 2]> {
-    old.iter().flatten().for_each(|i| host.destroy_image(*i));
-    let mut others = Vec::new();
-    let found = (0..256).find_map(|_| {
-        let new = pair(host, [1, 1], 1);
-        let same = old.iter().any(|o| o[0].image.image == new[0].image.image);
-        if !same {
-            others.extend(new);
-        }
-        same.then_some(new)
-    });
-    others.into_iter().for_each(|i| host.destroy_image(i));
-    found
-}
-
 fn forgotten_after_they_were_destroyed() {
     let host = Host::new(Setup { unique_handles: false, ..Setup::modern() });
     let device = device(&host);
     let scene = rainy(device);
-    // Many, since what else asks for memory may get the place of one.
-    let frames = 24;
-    let old: Vec<_> = (0..frames).map(|_| pair(&host, [1, 1], 1)).collect();
-    (0..).zip(&old).for_each(|(id, images)| ok(record(&scene, id, images, 0)));
-    let wanted = pixels(&host, &old[0][0], 0);
+    let old = pair(&host, [1, 1], 1);
+    ok(record(&scene, 0, &old, 0));
+    let wanted = pixels(&host, &old[0], 0);
     assert!(wanted.iter().all(|p| p[..3] != [0, 0, 128]), "weather everywhere");
     // An engine's swapchain rebuilt inside a call: old images go, new ones come, and then Welkin hears of it.
-    let new = reborn(&host, &old).expect("the driver gives a number twice");
-    old.iter().for_each(|images| forget(device, images));
-    ok(record(&scene, frames, &new, 0));
+    old.iter().rev().for_each(|i| host.destroy_image(*i));
+    let new = pair(&host, [1, 1], 1);
+    assert_eq!(new[0].image.image, old[0].image.image, "the driver gives a number twice");
+    forget(device, &old);
+    ok(record(&scene, 1, &new, 0));
     for (got, wanted) in pixels(&host, &new[0], 0).iter().zip(&wanted) {
         assert!(got.iter().zip(wanted).all(|(a, b)| a.abs_diff(*b) <= 2), "{got:?} {wanted:?}");
     }

@@ -10,6 +10,7 @@ mod ground;
 mod host;
 mod images;
 mod refusals;
+mod reuse;
 mod sharing;
 mod weather;
 
