@@ -55,7 +55,9 @@ public:
         check(wk_context_destroy(context_));
         check(wk_device_destroy(device_));
         context_ = nullptr, device_ = nullptr;
-        if (own_.valid()) own_->close(), own_ = nullptr;
+        /* Where the window went first, Mesa 22 may free the window's buffers twice with the last context that shares them. */
+        if (own_.valid() && host_.valid() && host_->isRealized()) own_->close(), own_ = nullptr;
+        else own_.release();
     }
 
     wk_context *context() const { return context_; }
@@ -71,9 +73,7 @@ private:
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits(*gc->getTraits());
         traits->width = traits->height = 1;
-        traits->pbuffer = true;
-        traits->doubleBuffer = false;
-        traits->samples = 0;
+        traits->pbuffer = true, traits->doubleBuffer = false, traits->samples = 0;
         traits->inheritedWindowData = nullptr;
         traits->sharedContext = gc;
         own_ = osg::GraphicsContext::createGraphicsContext(traits.get());

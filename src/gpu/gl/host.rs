@@ -327,7 +327,11 @@ impl Inner {
                             entry.images().for_each(|image| bind_again(host, image));
                         }
                     }
-                    Err(e) => fault = fault.or(Some(e)),
+                    Err(e) => {
+                        // Nobody is there to wait, and Welkin's context is still current.
+                        self.api.DeleteSync(fence);
+                        fault = fault.or(Some(e));
+                    }
                 }
                 fault = fault.or_else(|| raised_in_welkin(raised));
             }
