@@ -259,6 +259,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_GROUND_TEXTURE 47
 /** wk_frame_light */
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
+/** wk_part_wish */
+#define WK_STRUCT_TYPE_PART_WISH 61
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3693,13 +3695,17 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
  * Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
  * perceived for the time they save, and come back when there is room to spare.
+ *
+ * Parts have numbers (WK_PART_) and names, and each is drawn at one of its rungs: 0 is all of it, the last is nothing of it or the
+ * cheapest that stands for it. Later versions have more parts, at the end; wk_plan.part_count says how many, and
+ * wk_view_get_part_plan what they are called.
  * After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
  * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
  * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
  *
  * What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
- * that must also leave out alike pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or one that another view found
+ * that must also leave out alike pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or one that another view found
  * (wk_view_save_plan, wk_view_load_plan).
  * ====================================================================================================
  */
@@ -3709,33 +3715,69 @@ typedef uint32_t wk_budget_has_flags;
 
 /** tolerance */
 #define WK_BUDGET_HAS_TOLERANCE 1
-/** pinned_parts */
-#define WK_BUDGET_HAS_PINNED_PARTS 2
 /** milliseconds */
-#define WK_BUDGET_HAS_MILLISECONDS 4
-/** importance_air, importance_fog and importance_sky */
-#define WK_BUDGET_HAS_IMPORTANCE 8
-/** pinned_parts says of WK_PART_RAIN and WK_PART_DROPS too whether they are drawn; without this bit both are. */
-#define WK_BUDGET_HAS_PINNED_RAIN 16
-/** importance_rain and importance_drops */
-#define WK_BUDGET_HAS_RAIN_IMPORTANCE 32
+#define WK_BUDGET_HAS_MILLISECONDS 2
 
-/** Parts of the weather that a picture may do without. */
-typedef uint32_t wk_part_flags;
+/** Which optional fields of a wk_part_wish are set. */
+typedef uint32_t wk_part_wish_has_flags;
 
-/** Air and haze between the camera and what the host drew. */
-#define WK_PART_AIR 1
-/** Fog, mist, dust and what falls, as a layer. */
-#define WK_PART_FOG 2
-/** The clear sky above the horizon, behind clouds. */
-#define WK_PART_SKY 4
+/** importance */
+#define WK_PART_WISH_HAS_IMPORTANCE 1
+/** rung */
+#define WK_PART_WISH_HAS_RUNG 2
+
+/** A part of the weather that a picture may do with less of, by its number. */
+typedef uint32_t wk_part;
+
+/** Air and haze between the camera and what the host drew. Rungs: all, none. */
+#define WK_PART_AIR 0
+/** Fog, mist, dust and what falls, as a layer. Rungs: all, none. */
+#define WK_PART_FOG 1
+/** The clear sky above the horizon, behind clouds. Rungs: all, none. */
+#define WK_PART_SKY 2
 /**
- * Streaks and splashes of rain: left out, all rain is a veil, and without WK_PART_FOG too nothing of it is drawn. Where the
- * view has no rain model of the host's choice.
+ * Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the camera by itself),
+ * cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
  */
-#define WK_PART_RAIN 8
-/** Each drop near the camera by itself, and splashes: left out, cones stand for them. */
-#define WK_PART_DROPS 16
+#define WK_PART_RAIN 3
+
+/** What a host wants of one part. */
+typedef struct wk_part_wish {
+    /** sizeof(wk_part_wish) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_PART_WISH. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Which optional fields are set. */
+    wk_part_wish_has_flags has;
+    /** Of which part. */
+    wk_part part;
+    /**
+     * Optional: the part is drawn at this rung, whatever the tolerance and the time, so that all channels draw alike. Range: below the
+     * part's wk_part_plan.rung_count. What of a tolerance and a time that does not keep is still said (wk_plan.gave_way).
+     */
+    uint32_t rung;
+    /** 0. */
+    uint32_t reserved;
+    /**
+     * Optional: how much the part matters to those who look, which says what is left out first under a budget of time. Range [0, 1],
+     * default wk_part_plan.importance.
+     */
+    double importance;
+} wk_part_wish;
+
+/** Every field of `wk_part_wish` at its default. */
+#define WK_PART_WISH_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_part_wish), \
+    /* struct_type */ WK_STRUCT_TYPE_PART_WISH, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* part */ 0, \
+    /* rung */ 0, \
+    /* reserved */ 0, \
+    /* importance */ 0.0 \
+}
 
 /** How wrong a view's pictures may be, and how long they may take. */
 typedef struct wk_budget {
@@ -3747,11 +3789,14 @@ typedef struct wk_budget {
     const void *next;
     /** Which optional fields are set. Default 0: everything is drawn. */
     wk_budget_has_flags has;
-    /**
-     * Optional: just these parts are drawn, whatever the tolerance and the time, so that all channels draw alike; a union of
-     * WK_PART_ constants, 0 for none. What of a tolerance and a time they do not keep is still said (wk_plan.gave_way).
-     */
-    wk_part_flags pinned_parts;
+    /** Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default. */
+    uint32_t wish_count;
+    /** sizeof(wk_part_wish) of your header. */
+    uint32_t wish_stride;
+    /** 0. */
+    uint32_t reserved;
+    /** What is wanted of single parts, each of them once. */
+    const wk_part_wish *wishes;
     /** Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen. */
     double tolerance;
     /**
@@ -3759,19 +3804,6 @@ typedef struct wk_budget {
      * times from wk_view_report_time only.
      */
     double milliseconds;
-    /**
-     * Optional, all three: how much the parts matter to those who look, which says what is left out first under a budget
-     * of time. Range [0, 1], default 0.9, 0.9 and 0.2.
-     */
-    double importance_air;
-    /** As importance_air. */
-    double importance_fog;
-    /** As importance_air. */
-    double importance_sky;
-    /** Optional, both: likewise of rain. Range [0, 1], default 0.7 and 0.7. */
-    double importance_rain;
-    /** As importance_rain. */
-    double importance_drops;
 } wk_budget;
 
 /** Every field of `wk_budget` at its default. */
@@ -3780,14 +3812,12 @@ typedef struct wk_budget {
     /* struct_type */ WK_STRUCT_TYPE_BUDGET, \
     /* next */ NULL, \
     /* has */ 0, \
-    /* pinned_parts */ 0, \
+    /* wish_count */ 0, \
+    /* wish_stride */ (uint32_t)sizeof(wk_part_wish), \
+    /* reserved */ 0, \
+    /* wishes */ NULL, \
     /* tolerance */ 0.0, \
-    /* milliseconds */ 0.0, \
-    /* importance_air */ 0.0, \
-    /* importance_fog */ 0.0, \
-    /* importance_sky */ 0.0, \
-    /* importance_rain */ 0.0, \
-    /* importance_drops */ 0.0 \
+    /* milliseconds */ 0.0 \
 }
 
 /** What of a budget could not be kept, by the estimates. */
@@ -3811,8 +3841,8 @@ typedef struct wk_plan {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** The parts of which anything is drawn. */
-    wk_part_flags drawn;
+    /** How many parts there are: their numbers are below it. */
+    uint32_t part_count;
     /** What of the budget could not be kept. */
     wk_gave_way gave_way;
     /** Error of all that is left out together: 95th percentile over the gauged pixels. */
@@ -3834,7 +3864,7 @@ typedef struct wk_plan {
     /* struct_size */ (uint32_t)sizeof(wk_plan), \
     /* struct_type */ WK_STRUCT_TYPE_PLAN, \
     /* next */ NULL, \
-    /* drawn */ 0, \
+    /* part_count */ 0, \
     /* gave_way */ 0, \
     /* error */ 0.0, \
     /* error_bound */ 0.0, \
@@ -3844,7 +3874,7 @@ typedef struct wk_plan {
     /* milliseconds */ 0.0 \
 }
 
-/** Why a part is drawn or not. */
+/** Why a part is drawn as it is. */
 typedef uint32_t wk_plan_reason;
 
 /** No tolerance was given: everything is drawn. */
@@ -3853,9 +3883,9 @@ typedef uint32_t wk_plan_reason;
 #define WK_PLAN_REASON_NOT_GAUGED 1
 /** The weather has none of it, or the recorded stages do not draw it. */
 #define WK_PLAN_REASON_ABSENT 2
-/** Without it the error would be beyond the tolerance. */
+/** With less of it the error would be beyond the tolerance. */
 #define WK_PLAN_REASON_NEEDED 3
-/** The error without it is within the tolerance. */
+/** The error with less of it is within the tolerance. */
 #define WK_PLAN_REASON_WITHIN_TOLERANCE 4
 /** The host pinned it. */
 #define WK_PLAN_REASON_PINNED 5
@@ -3870,20 +3900,30 @@ typedef struct wk_part_plan {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Why it is drawn or not. */
+    /** Why it is drawn as it is. */
     wk_plan_reason reason;
+    /** The rung at which it is drawn once it has faded; 0, all of it, if there is none of it. */
+    uint32_t rung;
+    /** How many rungs it has. */
+    uint32_t rung_count;
     /** 0. */
     uint32_t reserved;
-    /** The reason in a few words of English; lives as long as the process. */
+    /** Its name in saved plans and messages, UTF-8; lives as long as the process, as the other texts do. */
+    const char *name;
+    /** That of the rung. */
+    const char *rung_name;
+    /** The reason in a few words of English. */
     const char *reason_text;
-    /** How much of it is drawn: 1 all, 0 nothing, between while it fades. */
+    /** How much it matters where a budget does not say. */
+    double importance;
+    /** How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another. */
     double share;
-    /** Error of the picture without this part alone, as last gauged. */
+    /** Error of the picture with this part alone at its last rung, as last gauged. */
     double error;
     /** The same at the worst gauged pixel. */
     double worst;
     /**
-     * What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+     * What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
      */
     double work;
 } wk_part_plan;
@@ -3894,8 +3934,13 @@ typedef struct wk_part_plan {
     /* struct_type */ WK_STRUCT_TYPE_PART_PLAN, \
     /* next */ NULL, \
     /* reason */ 0, \
+    /* rung */ 0, \
+    /* rung_count */ 0, \
     /* reserved */ 0, \
+    /* name */ NULL, \
+    /* rung_name */ NULL, \
     /* reason_text */ NULL, \
+    /* importance */ 0.0, \
     /* share */ 0.0, \
     /* error */ 0.0, \
     /* worst */ 0.0, \
@@ -3924,11 +3969,14 @@ WK_API wk_status wk_view_report_time(wk_view *view, double milliseconds);
 WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
 
 /**
- * Says of one part (a single WK_PART_ constant) how much of it the view's last frame drew, and why.
+ * Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame too.
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
  */
-WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part_flags part, wk_part_plan *out_part);
+WK_API
+wk_status wk_view_get_part_plan(wk_view *view,
+                                wk_part part,
+                                wk_part_plan *out_part);
 
 /**
  * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
@@ -3945,7 +3993,7 @@ wk_status wk_view_save_plan(wk_view *view,
                             size_t *out_size);
 
 /**
- * Pins a plan that wk_view_save_plan wrote, as WK_BUDGET_HAS_PINNED_PARTS does; the rest of the view's budget stays, and
+ * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's budget stays, and
  * wk_view_set_budget ends it.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
@@ -3956,6 +4004,12 @@ WK_API
 wk_status wk_view_load_plan(wk_view *view,
                             const void *plan,
                             size_t size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_PART_WISH_INIT`. `struct_size` is `sizeof(wk_part_wish)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_part_wish_init(wk_part_wish *out, uint32_t struct_size);
 
 /**
  * Writes the default of every field: the same bytes as `WK_BUDGET_INIT`. `struct_size` is `sizeof(wk_budget)`
@@ -4007,7 +4061,7 @@ typedef uint32_t wk_rain_model;
 
 /**
  * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
- * the time does not allow it (WK_PART_RAIN, WK_PART_DROPS).
+ * the time does not allow it (WK_PART_RAIN).
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */

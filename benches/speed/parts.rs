@@ -1,14 +1,14 @@
 //! What the parts that a plan may leave out cost a picture, and what the gauge costs: the constants of
-//! `plan::planner`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
+//! the rooms' `candidates`, in units of a pixel with none of them. And how far times predicted from them are from measured ones.
 
 use std::{sync::Arc, time::Instant};
 
 use glam::DVec3;
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
-    frame::{Frame, Shared, Stages, View},
+    frame::{Frame, PARTS, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    plan::{Budget, PARTS, Part},
+    plan::Budget,
     scene::Camera,
     weather::Weather,
 };
@@ -16,6 +16,11 @@ use welkin::{
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+
+/// A rung of each of air, fog, sky and rain.
+type Rungs = [usize; 4];
+const ALL: Rungs = [0; 4];
+const NONE: Rungs = [1, 1, 1, 2];
 
 struct Bench {
     device: Arc<Device>,
@@ -69,19 +74,19 @@ impl Bench {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn frame_with(&mut self, parts: [bool; PARTS]) -> Fallible<f64> {
-        self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() })?;
+    fn frame_with(&mut self, rungs: Rungs) -> Fallible<f64> {
+        self.view.set_budget(Budget::pinned(&rungs))?;
         self.frame()
     }
 
-    /// Time of a frame with these parts in times of the one with none before it: the median of many, so that whatever else
+    /// Time of a frame with parts at these rungs in times of the one with none before it: the median of many, so that whatever else
     /// the machine does falls on both.
-    fn ratio(&mut self, parts: [bool; PARTS]) -> Fallible<f64> {
+    fn ratio(&mut self, rungs: Rungs) -> Fallible<f64> {
         // The first of each compiles.
         let mut ratios = Vec::new();
         for _ in 0..42 {
-            let none = self.frame_with([false; PARTS])?;
-            ratios.push(self.frame_with(parts)? / none);
+            let none = self.frame_with(NONE)?;
+            ratios.push(self.frame_with(rungs)? / none);
         }
         Ok(median(&mut ratios[1..]))
     }
@@ -107,7 +112,7 @@ fn median(of: &mut [f64]) -> f64 {
 fn predictions(bench: &mut Bench) -> Fallible<()> {
     let (mut within, mut all, mut worst) = (0, 0, 0.0f64);
     let mut clock = View::new(&bench.context)?;
-    clock.set_budget(Budget { pinned: Some([false; PARTS]), ..Budget::default() })?;
+    clock.set_budget(Budget::pinned(&NONE))?;
     let scenes = [
         ("clear", 0),
         ("clear", 180),
@@ -120,22 +125,12 @@ fn predictions(bench: &mut Bench) -> Fallible<()> {
     for (weather, horizon) in scenes {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
-        for parts in [
-            [true; PARTS],
-            [false, true, true, true, true],
-            [true, false, true, true, true],
-            [false; PARTS],
-            [true, true, false, true, true],
-            [true, true, true, true, false],
-            [true, true, true, false, false],
-            [true; PARTS],
-        ] {
+        for rungs in [ALL, [1, 0, 0, 0], [0, 1, 0, 0], NONE, [0, 0, 1, 0], [0, 0, 0, 1], [0, 0, 0, 2], ALL] {
             // Where it does not rain, no more than is there.
-            if !weather.contains("rain") && parts[3..] != [true; 2] && parts != [false; PARTS] {
+            if !weather.contains("rain") && rungs[3] != 0 && rungs != NONE {
                 continue;
             }
-            let budget = Budget { pinned: Some(parts), tolerance: Some(0.01), ..Budget::default() };
-            bench.view.set_budget(budget)?;
+            bench.view.set_budget(Budget { tolerance: Some(0.01), ..Budget::pinned(&rungs) })?;
             let (mut said, mut times) = (None, Vec::new());
             for frame in 0..32 {
                 std::mem::swap(&mut bench.view, &mut clock);
@@ -154,7 +149,7 @@ fn predictions(bench: &mut Bench) -> Fallible<()> {
                 all += 1;
                 within += u32::from(error.abs() <= 0.25);
                 worst = worst.max(error.abs());
-                println!("  {weather}, ground below row {horizon}, {parts:?}: {said:.2} predicted, {took:.2} taken");
+                println!("  {weather}, ground below row {horizon}, {rungs:?}: {said:.2} predicted, {took:.2} taken");
             }
         }
     }
@@ -169,14 +164,14 @@ pub fn run() -> Fallible<()> {
     {
         bench.world(horizon);
         bench.set(weather, bench.frame_id as f64 + 1.0)?;
-        let mut only = [false; PARTS];
-        only[part] = true;
-        println!("  {} in {weather}: {:.2}", Part::ALL[part].name(), bench.ratio(only)? - 1.0);
+        let mut only = NONE;
+        only[part] = 0;
+        println!("  {} in {weather}: {:.2}", PARTS[part].name, bench.ratio(only)? - 1.0);
     }
     bench.world(180);
     bench.set("heavy_rain", bench.frame_id as f64 + 1.0)?;
-    let cones = bench.ratio([false, false, false, true, false])? - 1.0;
-    let drops = bench.ratio([false, false, false, true, true])? - 1.0 - cones;
+    let cones = bench.ratio([1, 1, 1, 1])? - 1.0;
+    let drops = bench.ratio([1, 1, 1, 0])? - 1.0 - cones;
     let each = drops * f64::from(SIZE.width * SIZE.height) / f64::from(bench.view.report().rain.drops.max(1));
     println!("  rain: {cones:.2}; drops {drops:.2}, {each:.2} pixels each");
     bench.set("clear", bench.frame_id as f64 + 1.0)?;

@@ -5,18 +5,23 @@
 //! without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
 //! Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
 //! perceived for the time they save, and come back when there is room to spare.
+//!
+//! Parts have numbers (WK_PART_) and names, and each is drawn at one of its rungs: 0 is all of it, the last is nothing of it or the
+//! cheapest that stands for it. Later versions have more parts, at the end; wk_plan.part_count says how many, and
+//! wk_view_get_part_plan what they are called.
 //! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
 //! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
 //!
 //! What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
-//! that must also leave out alike pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or one that another view found
+//! that must also leave out alike pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or one that another view found
 //! (wk_view_save_plan, wk_view_load_plan).
 
 use std::{
-    ffi::{c_char, c_void},
+    ffi::{CString, c_char, c_void},
     ptr::null,
+    sync::LazyLock,
 };
 
 use super::{
@@ -27,43 +32,40 @@ use super::{
     view::{ViewObject, wk_view},
 };
 use crate::{
-    error::{Error, Status},
-    plan::{Budget, GaveWay, PARTS, PartPlan, Reason},
+    error::{Error, Result, Status},
+    frame::PARTS,
+    plan::{Budget, GaveWay, PartPlan, Reason, Wish},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
 
-/// Parts of the weather that a picture may do without.
-pub type wk_part_flags = u32;
-/// Air and haze between the camera and what the host drew.
-pub const WK_PART_AIR: wk_part_flags = 1;
-/// Fog, mist, dust and what falls, as a layer.
-pub const WK_PART_FOG: wk_part_flags = 2;
-/// The clear sky above the horizon, behind clouds.
-pub const WK_PART_SKY: wk_part_flags = 4;
+/// A part of the weather that a picture may do with less of, by its number.
+pub type wk_part = u32;
+/// Air and haze between the camera and what the host drew. Rungs: all, none.
+pub const WK_PART_AIR: wk_part = 0;
+/// Fog, mist, dust and what falls, as a layer. Rungs: all, none.
+pub const WK_PART_FOG: wk_part = 1;
+/// The clear sky above the horizon, behind clouds. Rungs: all, none.
+pub const WK_PART_SKY: wk_part = 2;
+/// Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the camera by itself),
+/// cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
+pub const WK_PART_RAIN: wk_part = 3;
 
-/// Streaks and splashes of rain: left out, all rain is a veil, and without WK_PART_FOG too nothing of it is drawn. Where the
-/// view has no rain model of the host's choice.
-pub const WK_PART_RAIN: wk_part_flags = 8;
-/// Each drop near the camera by itself, and splashes: left out, cones stand for them.
-pub const WK_PART_DROPS: wk_part_flags = 16;
+/// Which optional fields of a wk_part_wish are set.
+pub type wk_part_wish_has_flags = u32;
+/// importance
+pub const WK_PART_WISH_HAS_IMPORTANCE: wk_part_wish_has_flags = 1;
+/// rung
+pub const WK_PART_WISH_HAS_RUNG: wk_part_wish_has_flags = 2;
 
 /// Which optional fields of a wk_budget are set.
 pub type wk_budget_has_flags = u32;
 /// tolerance
 pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
-/// pinned_parts
-pub const WK_BUDGET_HAS_PINNED_PARTS: wk_budget_has_flags = 2;
 /// milliseconds
-pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 4;
-/// importance_air, importance_fog and importance_sky
-pub const WK_BUDGET_HAS_IMPORTANCE: wk_budget_has_flags = 8;
-/// pinned_parts says of WK_PART_RAIN and WK_PART_DROPS too whether they are drawn; without this bit both are.
-pub const WK_BUDGET_HAS_PINNED_RAIN: wk_budget_has_flags = 16;
-/// importance_rain and importance_drops
-pub const WK_BUDGET_HAS_RAIN_IMPORTANCE: wk_budget_has_flags = 32;
+pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 2;
 
-/// Why a part is drawn or not.
+/// Why a part is drawn as it is.
 pub type wk_plan_reason = u32;
 /// No tolerance was given: everything is drawn.
 pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
@@ -71,9 +73,9 @@ pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
 pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
 /// The weather has none of it, or the recorded stages do not draw it.
 pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
-/// Without it the error would be beyond the tolerance.
+/// With less of it the error would be beyond the tolerance.
 pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
-/// The error without it is within the tolerance.
+/// The error with less of it is within the tolerance.
 pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
 /// The host pinned it.
 pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
@@ -90,6 +92,43 @@ pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
 /// the budget.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
+/// What a host wants of one part.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_part_wish {
+    /// sizeof(wk_part_wish) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_PART_WISH.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Which optional fields are set.
+    pub has: wk_part_wish_has_flags,
+    /// Of which part.
+    pub part: wk_part,
+    /// Optional: the part is drawn at this rung, whatever the tolerance and the time, so that all channels draw alike. Range: below the
+    /// part's wk_part_plan.rung_count. What of a tolerance and a time that does not keep is still said (wk_plan.gave_way).
+    pub rung: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Optional: how much the part matters to those who look, which says what is left out first under a budget of time. Range [0, 1],
+    /// default wk_part_plan.importance.
+    pub importance: f64,
+}
+
+impl wk_part_wish {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_PART_WISH,
+        next: null(),
+        has: 0,
+        part: 0,
+        rung: 0,
+        reserved: 0,
+        importance: 0.0,
+    };
+}
+
 /// How wrong a view's pictures may be, and how long they may take.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -102,25 +141,19 @@ pub struct wk_budget {
     pub next: *const c_void,
     /// Which optional fields are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
-    /// Optional: just these parts are drawn, whatever the tolerance and the time, so that all channels draw alike; a union of
-    /// WK_PART_ constants, 0 for none. What of a tolerance and a time they do not keep is still said (wk_plan.gave_way).
-    pub pinned_parts: wk_part_flags,
+    /// Length of `wishes`. Default 0: parts that are not in it are planned, and matter as by default.
+    pub wish_count: u32,
+    /// sizeof(wk_part_wish) of your header.
+    pub wish_stride: u32,
+    /// 0.
+    pub reserved: u32,
+    /// What is wanted of single parts, each of them once.
+    pub wishes: *const wk_part_wish,
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
     /// Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
     /// times from wk_view_report_time only.
     pub milliseconds: f64,
-    /// Optional, all three: how much the parts matter to those who look, which says what is left out first under a budget
-    /// of time. Range [0, 1], default 0.9, 0.9 and 0.2.
-    pub importance_air: f64,
-    /// As importance_air.
-    pub importance_fog: f64,
-    /// As importance_air.
-    pub importance_sky: f64,
-    /// Optional, both: likewise of rain. Range [0, 1], default 0.7 and 0.7.
-    pub importance_rain: f64,
-    /// As importance_rain.
-    pub importance_drops: f64,
 }
 
 impl wk_budget {
@@ -129,14 +162,12 @@ impl wk_budget {
         struct_type: WK_STRUCT_TYPE_BUDGET,
         next: null(),
         has: 0,
-        pinned_parts: 0,
+        wish_count: 0,
+        wish_stride: struct_size::<wk_part_wish>(),
+        reserved: 0,
+        wishes: null(),
         tolerance: 0.0,
         milliseconds: 0.0,
-        importance_air: 0.0,
-        importance_fog: 0.0,
-        importance_sky: 0.0,
-        importance_rain: 0.0,
-        importance_drops: 0.0,
     };
 }
 
@@ -150,8 +181,8 @@ pub struct wk_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The parts of which anything is drawn.
-    pub drawn: wk_part_flags,
+    /// How many parts there are: their numbers are below it.
+    pub part_count: u32,
     /// What of the budget could not be kept.
     pub gave_way: wk_gave_way,
     /// Error of all that is left out together: 95th percentile over the gauged pixels.
@@ -173,7 +204,7 @@ impl wk_plan {
         struct_size: struct_size::<Self>(),
         struct_type: WK_STRUCT_TYPE_PLAN,
         next: null(),
-        drawn: 0,
+        part_count: 0,
         gave_way: 0,
         error: 0.0,
         error_bound: 0.0,
@@ -194,19 +225,29 @@ pub struct wk_part_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Why it is drawn or not.
+    /// Why it is drawn as it is.
     pub reason: wk_plan_reason,
+    /// The rung at which it is drawn once it has faded; 0, all of it, if there is none of it.
+    pub rung: u32,
+    /// How many rungs it has.
+    pub rung_count: u32,
     /// 0.
     pub reserved: u32,
-    /// The reason in a few words of English; lives as long as the process.
+    /// Its name in saved plans and messages, UTF-8; lives as long as the process, as the other texts do.
+    pub name: *const c_char,
+    /// That of the rung.
+    pub rung_name: *const c_char,
+    /// The reason in a few words of English.
     pub reason_text: *const c_char,
-    /// How much of it is drawn: 1 all, 0 nothing, between while it fades.
+    /// How much it matters where a budget does not say.
+    pub importance: f64,
+    /// How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another.
     pub share: f64,
-    /// Error of the picture without this part alone, as last gauged.
+    /// Error of the picture with this part alone at its last rung, as last gauged.
     pub error: f64,
     /// The same at the worst gauged pixel.
     pub worst: f64,
-    /// What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+    /// What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
     pub work: f64,
 }
 
@@ -216,15 +257,20 @@ impl wk_part_plan {
         struct_type: WK_STRUCT_TYPE_PART_PLAN,
         next: null(),
         reason: 0,
+        rung: 0,
+        rung_count: 0,
         reserved: 0,
+        name: null(),
+        rung_name: null(),
         reason_text: null(),
+        importance: 0.0,
         share: 0.0,
         error: 0.0,
         worst: 0.0,
         work: 0.0,
     };
 
-    fn of(part: &PartPlan) -> Self {
+    fn of(number: usize, part: &PartPlan) -> Self {
         let reason = match part.reason {
             Reason::EverythingAsked => WK_PLAN_REASON_EVERYTHING_ASKED,
             Reason::NotGauged => WK_PLAN_REASON_NOT_GAUGED,
@@ -234,12 +280,18 @@ impl wk_part_plan {
             Reason::OutOfTime => WK_PLAN_REASON_OUT_OF_TIME,
             Reason::Pinned => WK_PLAN_REASON_PINNED,
         };
+        let (name, rungs) = &NAMES[number];
         Self {
             reason,
+            rung: part.rung as u32,
+            rung_count: rungs.len() as u32,
+            name: name.as_ptr(),
+            rung_name: rungs[part.rung].as_ptr(),
             reason_text: part.reason.text().as_ptr(),
+            importance: part.part.importance,
             share: part.share.into(),
-            error: part.worth.p95,
-            worst: part.worth.worst,
+            error: part.last().p95,
+            worst: part.last().worst,
             work: part.work,
             ..Self::INIT
         }
@@ -260,20 +312,11 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
             // SAFETY: as above.
             unsafe { layout::check_chain(&"budget", c.next, &[])? };
             layout::WK_BUDGET_HAS_FLAGS.check(&"budget.has", c.has.into())?;
-            layout::WK_PART_FLAGS.check(&"budget.pinned_parts", c.pinned_parts.into())?;
             asked.tolerance = (c.has & WK_BUDGET_HAS_TOLERANCE != 0).then_some(c.tolerance);
             asked.milliseconds = (c.has & WK_BUDGET_HAS_MILLISECONDS != 0).then_some(c.milliseconds);
-            if c.has & WK_BUDGET_HAS_IMPORTANCE != 0 {
-                asked.importance[..3].copy_from_slice(&[c.importance_air, c.importance_fog, c.importance_sky]);
-            }
-            if c.has & WK_BUDGET_HAS_RAIN_IMPORTANCE != 0 {
-                asked.importance[3..].copy_from_slice(&[c.importance_rain, c.importance_drops]);
-            }
-            let rain = if c.has & WK_BUDGET_HAS_PINNED_RAIN != 0 { 0 } else { WK_PART_RAIN | WK_PART_DROPS };
-            let pinned = FLAGS.map(|p| (c.pinned_parts | rain) & p != 0);
-            asked.pinned = (c.has & WK_BUDGET_HAS_PINNED_PARTS != 0).then_some(pinned);
+            asked.wishes = wishes(&c)?;
         }
-        asked.validate()?;
+        asked.validate(PARTS)?;
         object.cell.drain();
         object.lock().set_budget(asked)?;
         Ok(Status::Ok)
@@ -301,10 +344,10 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
         let object = call.get::<ViewObject>("view", view)?;
         // SAFETY: the caller's promise about `out_plan`.
         let place = unsafe { layout::out_struct(&"out_plan", out_plan)? };
-        let plan = *object.lock().plan();
-        let drawn = plan.parts.iter().zip(FLAGS);
+        let view = object.lock();
+        let plan = view.plan();
         place.set(&wk_plan {
-            drawn: drawn.filter(|(p, _)| p.share > 0.0).fold(0, |all, (_, flag)| all | flag),
+            part_count: plan.parts.len() as u32,
             error: plan.error.p95,
             error_bound: plan.error.bound,
             worst: plan.error.worst,
@@ -322,24 +365,21 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
     })
 }
 
-/// Says of one part (a single WK_PART_ constant) how much of it the view's last frame drew, and why.
+/// Says of one part how much of it the view's last frame drew, and why; and what the part is called, before any frame too.
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_part_plan(
     view: *mut wk_view,
-    part: wk_part_flags,
+    part: wk_part,
     out_part: *mut wk_part_plan,
 ) -> wk_status {
     guard("wk_view_get_part_plan", |call| {
         let object = call.get::<ViewObject>("view", view)?;
-        let Some(i) = FLAGS.iter().position(|f| *f == part) else {
-            let names = "one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_DROPS";
-            return Err(Error::range("part", names, part));
-        };
+        input::check_enum("part", &layout::WK_PART, part)?;
         // SAFETY: the caller's promise about `out_part`.
         let place = unsafe { layout::out_struct(&"out_part", out_part)? };
-        place.set(&wk_part_plan::of(&object.lock().plan().parts[i]));
+        place.set(&wk_part_plan::of(part as usize, &object.lock().plan().parts[part as usize]));
         Ok(Status::Ok)
     })
 }
@@ -366,7 +406,7 @@ pub unsafe extern "C" fn wk_view_save_plan(
     })
 }
 
-/// Pins a plan that wk_view_save_plan wrote, as WK_BUDGET_HAS_PINNED_PARTS does; the rest of the view's budget stays, and
+/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part; the rest of the view's budget stays, and
 /// wk_view_set_budget ends it.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
@@ -385,5 +425,31 @@ pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_vo
     })
 }
 
-/// In the order of [`Part::ALL`].
-const FLAGS: [wk_part_flags; PARTS] = [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_DROPS];
+/// Names of the parts and of their rungs, for C.
+static NAMES: LazyLock<Vec<(CString, Vec<CString>)>> = LazyLock::new(|| {
+    let text = |name: &&str| CString::new(*name).unwrap_or_default();
+    PARTS.iter().map(|p| (text(&p.name), p.rungs.iter().map(text).collect())).collect()
+});
+
+/// What is wanted of the parts, by number.
+fn wishes(c: &wk_budget) -> Result<Vec<Wish>> {
+    let mut wishes = vec![Wish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
+    let mut seen = vec![false; wishes.len()];
+    let mut take = |i: usize, w: wk_part_wish| {
+        let name = format!("budget.wishes[{i}]");
+        layout::WK_PART_WISH_HAS_FLAGS.check(&format!("{name}.has"), w.has.into())?;
+        let i = w.part as usize;
+        if std::mem::replace(&mut seen[i], true) {
+            return Err(Error::range(&format!("{name}.part"), "a part that is not in the list yet", w.part));
+        }
+        wishes[i] = Wish {
+            importance: (w.has & WK_PART_WISH_HAS_IMPORTANCE != 0).then_some(w.importance),
+            rung: (w.has & WK_PART_WISH_HAS_RUNG != 0).then_some(w.rung as usize),
+        };
+        Ok(())
+    };
+    let (count, stride) = (c.wish_count as usize, c.wish_stride as usize);
+    // SAFETY: the caller's promise about the list.
+    unsafe { input::each("budget.wishes", c.wishes, count, stride, PARTS.len(), &mut take)? };
+    Ok(wishes)
+}

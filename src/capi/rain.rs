@@ -31,7 +31,7 @@ include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 /// With what a view draws rain; what falls is the same.
 pub type wk_rain_model = u32;
 /// Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
-/// the time does not allow it (WK_PART_RAIN, WK_PART_DROPS).
+/// the time does not allow it (WK_PART_RAIN).
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;

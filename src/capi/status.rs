@@ -144,6 +144,8 @@ pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
 /// wk_frame_light
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
+/// wk_part_wish
+pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
 
 /// How grave a message is.
 pub type wk_log_level = u32;

@@ -2,7 +2,14 @@
 
 use super::laws::{CompatibilityLaw, Curve, DistanceKind};
 use super::{CONTRAST_THRESHOLD, FogLayer, Law};
-use crate::plan::{Candidate, Effect, Method, Units, Work};
+use crate::plan::parts::{Part, Worth};
+use crate::plan::{Candidate, Effect, Method, StepWork, Units, Work};
+
+/// Fog, mist, dust and what falls, as a layer. How much it matters: as the air (`sky::candidates::AIR`).
+pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
+
+/// Work of the layer, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts.
+pub(crate) const FOG_WORK: StepWork = StepWork { object: 0.26, sky: 0.26, fixed: 0.0 };
 
 /// Which of the older simulators' curves stands in for a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,6 +24,7 @@ mod view;
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;
 pub use measure::{Costs, Effect, RainReport, Report};
+pub use planned::PARTS;
 pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
 pub use tone::{Exposure, ToneCurve};

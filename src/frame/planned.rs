@@ -6,8 +6,51 @@ use super::{Frame, View};
 use crate::{
     context::Scene,
     error::{Error, Result, Status},
-    plan::{self, Budget, Plan, Reason, Situation},
+    fog,
+    plan::{self, Budget, PartNow, Plan, Present, Price, Reason, Situation, parts::Part},
+    rain, sky,
 };
+
+/// The parts of the weather that a picture may do with less of, in the order of every list of them.
+pub const PARTS: &[Part] = &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN];
+/// Their places in the list.
+pub(super) const AIR: usize = 0;
+pub(super) const FOG: usize = 1;
+pub(super) const SKY: usize = 2;
+pub(super) const RAIN: usize = 3;
+
+/// Which parts a picture has, its pixels, lamps and drops that are drawn one by one: what each part costs in it.
+pub(super) fn present(parts: [bool; 4], pixels: u64, lamps: u32, drops: u32) -> Present {
+    let mut present =
+        Present { pixels, together: ([AIR, FOG], sky::candidates::air_before_fog_work(lamps)), ..Present::default() };
+    let [cones, veil] = rain::candidates::rain_work(pixels, drops);
+    let works = [
+        [sky::candidates::air_work(lamps), Default::default()],
+        [fog::candidates::FOG_WORK, Default::default()],
+        [sky::candidates::sky_work(lamps), Default::default()],
+        [cones, veil],
+    ];
+    for ((to, is_there), work) in present.parts.iter_mut().zip(parts).zip(works) {
+        *to = PartNow { is_there, ..PartNow::default() };
+        to.steps[..2].copy_from_slice(&work);
+    }
+    present
+}
+
+/// Work of building the sky's default tables, in pixels of a sky with these settings.
+pub(super) fn rebuild_work(settings: &sky::SkySettings) -> f64 {
+    let (work, price) = (sky::candidates::work, Price::default());
+    work(&sky::SkySettings::default()).rebuild.at(&price) / work(settings).pixel.at(&price)
+}
+
+/// What a plan is saved with.
+fn saved_with(sky: &sky::SkySettings) -> plan::Settings<'_> {
+    plan::Settings {
+        model: sky.model.name(),
+        check_model: |name| sky::SkyModel::from_name(name).map(|_| ()),
+        numbers: sky.numbers().to_vec(),
+    }
+}
 
 /// What the planner compares pictures by.
 pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
@@ -50,18 +93,21 @@ impl View {
         if plan.parts.iter().any(|p| p.reason == Reason::NotGauged) {
             return Err(Error::new(Status::WrongOrder, "the plan is not made yet: this picture has not been gauged"));
         }
-        Ok(plan::write(plan.drawn(), self.sky.settings()))
+        Ok(plan::write(PARTS, &plan.rungs(), &saved_with(self.sky.settings())))
     }
 
-    /// Pins a plan that [`View::save_plan`] wrote ([`Budget::pinned`]); the rest of the budget stays, and says what the
+    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]); the rest of the budget stays, and says what the
     /// plan does not keep. Unchanged after an error.
     ///
     /// # Errors
     /// [`Status::Parse`] for what is no such plan or of another version, naming line and column or the field;
     /// [`Status::InvalidArgument`] naming the setting of the sky in which the view's context differs.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
-        let pinned = Some(plan::read(plan, self.sky.settings())?);
-        self.set_budget(Budget { pinned, ..*self.planner.budget() })
+        let rungs = plan::read(plan, PARTS, &saved_with(self.sky.settings()))?;
+        let mut budget = self.planner.budget().clone();
+        budget.wishes.resize(PARTS.len(), plan::Wish::default());
+        budget.wishes.iter_mut().zip(rungs).for_each(|(wish, rung)| wish.rung = Some(rung));
+        self.set_budget(budget)
     }
 
     /// What the last frame drew of the weather, and why.

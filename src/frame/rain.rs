@@ -136,11 +136,6 @@ impl Rain {
         self.settings.model == RainModel::Automatic && self.rains()
     }
 
-    /// Whether near drops are a part of their own in it.
-    pub fn has_near_drops(&self) -> bool {
-        self.settings.model == RainModel::Automatic
-    }
-
     /// Draws so much of all rain, and so much of that near the camera drop by drop.
     pub fn follow(&mut self, shares: [f32; 2]) {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };

@@ -11,7 +11,7 @@ use super::{
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
-    planned::situation,
+    planned::{self, AIR, FOG, RAIN, SKY, situation},
     rain::Rain,
     shared::Shared,
     surface,
@@ -26,8 +26,8 @@ use crate::{
     glass::Glass,
     gpu::{Device, KeptLayer, Layer, is_kept},
     ground::GroundUniform,
-    plan::{Planner, Present},
-    rain::{Around, RainSettings},
+    plan::Planner,
+    rain::{Around, RainSettings, Streaks},
     scene::ViewRays,
     sky::SkyVolume,
 };
@@ -60,7 +60,7 @@ pub struct View {
     froxels: Option<Froxels>,
     rain: Rain,
     around: Around,
-    pub(super) planner: Planner,
+    pub(super) planner: Planner<Streaks>,
     planned_for: Option<u64>,
     light_scale: f32,
     unit: UnitWatch,
@@ -90,7 +90,7 @@ impl View {
         let ground = buffer("ground", size_of::<GroundUniform>());
         let shared = context.shared().clone();
         let sky = SkyVolume::new(&*context.sky()?)?;
-        let planner = Planner::new(sky.settings());
+        let planner = Planner::new(planned::PARTS, planned::rebuild_work(sky.settings()));
         let rain = Rain::new(&device, RainSettings::default());
         let around = Around::new(&device.device);
         device.check()?;
@@ -318,24 +318,22 @@ impl View {
         if self.planned_for != Some(frame.frame_id) {
             self.planned_for = Some(frame.frame_id);
             let rain = variant.stages.has(Stages::PARTICLES) && self.rain.is_planned();
-            let present = Present {
-                parts: [
-                    variant.has_depth && variant.stages.has(Stages::MEDIUM),
-                    variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
-                    variant.stages.has(Stages::BACKGROUND),
-                    rain,
-                    rain && self.rain.has_near_drops(),
-                ],
-                pixels: u64::from(color.width()) * u64::from(color.height()),
-                lamps: 1 + u32::from(scene.moon.matters),
-                drops: if rain { self.rain.drops(&self.device, scene) } else { 0 },
-            };
+            let parts = [
+                variant.has_depth && variant.stages.has(Stages::MEDIUM),
+                variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
+                variant.stages.has(Stages::BACKGROUND),
+                rain,
+            ];
+            let pixels = u64::from(color.width()) * u64::from(color.height());
+            let drops = if rain { self.rain.drops(&self.device, scene) } else { 0 };
+            let present = planned::present(parts, pixels, 1 + u32::from(scene.moon.matters), drops);
             let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
             self.planner.begin(&self.device, &situation, &present, pure);
             self.report.prediction = self.planner.prediction();
         }
-        let drawn = self.planner.drawn();
-        self.rain.follow(self.planner.rain());
+        let [air, fog_drawn, sky] = [AIR, FOG, SKY].map(|part| self.planner.drawn(part, 0));
+        let drawn = [air, fog_drawn, sky, 1.0];
+        self.rain.follow([1, 0].map(|rung| self.planner.drawn(RAIN, rung)));
         let drops = self.rain.draws().then(|| self.rain.layer(&self.device, color).clone());
         if drops.is_none() {
             variant.stages = variant.stages.without(Stages::PARTICLES);
@@ -347,7 +345,7 @@ impl View {
         if self.rain.shows() {
             (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
         }
-        block.compositions = Planner::compositions(self.rain.is_planned());
+        block.compositions = self.planner.compositions(self.rain.is_planned());
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         if variant.fog.is_some() {
             self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));

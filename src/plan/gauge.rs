@@ -8,7 +8,6 @@ use std::sync::{
     atomic::{AtomicU32, Ordering},
 };
 
-use super::parts::{GAUGED, PARTS, Sample};
 use crate::{
     error::Result,
     gpu::{
@@ -34,6 +33,22 @@ const FAILED: u32 = 4;
 
 /// Values of `override` constants.
 type Constants = Vec<(&'static str, f64)>;
+
+/// Compositions with something left out or put in its place, at most.
+pub const CHANNELS: usize = 4;
+
+/// What the gauge saw at one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sample {
+    /// Change of luminance in each channel.
+    pub composed: [f32; CHANNELS],
+    /// Whether the host drew there (1), did not (-1), or keeps the pixel for itself (0).
+    pub kind: f32,
+    /// Luminance with everything but drops, 1 = white.
+    pub luminance: f32,
+    /// Optical depth of what drops hide on the mean.
+    pub hidden: f32,
+}
 
 /// Target, staging buffer and pipeline of a view's gauge.
 pub(crate) struct Gauge {
@@ -116,7 +131,7 @@ impl Gauge {
 
     /// Goes on with a readback under way, without waiting: call once a frame, after the host has submitted what was
     /// recorded. The samples, when they have arrived.
-    pub fn advance(&mut self, device: &Device) -> Option<&mut [Sample]> {
+    pub fn advance(&mut self, device: &Device) -> Option<&[Sample]> {
         if self.state.load(Ordering::Acquire) == RECORDED {
             self.state.store(MAPPING, Ordering::Release);
             let state = self.state.clone();
@@ -140,13 +155,12 @@ impl Gauge {
         if let Ok(bytes) = self.buffer.get_mapped_range(..) {
             let half = |b: &[u8], i: usize| half::bf16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
             self.samples.extend(bytes.chunks_exact(16).map(|b| {
-                let mut change = [0.0; PARTS];
-                (0..=GAUGED).for_each(|i| change[i] = half(b, i));
-                Sample { change, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
+                let composed = std::array::from_fn(|i| half(b, i));
+                Sample { composed, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
             }));
         }
         self.buffer.unmap();
         self.state.store(IDLE, Ordering::Release);
-        Some(&mut self.samples)
+        Some(&self.samples)
     }
 }

@@ -1,22 +1,13 @@
-//! The governor: which parts to leave out so that the weather keeps its time, and its tolerance if it can.
+//! The governor: what a picture takes on this machine, by the times that the host reports.
 //!
 //! A picture's time is taken as proportional to its work, by a factor that reported times correct: the median of the last
 //! five. What a part costs beside a plain pixel differs from machine to machine; whenever a part comes or goes, the step
 //! in the reported times corrects its share, so that a part which is dearer here than it was where the constants were
 //! measured does not come back into a picture that has no time for it.
 //!
-//! Under a budget the set of parts with the least perceived loss that fits is left out: loss is what a part is worth in
-//! this picture times how much its effect matters to those who look. More is drawn again only when it would leave room to
-//! spare, so that a load at the border does not swing.
+//! More is drawn again only when it would leave room to spare, so that a load at the border does not swing.
 
-use super::parts::{Estimate, PARTS};
-
-/// How much parts matter to viewers, in the order of [`Part::ALL`](super::Part::ALL): air between things and fog as the
-/// atmosphere on objects, 0.9, the sky 0.2, rain 0.7 (importance weights of the experiment in the machinery trainer's thesis).
-pub const IMPORTANCE: [f64; PARTS] = [0.9, 0.9, 0.2, 0.7, 0.7];
-
-/// Sets of parts.
-pub(super) const SETS: usize = 1 << PARTS;
+use super::parts::{MOST_STEPS, Set};
 
 /// More is drawn again where it would take no more than this share of the budget.
 const ROOM: f64 = 0.85;
@@ -34,46 +25,35 @@ pub enum GaveWay {
     Time,
 }
 
-/// Work of a picture, in pixels with none of the parts: those pixels, what each part adds that is drawn, and the air before
-/// the fog, where both are.
+/// Work of a picture, in pixels with none of the parts: those pixels, what each step of a part saves that may be taken, and what two
+/// parts cost beside each other, beyond what each does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Amount {
     pub pixels: f64,
-    pub parts: [f64; PARTS],
-    pub before_fog: f64,
+    pub steps: [f64; MOST_STEPS],
+    /// The first steps of both, and the work, which costs what the first one's does.
+    pub together: ([usize; 2], f64),
 }
 
 impl Amount {
-    /// Without the parts of `set` (bit i is `Part::ALL[i]`).
-    pub fn without(mut self, set: usize) -> Self {
-        (0..PARTS).filter(|i| set & (1 << i) != 0).for_each(|i| self.parts[i] = 0.0);
-        if set & 0b011 != 0 {
-            self.before_fog = 0.0;
+    /// After the steps of `set`.
+    pub fn without(mut self, set: Set) -> Self {
+        (0..MOST_STEPS).filter(|i| set & (1 << i) != 0).for_each(|i| self.steps[i] = 0.0);
+        if self.together.0.iter().any(|i| set & (1 << i) != 0) {
+            self.together.1 = 0.0;
         }
         self
     }
 
     /// All of it, by the constants.
     pub fn total(&self) -> f64 {
-        self.weighed(&[1.0; PARTS])
+        self.weighed(&[1.0; MOST_STEPS])
     }
 
-    fn weighed(&self, ratios: &[f64; PARTS]) -> f64 {
-        self.pixels + ratios[0] * self.before_fog + (0..PARTS).map(|i| ratios[i] * self.parts[i]).sum::<f64>()
+    fn weighed(&self, ratios: &[f64; MOST_STEPS]) -> f64 {
+        let steps = self.steps.iter().zip(ratios).map(|(w, r)| w * r).sum::<f64>();
+        self.pixels + ratios[self.together.0[0]] * self.together.1 + steps
     }
-}
-
-/// A set of parts that might be left out.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Choice {
-    /// Whether all of its parts are there to be left out.
-    pub possible: bool,
-    /// Error of the picture without them.
-    pub error: Estimate,
-    /// The same weighed by importance.
-    pub loss: f64,
-    /// Work of the picture without them.
-    pub amount: Amount,
 }
 
 /// A host's timer may answer so many frames late: that many reports after a part came or went say nothing yet.
@@ -91,24 +71,24 @@ pub(super) struct Governor {
     /// Milliseconds of a unit of work.
     recent: [f64; SEEN],
     reports: usize,
-    /// What the parts cost here over what the constants say.
-    ratios: [f64; PARTS],
+    /// What the steps save here over what the constants say.
+    ratios: [f64; MOST_STEPS],
     /// The set that was absent at the last report, and how many reports it has been.
-    absent: usize,
+    absent: Set,
     since: u32,
     /// Before parts came or went: the set then absent, and what a unit of work took.
-    before: Option<(usize, f64)>,
+    before: Option<(Set, f64)>,
 }
 
 impl Default for Governor {
     fn default() -> Self {
-        Self { recent: [0.0; SEEN], reports: 0, ratios: [1.0; PARTS], absent: 0, since: 0, before: None }
+        Self { recent: [0.0; SEEN], reports: 0, ratios: [1.0; MOST_STEPS], absent: 0, since: 0, before: None }
     }
 }
 
 impl Governor {
     /// A frame took so long; everything in it would be `all`, and the parts of `absent` were left out.
-    pub fn report(&mut self, ms: f64, all: &Amount, absent: usize) {
+    pub fn report(&mut self, ms: f64, all: &Amount, absent: Set) {
         if absent != self.absent {
             let from = self.before.map_or(self.absent, |b| b.0);
             self.before = self.ms_per_work().filter(|_| from != absent).map(|k| (from, k));
@@ -131,8 +111,8 @@ impl Governor {
     }
 
     /// Parts came or went between two sets with these times a unit of work: were it not for them the times would be one.
-    fn learn(&mut self, all: &Amount, (from, k_from): (usize, f64), (to, k_to): (usize, f64)) {
-        let time = |set: usize, k: f64| k * all.without(set).weighed(&self.ratios);
+    fn learn(&mut self, all: &Amount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
+        let time = |set: Set, k: f64| k * all.without(set).weighed(&self.ratios);
         // With the parts and without; where some come while others go, neither is told apart.
         let (more, less, parts) = match (from & !to, to & !from) {
             (0, gone) => (time(from, k_from), time(to, k_to), gone),
@@ -147,7 +127,7 @@ impl Governor {
         let found = (rest * (more / less - 1.0) / theirs).clamp(0.5, 2.0);
         let factor = 1.0 + (found - 1.0) * theirs / (theirs + HALF_BELIEVED * rest);
         let before = all.without(to).weighed(&self.ratios);
-        for i in (0..PARTS).filter(|i| parts & (1 << i) != 0 && all.parts[*i] > 0.0) {
+        for i in (0..MOST_STEPS).filter(|i| parts & (1 << i) != 0 && all.steps[*i] > 0.0) {
             self.ratios[i] = (self.ratios[i] * factor).clamp(1.0 / MOST_RATIO, MOST_RATIO);
         }
         let after = all.without(to).weighed(&self.ratios);
@@ -175,85 +155,78 @@ impl Governor {
         self.ms_per_work().map(|k| k * amount.weighed(&self.ratios))
     }
 
-    /// What of a budget a choice does not keep.
-    pub fn judge(&self, choice: &Choice, tolerance: Option<f64>, budget_ms: Option<f64>) -> GaveWay {
-        match (budget_ms, self.ms(&choice.amount)) {
-            (Some(budget), Some(ms)) if ms > budget => GaveWay::Time,
-            _ if tolerance.is_some_and(|t| !choice.error.keeps(t)) => GaveWay::Tolerance,
-            _ => GaveWay::Nothing,
-        }
+    /// Work of a picture by what steps cost here.
+    pub fn work(&self, amount: &Amount) -> f64 {
+        amount.weighed(&self.ratios)
     }
 
-    /// The set to leave out, as an index into `choices`; `before` is the one left out now.
-    pub fn choose(
-        &self,
-        choices: &[Choice; SETS],
-        tolerance: Option<f64>,
-        budget_ms: Option<f64>,
-        before: usize,
-    ) -> (usize, GaveWay) {
-        let work = |c: &Choice| c.amount.weighed(&self.ratios);
-        let fits = |c: &Choice| match (budget_ms, self.ms(&c.amount)) {
+    /// Whether a picture keeps a budget of time. One of more work than is drawn now leaves room to spare, so that a load at the
+    /// border does not swing.
+    pub fn fits(&self, amount: &Amount, budget_ms: Option<f64>, now: &Amount) -> bool {
+        match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {
-                let more = work(c) > work(&choices[before]);
+                let more = self.work(amount) > self.work(now);
                 ms <= if more { ROOM * budget } else { budget }
             }
             _ => true,
-        };
-        let keeps = |i: usize, c: &Choice| match tolerance {
-            Some(t) => c.error.keeps(if i == before { t } else { super::parts::CERTAINTY * t }),
-            None => i == 0,
-        };
-        let of = |wanted: &dyn Fn(usize, &Choice) -> bool, key: &dyn Fn(&Choice) -> f64| {
-            let all = choices.iter().enumerate().filter(|(i, c)| c.possible && wanted(*i, c));
-            all.min_by(|a, b| key(a.1).total_cmp(&key(b.1))).map(|(i, _)| i)
-        };
-        if let Some(i) = of(&|i, c| fits(c) && keeps(i, c), &work) {
-            return (i, GaveWay::Nothing);
         }
-        if let Some(i) = of(&|_, c| fits(c), &|c| c.loss) {
-            return (i, GaveWay::Tolerance);
-        }
-        (of(&|_, _| true, &work).unwrap_or(0), GaveWay::Time)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{
+        choice::{Asked, Choices},
+        parts::{Part, Worth},
+    };
     use super::*;
 
-    /// With no rain.
-    fn five(v: [f64; 3]) -> [f64; PARTS] {
-        [v[0], v[1], v[2], 0.0, 0.0]
+    const fn part(importance: f64) -> Part {
+        Part { name: "part", rungs: &["all", "none"], importance, worth: Worth::Composed(0) }
     }
 
-    /// Air, fog and sky worth so much, on a picture of work 1 + their work.
-    fn choices(worth: [f64; 3], parts: [f64; 3]) -> [Choice; SETS] {
-        let parts = five(parts);
-        std::array::from_fn(|set| {
-            let left = |i: &usize| set & (1 << i) != 0;
-            let sum = |v: [f64; 3]| (0..3).filter(left).map(|i| v[i]).sum::<f64>();
-            let p95 = sum(worth);
-            Choice {
-                possible: set < 8,
-                error: Estimate { p95, bound: p95, worst: p95 },
-                loss: (0..3).filter(left).map(|i| IMPORTANCE[i] * worth[i]).sum(),
-                amount: Amount { pixels: 1.0, parts, before_fog: 0.0 }.without(set),
-            }
-        })
+    /// Air, fog and sky.
+    const PARTS: [Part; 3] = [part(0.9), part(0.9), part(0.2)];
+
+    fn steps(v: [f64; 3]) -> [f64; MOST_STEPS] {
+        std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
+    }
+
+    /// A picture of one pixel.
+    struct Picture {
+        choices: Choices,
+        worth: [f64; 3],
+        all: Amount,
+    }
+
+    impl Picture {
+        /// Parts worth so much, on a picture of work 1 + their work.
+        fn new(worth: [f64; 3], parts: [f64; 3]) -> Self {
+            let all = Amount { pixels: 1.0, steps: steps(parts), ..Amount::default() };
+            Self { choices: Choices::new(&PARTS), worth, all }
+        }
+
+        fn choose(&mut self, governor: &Governor, tolerance: Option<f64>, ms: f64, before: Set) -> (Set, GaveWay) {
+            self.choices.estimator.clear();
+            self.choices.estimator.see(steps(self.worth).map(|v| v as f32));
+            let mut asked = Asked { tolerance, milliseconds: Some(ms), ..Asked::default() };
+            asked.importance[..3].copy_from_slice(&PARTS.map(|p| p.importance));
+            self.choices.take(self.all, 0b111, governor, &asked, before);
+            self.choices.choose(governor, &asked, before)
+        }
     }
 
     #[test]
     fn a_load_that_doubles_and_halves_is_settled_soon_and_once() {
-        let choices = choices([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
+        let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
         let (mut set, mut switches) = (0, Vec::new());
         // A fake clock: 4 ms a unit of work, twice that from frame 30 to 89, with noise of 2 %.
         for frame in 0..150 {
             let load = if (30..90).contains(&frame) { 8.0 } else { 4.0 };
             let noise = 1.0 + 0.02 * (f64::from(frame) * 1.7).sin();
-            governor.report(load * noise * choices[set].amount.total(), &choices[0].amount, set);
-            let (now, gave_way) = governor.choose(&choices, None, Some(10.0), set);
+            governor.report(load * noise * picture.all.without(set).total(), &picture.all, set);
+            let (now, gave_way) = picture.choose(&governor, None, 10.0, set);
             if now != set {
                 switches.push(frame);
                 set = now;
@@ -267,13 +240,13 @@ mod tests {
 
     #[test]
     fn a_load_at_the_border_does_not_swing() {
-        let choices = choices([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
+        let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
         let (mut set, mut switches) = (0, 0);
         for frame in 0..400 {
             let load = 4.76 * (1.0 + 0.03 * (f64::from(frame) * 0.37).sin());
-            governor.report(load * choices[set].amount.total(), &choices[0].amount, set);
-            let now = governor.choose(&choices, None, Some(10.0), set).0;
+            governor.report(load * picture.all.without(set).total(), &picture.all, set);
+            let now = picture.choose(&governor, None, 10.0, set).0;
             switches += u32::from(now != set);
             set = now;
         }
@@ -282,33 +255,33 @@ mod tests {
 
     #[test]
     fn least_loss_for_the_time_goes_first_and_what_gave_way_is_said() {
-        let choices = choices([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
+        let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
-        governor.report(21.0, &choices[0].amount, 0);
+        governor.report(21.0, &picture.all, 0);
         // Everything 21 ms; without sky 19, air 17, both 15, fog 16, everything left out 10.
-        let at = |ms, tolerance| governor.choose(&choices, tolerance, Some(ms), 0);
+        let mut at = |ms, tolerance| picture.choose(&governor, tolerance, ms, 0);
         assert_eq!(at(25.0, None), (0b000, GaveWay::Nothing));
         assert_eq!(at(19.5, None), (0b100, GaveWay::Tolerance));
         assert_eq!(at(15.5, None), (0b101, GaveWay::Tolerance));
         assert_eq!(at(9.0, None), (0b111, GaveWay::Time));
         assert_eq!(at(19.5, Some(0.03)), (0b100, GaveWay::Nothing));
         assert_eq!(at(15.5, Some(0.03)), (0b101, GaveWay::Tolerance));
-        assert_eq!(governor.choose(&choices, Some(0.1), None, 0), (0b101, GaveWay::Nothing), "no more than is asked");
+        assert_eq!(at(1000.0, Some(0.1)), (0b101, GaveWay::Nothing), "no more than is asked");
     }
 
     #[test]
     fn a_slow_frame_or_two_change_nothing() {
-        let choices = choices([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
+        let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
         for ms in [4.0, 4.0, 4.0, 40.0, 4.0, 4.0, 4.0, 4.0, 40.0, 40.0, 4.0, 4.0] {
-            governor.report(ms * choices[0].amount.total(), &choices[0].amount, 0);
-            assert_eq!(governor.choose(&choices, None, Some(10.0), 0).0, 0);
+            governor.report(ms * picture.all.total(), &picture.all, 0);
+            assert_eq!(picture.choose(&governor, None, 10.0, 0).0, 0);
         }
     }
 
     #[test]
     fn a_part_that_is_not_there_learns_nothing_from_another_that_comes_with_it() {
-        let clear = Amount { pixels: 1.0, parts: five([0.4, 0.0, 0.05]), before_fog: 0.0 };
+        let clear = Amount { pixels: 1.0, steps: steps([0.4, 0.0, 0.05]), ..Amount::default() };
         let mut governor = Governor::default();
         (0..20).for_each(|_| governor.report(clear.without(0b011).total(), &clear, 0b011));
         (0..20).for_each(|_| governor.report(1.5 * clear.total(), &clear, 0));
@@ -327,14 +300,14 @@ mod tests {
     /// A machine whose parts cost other shares of a pixel than the constants say, with a timer that answers late.
     struct Machine {
         ms: f64,
-        ratios: [f64; PARTS],
+        ratios: [f64; MOST_STEPS],
         late: usize,
         noise: f64,
-        drawn: Vec<usize>,
+        drawn: Vec<Set>,
     }
 
     impl Machine {
-        fn frame(&mut self, all: &Amount, absent: usize, random: &mut u64) -> Option<f64> {
+        fn frame(&mut self, all: &Amount, absent: Set, random: &mut u64) -> Option<f64> {
             self.drawn.push(absent);
             let frame = self.drawn.len().checked_sub(1 + self.late)?;
             let noise = 1.0 + self.noise * (2.0 * chance(random) - 1.0);
@@ -345,15 +318,14 @@ mod tests {
     #[test]
     fn a_part_that_is_dearer_here_than_where_it_was_measured_does_not_swing() {
         // Everything 19.9 ms of 19: by the constants air would leave enough room to come back.
-        let choices = choices([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
-        let mut machine =
-            Machine { ms: 10.0, ratios: [2.0, 1.0, 1.0, 1.0, 1.0], late: 2, noise: 0.02, drawn: Vec::new() };
+        let mut picture = Picture::new([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
+        let mut machine = Machine { ms: 10.0, ratios: steps([2.0, 1.0, 1.0]), late: 2, noise: 0.02, drawn: Vec::new() };
         let (mut governor, mut random, mut set, mut switches) = (Governor::default(), 7, 0, Vec::new());
         for frame in 0..300 {
-            if let Some(ms) = machine.frame(&choices[0].amount, set, &mut random) {
-                governor.report(ms, &choices[0].amount, set);
+            if let Some(ms) = machine.frame(&picture.all, set, &mut random) {
+                governor.report(ms, &picture.all, set);
             }
-            let now = governor.choose(&choices, None, Some(19.0), set).0;
+            let now = picture.choose(&governor, None, 19.0, set).0;
             if now != set {
                 switches.push((frame, now));
                 set = now;
@@ -368,15 +340,15 @@ mod tests {
         for seed in 0..64 {
             let mut random = seed;
             let mut between = |low: f64, high: f64| low + (high - low) * chance(&mut random);
-            let ratios = [0; PARTS].map(|_| between(0.5, 2.0));
+            let ratios = steps([0; 3].map(|_| between(0.5, 2.0)));
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
             let mut governor = Governor::default();
             // Every part comes and goes in a hundred frames each, under scenes with more or less of it.
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
-                let parts = five([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);
-                let all = Amount { pixels: 1.0, parts, before_fog: 0.4 };
+                let steps = steps([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);
+                let all = Amount { pixels: 1.0, steps, together: ([0, 1], 0.4) };
                 let absent = [0, 1, 0, 2, 0, 5, 0, 3, 7, 0, 1, 3][step];
                 for frame in 0..24 {
                     let truth = ms * all.without(absent).weighed(&ratios);

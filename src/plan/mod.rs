@@ -6,7 +6,7 @@
 //! are worth a choice.
 //!
 //! A view with a [`Budget`] gauges its own picture (a coarse grid of its pixels, read back without waiting), chooses
-//! which [`Part`]s of the weather it can do without ([`parts`]), and fades them out and in so that nothing pops.
+//! at which rung each [`Part`] of the weather is drawn ([`parts`]), and fades them out and in so that nothing pops.
 //! [`Plan`] says what was chosen and why, and the error to expect; [`Prediction`] holds that against what was. A plan can be
 //! saved and pinned elsewhere ([`View::save_plan`](crate::frame::View::save_plan)).
 //!
@@ -21,18 +21,22 @@
 //! ```
 
 mod candidate;
+mod choice;
 pub mod difference;
+pub mod estimate;
 pub mod front;
 mod gauge;
-pub mod governor;
+mod governor;
 pub mod parts;
 mod planner;
 mod saved;
+mod search;
 
 pub use candidate::{Candidate, Effect, Method, Price, Units, Work, candidate, candidates};
 pub use difference::{Difference, difference};
+pub use estimate::Estimate;
 pub use governor::GaveWay;
-pub use parts::{Estimate, PARTS, Part, Reason};
-pub use planner::{Budget, PartPlan, Plan, Prediction};
-pub(crate) use planner::{Planner, Present, Situation};
-pub(crate) use saved::{read, write};
+pub use parts::{Part, Reason, StepWork};
+pub use planner::{Budget, PartPlan, Plan, Prediction, Wish};
+pub(crate) use planner::{PartNow, Planner, Present, Situation, Unseen};
+pub(crate) use saved::{Settings, read, write};

@@ -3,21 +3,31 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Price,
-    gauge::{EVERY, GRID, Gauge},
-    governor::{Amount, Choice, GaveWay, Governor, IMPORTANCE, SETS},
-    parts::{Estimate, Estimator, GAUGED, PARTS, Part, Reason, Sample, is_possible},
+    choice::{Asked, Choices},
+    estimate::Estimate,
+    gauge::{EVERY, GRID, Gauge, Sample},
+    governor::{Amount, GaveWay, Governor},
+    parts::{MOST_PARTS, MOST_RUNGS, MOST_STEPS, Part, Reason, Set, StepWork, Worth},
 };
 use crate::{
     error::{Error, Result, check_range},
     gpu::Device,
-    rain::Streaks,
-    sky::SkySettings,
     weather::Conditions,
 };
 
+/// What a host wants of one part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// How much it matters to those who look, [0, 1]: what is left out first under a budget of time. Default `None`: as its room says
+    /// ([`Part::importance`]).
+    pub importance: Option<f64>,
+    /// Draw it at this rung, whatever the tolerance and the time, so that all channels of a simulator draw alike; what of these that
+    /// does not keep is still said ([`Plan::gave_way`]). Default `None`: plan.
+    pub rung: Option<usize>,
+}
+
 /// What a view may spend on a picture, and how wrong it may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Budget {
     /// Largest error of what is left out, (0, 1]: 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
     /// exposure, and ten times as much at the worst pixel. Default `None`: everything is drawn. 0.01 is not seen.
@@ -25,20 +35,22 @@ pub struct Budget {
     /// Longest time of the weather in a frame, ms, (0, 1000]: parts are left out as the times reported by
     /// [`View::report_time`](crate::frame::View::report_time) demand. It wins over the tolerance. Default `None`.
     pub milliseconds: Option<f64>,
-    /// How much parts matter to those who look, [0, 1], in the order of [`Part::ALL`]: what is left out first under a
-    /// budget of time. Default [`IMPORTANCE`].
-    pub importance: [f64; PARTS],
-    /// Draw just these parts, in the order of [`Part::ALL`], whatever the tolerance and the time, so that all channels of a
-    /// simulator draw alike; what of these they do not keep is still said ([`Plan::gave_way`]). Default `None`: plan.
-    pub pinned: Option<[bool; PARTS]>,
+    /// Of single parts, in the order of [`frame::PARTS`](crate::frame::PARTS); those that it does not reach have none. Default: empty.
+    pub wishes: Vec<Wish>,
 }
 
 impl Budget {
+    /// Draws just these rungs, in the order of the list of parts.
+    pub fn pinned(rungs: &[usize]) -> Self {
+        let wishes = rungs.iter().map(|rung| Wish { rung: Some(*rung), ..Wish::default() }).collect();
+        Self { wishes, ..Self::default() }
+    }
+
     /// Refuses what is out of range, by name.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].
-    pub fn validate(&self) -> Result<()> {
+    pub fn validate(&self, parts: &[Part]) -> Result<()> {
         let above_zero = |name: &str, value: Option<f64>, most: f64| match value {
             Some(v) if !(v.is_finite() && v > 0.0 && v <= most) => {
                 Err(Error::range(name, &format!("in (0, {most}]"), v))
@@ -47,8 +59,17 @@ impl Budget {
         };
         above_zero("budget.tolerance", self.tolerance, 1.0)?;
         above_zero("budget.milliseconds", self.milliseconds, 1000.0)?;
-        for (part, value) in Part::ALL.iter().zip(self.importance) {
-            check_range(&format!("budget.importance of {}", part.name()), value, 0.0, 1.0, "")?;
+        if self.wishes.len() > parts.len() {
+            return Err(Error::range("budget.wishes", &format!("of at most {} parts", parts.len()), self.wishes.len()));
+        }
+        for (part, wish) in parts.iter().zip(&self.wishes) {
+            if let Some(importance) = wish.importance {
+                check_range(&format!("budget.importance of {}", part.name), importance, 0.0, 1.0, "")?;
+            }
+            if let Some(rung) = wish.rung.filter(|r| *r >= part.rungs.len()) {
+                let accepted = format!("in [0, {}]: {}", part.rungs.len() - 1, part.rungs.join(", "));
+                return Err(Error::range(&format!("budget.rung of {}", part.name), &accepted, rung));
+            }
         }
         Ok(())
     }
@@ -57,39 +78,39 @@ impl Budget {
     fn gauges(&self) -> bool {
         self.tolerance.is_some() || self.milliseconds.is_some()
     }
-
-    /// The parts that are pinned out, as a set.
-    fn pinned_out(&self) -> Option<usize> {
-        self.pinned.map(|drawn| (0..PARTS).filter(|i| !drawn[*i]).fold(0, |set, i| set | 1 << i))
-    }
-}
-
-impl Default for Budget {
-    fn default() -> Self {
-        Self { tolerance: None, milliseconds: None, importance: IMPORTANCE, pinned: None }
-    }
 }
 
 /// A part of the weather in a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartPlan {
     /// Which.
-    pub part: Part,
-    /// How much of it is drawn: 1 all, 0 nothing, between while it fades.
+    pub part: &'static Part,
+    /// The rung at which it is drawn once it has faded; 0, all of it, if there is none of it.
+    pub rung: usize,
+    /// How much of it is drawn: 1 all, 0 its last rung, between while it fades or on another.
     pub share: f32,
     /// Why.
     pub reason: Reason,
-    /// Error of the picture without this part alone, as last gauged.
-    pub worth: Estimate,
-    /// What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+    /// Error of the picture with this part alone at each rung, as last gauged; that of the first is 0.
+    pub worth: [Estimate; MOST_RUNGS],
+    /// What all of it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
     pub work: f64,
+    /// Steps that it has gone down, a part of one while it fades.
+    depth: f32,
+}
+
+impl PartPlan {
+    /// Error of the picture with this part alone at its last rung, as last gauged.
+    pub fn last(&self) -> Estimate {
+        self.worth[self.part.rungs.len() - 1]
+    }
 }
 
 /// What a view draws, and why.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// One entry for each of [`Part::ALL`].
-    pub parts: [PartPlan; PARTS],
+    /// One entry for each of [`frame::PARTS`](crate::frame::PARTS).
+    pub parts: Vec<PartPlan>,
     /// Estimated error of all that is left out together.
     pub error: Estimate,
     /// Work of the picture as planned, in units of a pixel with none of the parts.
@@ -103,13 +124,35 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Which parts are drawn once they have faded, in the order of [`Part::ALL`]; a part that there is none of would be.
-    pub fn drawn(&self) -> [bool; PARTS] {
-        self.parts.map(|p| match p.reason {
-            Reason::WithinTolerance | Reason::OutOfTime => false,
-            Reason::Pinned => p.share > 0.0,
-            _ => true,
-        })
+    fn of(parts: &'static [Part]) -> Self {
+        let part = |part| PartPlan {
+            part,
+            rung: 0,
+            share: 1.0,
+            reason: Reason::EverythingAsked,
+            worth: [Estimate::default(); MOST_RUNGS],
+            work: 0.0,
+            depth: 0.0,
+        };
+        Self {
+            parts: parts.iter().map(part).collect(),
+            error: Estimate::default(),
+            work: 0.0,
+            work_of_everything: 0.0,
+            milliseconds: None,
+            gave_way: GaveWay::Nothing,
+        }
+    }
+
+    /// Nothing is known of the picture.
+    fn forget(&mut self) {
+        (self.error, self.work, self.work_of_everything) = (Estimate::default(), 0.0, 0.0);
+        (self.milliseconds, self.gave_way) = (None, GaveWay::Nothing);
+    }
+
+    /// The rung of every part once it has faded; that of a part that there is none of is all of it.
+    pub fn rungs(&self) -> Vec<usize> {
+        self.parts.iter().map(|p| p.rung).collect()
     }
 }
 
@@ -124,48 +167,30 @@ pub struct Prediction {
     pub checked: Option<[f64; 2]>,
 }
 
-impl Default for Plan {
-    fn default() -> Self {
-        let part = |part| PartPlan {
-            part,
-            share: 1.0,
-            reason: Reason::EverythingAsked,
-            worth: Estimate::default(),
-            work: 0.0,
-        };
-        Self {
-            parts: Part::ALL.map(part),
-            error: Estimate::default(),
-            work: 0.0,
-            work_of_everything: 0.0,
-            milliseconds: None,
-            gave_way: GaveWay::Nothing,
-        }
-    }
+/// What a frame has of a part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PartNow {
+    /// Whether weather and stages draw it at all.
+    pub is_there: bool,
+    /// Work of its steps.
+    pub steps: [StepWork; MOST_RUNGS],
 }
 
 /// What a frame has of each part, and what each costs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Present {
-    /// Whether weather and stages draw it at all.
-    pub parts: [bool; PARTS],
     pub pixels: u64,
-    pub lamps: u32,
-    /// Drops that are drawn one by one.
-    pub drops: u32,
+    pub parts: [PartNow; MOST_PARTS],
+    /// Two parts that cost more beside each other, and how much.
+    pub together: ([usize; 2], StepWork),
 }
 
-/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts:
-/// air between and clear sky for one lamp and for each further one, fog as a layer, and the air before the fog.
-const AIR: (f64, f64) = (0.4, 0.2);
-const SKY: (f64, f64) = (0.07, 0.05);
-const FOG: f64 = 0.26;
-const AIR_BEFORE_FOG: f64 = 0.3;
-/// The layer of rain, its cones and splashes, a pixel; and a drop of the lattice that is drawn one by one.
-const RAIN: f64 = 0.4;
-const DROP: f64 = 0.4;
-/// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
-const AIR_UNDRAWN: f64 = 0.6;
+/// What the gauge cannot see, in closed form.
+pub(crate) trait Unseen {
+    /// What the first steps of its part change at pixel number `pixel` of the gauge, at `ndc`, where the picture has this luminance
+    /// and what drops hide this optical depth.
+    fn change(&self, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
+}
 
 /// What a gauge was made of: a picture far from it needs another.
 #[derive(Clone, Copy, PartialEq)]
@@ -196,13 +221,13 @@ impl Situation {
     }
 }
 
-/// A gauge under way: of which picture, which parts that leaves out, and the bound predicted for its error.
-struct Gauging {
+/// A gauge under way: of which picture, which steps that leaves out, and the bound predicted for its error.
+struct Gauging<U> {
     there: Situation,
-    absent: usize,
+    absent: Set,
     bound: Option<f64>,
-    /// What streaks of rain are worth in it, where they fall.
-    streaks: Option<Streaks>,
+    /// What the gauge cannot see of it, where there is such a part.
+    unseen: Option<U>,
 }
 
 /// Least and largest share of a build of the sky's tables with the default settings that one frame pays. Finer strips are
@@ -213,58 +238,74 @@ const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
 const FADE_STEP: f64 = 0.005;
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
-pub(crate) struct Planner {
+/// Plans the pictures of a view. `U` says what the gauge cannot see.
+pub(crate) struct Planner<U> {
     budget: Budget,
+    asked: Asked,
     /// Work of building the sky's default tables, in pixels with none of the parts.
     rebuild: f64,
     gauge: Option<Gauge>,
-    estimator: Estimator,
+    choices: Choices,
     governor: Governor,
-    gauging: Option<Gauging>,
+    gauging: Option<Gauging<U>>,
     /// Of the gauge that the choices stand on.
     planned: Option<Situation>,
     last: Option<Situation>,
-    /// Every set of parts that could be left out, as last gauged.
-    choices: [Choice; SETS],
-    /// Work of the picture with everything.
-    all: Amount,
-    left_out: usize,
+    left_out: Set,
     frames: u32,
     plan: Plan,
     prediction: Prediction,
 }
 
-impl Planner {
-    pub fn new(sky: &SkySettings) -> Self {
-        let (work, price) = (crate::sky::candidates::work, Price::default());
-        Self {
-            rebuild: work(&SkySettings::default()).rebuild.at(&price) / work(sky).pixel.at(&price),
+impl<U: Unseen> Planner<U> {
+    /// For a list of parts. `rebuild`: work of building the sky's default tables, in pixels with none of the parts.
+    pub fn new(parts: &'static [Part], rebuild: f64) -> Self {
+        let mut planner = Self {
+            rebuild,
             budget: Budget::default(),
+            asked: Asked::default(),
             gauge: None,
-            estimator: Estimator::new(0),
+            choices: Choices::new(parts),
             governor: Governor::default(),
             gauging: None,
             planned: None,
             last: None,
-            choices: [Choice::default(); SETS],
-            all: Amount::default(),
             left_out: 0,
             frames: 0,
-            plan: Plan::default(),
+            plan: Plan::of(parts),
             prediction: Prediction::default(),
-        }
+        };
+        planner.asked = planner.asked_by(&planner.budget);
+        planner
     }
 
     pub fn set_budget(&mut self, device: &Device, budget: Budget) -> Result<()> {
-        budget.validate()?;
+        budget.validate(self.choices.ladder.parts)?;
         if budget.gauges() && self.gauge.is_none() {
             self.gauge = Some(Gauge::new(device));
+            self.choices.estimator.reserve((GRID.0 * GRID.1) as usize);
         }
         if budget != self.budget {
             self.forget();
+            self.asked = self.asked_by(&budget);
             self.budget = budget;
         }
         Ok(())
+    }
+
+    fn asked_by(&self, budget: &Budget) -> Asked {
+        let Budget { tolerance, milliseconds, .. } = *budget;
+        let mut asked = Asked { tolerance, milliseconds, ..Asked::default() };
+        let ladder = &self.choices.ladder;
+        for (i, part) in ladder.parts.iter().enumerate() {
+            let wish = budget.wishes.get(i).copied().unwrap_or_default();
+            asked.importance[i] = wish.importance.unwrap_or(part.importance);
+            if let Some(rung) = wish.rung {
+                asked.pinned.0 |= ladder.whole(i);
+                asked.pinned.1 |= ladder.set(i, rung);
+            }
+        }
+        asked
     }
 
     pub fn budget(&self) -> &Budget {
@@ -286,15 +327,16 @@ impl Planner {
             return Err(Error::range("milliseconds", "in (0, 1e5] ms", milliseconds));
         }
         if self.planned.is_some() {
-            self.governor.report(milliseconds, &self.all, self.absent());
+            self.governor.report(milliseconds, &self.choices.all, self.absent());
         }
         Ok(())
     }
 
-    /// The parts of which nothing is drawn: one that fades is paid whole.
-    fn absent(&self) -> usize {
-        let gone = |i: &usize| self.plan.parts[*i].share == 0.0 && self.left_out & (1 << i) != 0;
-        (0..PARTS).filter(gone).fold(0, |set, i| set | 1 << i)
+    /// The steps of which nothing is drawn: one that fades is paid whole.
+    fn absent(&self) -> Set {
+        let ladder = &self.choices.ladder;
+        let gone = |part: usize| ladder.set(part, self.plan.parts[part].depth as usize) & self.left_out;
+        (0..ladder.parts.len()).fold(0, |set, part| set | gone(part))
     }
 
     /// Draw everything until the next gauge answers.
@@ -313,70 +355,88 @@ impl Planner {
             }
             self.take_gauge(device, here, present);
         } else {
-            (self.plan, self.prediction) = (Plan::default(), Prediction::default());
+            self.prediction = Prediction::default();
+            pure = true;
         }
         if self.planned.is_some() {
             self.choose(present);
-        } else if self.budget.gauges() {
-            self.plan = Plan { parts: self.plan.parts, ..Plan::default() };
-            self.plan.parts.iter_mut().for_each(|p| p.reason = Reason::NotGauged);
+        } else {
+            self.plan.forget();
+            let reason = if self.budget.gauges() { Reason::NotGauged } else { Reason::EverythingAsked };
+            self.plan.parts.iter_mut().for_each(|p| (p.reason, p.rung) = (reason, 0));
         }
-        match self.budget.pinned_out() {
-            Some(set) => self.pin_parts(set),
-            None => self.fade(present, pure),
-        }
+        self.pin();
+        self.fade(present, pure);
         let absent = self.absent();
-        self.prediction.milliseconds = self.planned.as_ref().and_then(|_| self.governor.ms(&self.all.without(absent)));
-        self.prediction.error = self.planned.as_ref().map(|_| self.choices[absent].error);
+        let choices = &mut self.choices;
+        let error = self.planned.as_ref().map(|_| choices.estimator.estimate(&choices.ladder, absent));
+        let milliseconds = self.planned.as_ref().and_then(|_| self.governor.ms(&choices.all.without(absent)));
+        (self.prediction.error, self.prediction.milliseconds) = (error, milliseconds);
     }
 
     /// Takes the gauge's answer, if it has come.
     fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Present) {
         let Some(samples) = self.gauge.as_mut().and_then(|g| g.advance(device)) else { return };
         let Some(gauging) = self.gauging.take().filter(|g| g.there.is_near(here)) else { return };
-        // Without streaks to say what they are worth, the veil in their place says nothing either.
-        if let Some(streaks) = &gauging.streaks {
-            see_streaks(samples, streaks);
+        let choices = &mut self.choices;
+        choices.see(samples, gauging.unseen.as_ref());
+        let (all, there) = choices.weigh(samples, present, &mut self.plan);
+        choices.take(all, there, &self.governor, &self.asked, self.left_out);
+        for (i, part) in self.plan.parts.iter_mut().enumerate() {
+            for (rung, step) in choices.ladder.steps(i).enumerate() {
+                part.worth[rung + 1] = choices.worth[step];
+            }
         }
-        let importance = self.budget.importance;
-        let to = (&mut self.choices, &mut self.plan);
-        self.all = weigh(&mut self.estimator, samples, present, importance, to);
-        let found = self.choices[gauging.absent].error.p95;
+        let found = choices.estimator.estimate(&choices.ladder, gauging.absent).p95;
         self.prediction.checked = gauging.bound.map(|bound| [bound, found]);
         self.planned = Some(gauging.there);
     }
 
     /// Parts appear and go at once where they are pinned.
-    fn pin_parts(&mut self, out: usize) {
-        self.left_out = out;
-        for (i, part) in self.plan.parts.iter_mut().enumerate() {
-            (part.share, part.reason) = (f32::from(u8::from(out & (1 << i) == 0)), Reason::Pinned);
+    fn pin(&mut self) {
+        let (whole, set) = self.asked.pinned;
+        self.left_out = self.left_out & !whole | set;
+        let ladder = &self.choices.ladder;
+        for (i, part) in self.plan.parts.iter_mut().enumerate().filter(|(i, _)| whole & ladder.whole(*i) != 0) {
+            part.rung = ladder.rung(set, i);
+            (part.depth, part.reason) = (part.rung as f32, Reason::Pinned);
+            part.show();
         }
     }
 
     fn fade(&mut self, present: &Present, pure: bool) {
-        for (i, part) in self.plan.parts.iter_mut().enumerate() {
-            let p99 = part.worth.worst.min(2.0 * part.worth.p95);
-            // A pixel that loses half of its light sees each step twice as large at the end.
-            let frames = p99 / (FADE_STEP * (1.0 - p99).max(0.2));
-            let step = 1.0 / frames.clamp(FADE_FRAMES.0, FADE_FRAMES.1) as f32;
-            let left_out = self.left_out & (1 << i) != 0 && present.parts[i];
-            part.share = if pure { 1.0 } else { (part.share + if left_out { -step } else { step }).clamp(0.0, 1.0) };
+        let ladder = &self.choices.ladder;
+        let planned = |i: &usize| self.asked.pinned.0 & ladder.whole(*i) == 0;
+        for (i, part) in self.plan.parts.iter_mut().enumerate().filter(|(i, _)| planned(i)) {
+            let wanted = if present.parts[i].is_there { ladder.rung(self.left_out, i) as f32 } else { 0.0 };
+            if pure {
+                part.depth = 0.0;
+            } else if part.depth != wanted {
+                // The step that it is on, or goes up to.
+                let lower = if wanted > part.depth { part.depth.floor() + 1.0 } else { part.depth.ceil() } as usize;
+                let worth = part.worth[lower.min(MOST_RUNGS - 1)];
+                let p99 = worth.worst.min(2.0 * worth.p95);
+                // A pixel that loses half of its light sees each step twice as large at the end.
+                let frames = p99 / (FADE_STEP * (1.0 - p99).max(0.2));
+                let step = 1.0 / frames.clamp(FADE_FRAMES.0, FADE_FRAMES.1) as f32;
+                part.depth += (wanted - part.depth).clamp(-step, step);
+            }
+            part.show();
         }
     }
 
     /// Chooses anew among what was gauged last: a reported time may ask for another set in any frame.
     fn choose(&mut self, present: &Present) {
-        let Budget { tolerance, milliseconds, .. } = self.budget;
-        let (set, gave_way) = match self.budget.pinned_out() {
-            Some(set) => (set, self.governor.judge(&self.choices[set], tolerance, milliseconds)),
-            None => self.governor.choose(&self.choices, tolerance, milliseconds, self.left_out),
-        };
+        let (set, gave_way) = self.choices.choose(&self.governor, &self.asked, self.left_out);
         self.left_out = set;
-        let chosen = self.choices[set];
-        let within = tolerance.is_some_and(|t| chosen.error.keeps(t));
+        let choices = &mut self.choices;
+        let amount = choices.all.without(set);
+        self.plan.error = choices.estimator.estimate(&choices.ladder, set);
+        let tolerance = self.asked.tolerance;
+        let within = tolerance.is_some_and(|t| self.plan.error.keeps(t));
         for (i, part) in self.plan.parts.iter_mut().enumerate() {
-            part.reason = match (present.parts[i], set & (1 << i) != 0) {
+            part.rung = choices.ladder.rung(set, i);
+            part.reason = match (present.parts[i].is_there, part.rung > 0) {
                 (false, _) => Reason::Absent,
                 (true, true) if within => Reason::WithinTolerance,
                 (true, true) => Reason::OutOfTime,
@@ -384,99 +444,98 @@ impl Planner {
                 (true, false) => Reason::Needed,
             };
         }
-        self.plan.error = chosen.error;
-        self.plan.work = chosen.amount.total();
-        self.plan.work_of_everything = self.all.total();
-        self.plan.milliseconds = self.governor.ms(&chosen.amount);
+        self.plan.work = amount.total();
+        self.plan.work_of_everything = choices.all.total();
+        self.plan.milliseconds = self.governor.ms(&amount);
         self.plan.gave_way = gave_way;
     }
 
     /// The share of a build of the sky's default tables that a frame has time for.
     pub fn share_of_tables(&self) -> f32 {
-        let frame = self.governor.ms(&self.all.without(self.absent()));
+        let frame = self.governor.ms(&self.choices.all.without(self.absent()));
         let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);
         let whole = self.governor.ms(&Amount { pixels: self.rebuild, ..Amount::default() });
         let share = spare.zip(whole).map_or(SHARE.1, |(spare, whole)| (spare / whole).clamp(SHARE.0, SHARE.1));
         share as f32
     }
 
-    /// How much of each part the frame draws, and how often the gauge composes.
-    pub fn drawn(&self) -> [f32; 4] {
-        let p = &self.plan.parts;
-        [p[0].share, p[1].share, p[2].share, 1.0]
+    /// How much is drawn of what a part has at `rung` and not at the next one.
+    pub fn drawn(&self, part: usize, rung: usize) -> f32 {
+        1.0 - (self.plan.parts[part].depth - rung as f32).clamp(0.0, 1.0)
     }
 
-    /// How often the gauge composes: with streaks of rain once more.
-    pub fn compositions(rain: bool) -> u32 {
-        1 + GAUGED as u32 + u32::from(rain)
+    /// How often the gauge composes: once more for what it cannot see alone.
+    pub fn compositions(&self, unseen: bool) -> u32 {
+        let composed = self.choices.ladder.parts.iter().filter(|p| matches!(p.worth, Worth::Composed(_))).count();
+        1 + composed as u32 + u32::from(unseen)
     }
 
-    /// How much of all rain is drawn as streaks, and how much of that near the camera drop by drop.
-    pub fn rain(&self) -> [f32; 2] {
-        [Part::Rain, Part::Drops].map(|p| self.plan.parts[p as usize].share)
-    }
-
-    /// The gauge, if this frame should be gauged.
-    /// `streaks` says what rain is worth, if it falls.
-    pub fn due(&mut self, here: &Situation, streaks: impl FnOnce() -> Option<Streaks>) -> Option<&mut Gauge> {
+    /// The gauge, if this frame should be gauged. `unseen` says what it cannot see, if there is such a part.
+    pub fn due(&mut self, here: &Situation, unseen: impl FnOnce() -> Option<U>) -> Option<&mut Gauge> {
         let absent = self.absent();
         let gauge = self.gauge.as_mut()?;
         if !self.budget.gauges() || self.frames < EVERY || !gauge.is_idle() {
             return None;
         }
         let bound = self.prediction.error.map(|e| e.bound);
-        self.gauging = Some(Gauging { there: *here, absent, bound, streaks: streaks() });
+        self.gauging = Some(Gauging { there: *here, absent, bound, unseen: unseen() });
         self.frames = 0;
         Some(gauge)
     }
 }
 
-/// Adds what streaks are worth to samples row by row.
-fn see_streaks(samples: &mut [Sample], streaks: &Streaks) {
-    let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
-    for (i, sample) in samples.iter_mut().enumerate().filter(|(_, s)| s.kind != 0.0) {
-        let (x, y) = (i % GRID.0 as usize, i / GRID.0 as usize);
-        let ndc = DVec2::new(half(x, GRID.0), -half(y, GRID.1));
-        let [rain, drops] = streaks.change(i, ndc, [sample.luminance, sample.hidden].map(f64::from));
-        sample.change[Part::Rain as usize] += rain;
-        sample.change[Part::Drops as usize] = drops;
+impl PartPlan {
+    fn show(&mut self) {
+        self.share = 1.0 - self.depth / (self.part.rungs.len() - 1) as f32;
     }
 }
 
-/// Work and error of every set of parts, from a gauge's samples. The work of everything.
-fn weigh(
-    estimator: &mut Estimator,
-    samples: &[Sample],
-    present: &Present,
-    importance: [f64; PARTS],
-    (choices, plan): (&mut [Choice; SETS], &mut Plan),
-) -> Amount {
-    let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
-    let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
-    let lamps = f64::from(present.lamps.saturating_sub(1));
-    let air = AIR.0 + AIR.1 * lamps;
-    let air_and_sky = ((objects + AIR_UNDRAWN * sky) * air, sky * (SKY.0 + SKY.1 * lamps));
-    let a_pixel = [air_and_sky.0, (objects + sky) * FOG, air_and_sky.1, RAIN, 0.0];
-    let mut work = a_pixel.map(|w| w * pixels);
-    work[Part::Drops as usize] = DROP * f64::from(present.drops);
-    let both = present.parts[0] && present.parts[1];
-    let before_fog = if both { (objects + sky) * AIR_BEFORE_FOG / AIR.0 * air * pixels } else { 0.0 };
-    let all =
-        Amount { pixels, parts: std::array::from_fn(|i| if present.parts[i] { work[i] } else { 0.0 }), before_fog };
-    for (set, choice) in choices.iter_mut().enumerate() {
-        choice.possible = is_possible(set, &present.parts);
-        if choice.possible || set.count_ones() == 1 {
-            choice.error = estimator.estimate(samples, set);
+impl Choices {
+    /// Takes what the gauge saw, and adds what it could not.
+    fn see(&mut self, samples: &[Sample], unseen: Option<&impl Unseen>) {
+        let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
+        self.estimator.clear();
+        for (i, sample) in samples.iter().enumerate().filter(|(_, s)| s.kind != 0.0) {
+            let mut changes = [0.0; MOST_STEPS];
+            for (part, spec) in self.ladder.parts.iter().enumerate() {
+                let steps = self.ladder.steps(part);
+                match (spec.worth, unseen) {
+                    (Worth::Composed(channel), _) => changes[steps].fill(sample.composed[channel]),
+                    (Worth::Unseen(channel), Some(unseen)) => {
+                        let (x, y) = (i % GRID.0 as usize, i / GRID.0 as usize);
+                        let ndc = DVec2::new(half(x, GRID.0), -half(y, GRID.1));
+                        let found = unseen.change(i, ndc, [sample.luminance, sample.hidden].map(f64::from));
+                        let last = steps.end - 1;
+                        changes[steps.clone()].copy_from_slice(&found[..steps.len()]);
+                        changes[last] += sample.composed[channel];
+                    }
+                    // Without them what stands in the part's place says nothing either.
+                    (Worth::Unseen(_), None) => {}
+                }
+            }
+            self.estimator.see(changes);
         }
     }
-    for (i, part) in plan.parts.iter_mut().enumerate() {
-        part.worth = choices[1 << i].error;
-        part.work = if present.parts[i] { all.total() - all.without(1 << i).total() } else { work[i] };
+
+    /// Work of the picture with everything, and the steps of what is there; that of every part goes into the plan.
+    fn weigh(&self, samples: &[Sample], present: &Present, plan: &mut Plan) -> (Amount, Set) {
+        let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
+        let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
+        let work = |step: &StepWork| (objects * step.object + sky * step.sky) * pixels + step.fixed;
+        let mut all = Amount { pixels, ..Amount::default() };
+        let mut there = 0;
+        for (i, now) in present.parts[..self.ladder.parts.len()].iter().enumerate().filter(|(_, n)| n.is_there) {
+            there |= self.ladder.whole(i);
+            self.ladder.steps(i).zip(&now.steps).for_each(|(to, step)| all.steps[to] = work(step));
+        }
+        let ([a, b], step) = &present.together;
+        if present.parts[*a].is_there && present.parts[*b].is_there {
+            all.together = ([*a, *b].map(|part| self.ladder.steps(part).start), work(step));
+        }
+        for (i, (part, now)) in plan.parts.iter_mut().zip(&present.parts).enumerate() {
+            let own = || now.steps[..self.ladder.steps(i).len()].iter().map(work).sum();
+            part.work = if now.is_there { all.total() - all.without(self.ladder.whole(i)).total() } else { own() };
+        }
+        (all, there)
     }
-    for (set, choice) in choices.iter_mut().enumerate() {
-        let parts = || (0..PARTS).filter(|i| set & (1 << i) != 0);
-        choice.loss = parts().map(|i| importance[i] * plan.parts[i].worth.p95).sum();
-        choice.amount = all.without(set);
-    }
-    all
 }

@@ -11,7 +11,11 @@
 use glam::{DVec2, DVec3};
 
 use super::{DropLight, Shot, uniforms::Classes};
-use crate::{scene::ViewRays, sky::spectral::luminance};
+use crate::{
+    plan::{Unseen, parts::MOST_RUNGS},
+    scene::ViewRays,
+    sky::spectral::luminance,
+};
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
 const LEAST_PIXELS: f64 = 1.2;
@@ -92,12 +96,13 @@ impl Streaks {
         let axis = relative.normalize_or(DVec3::NEG_Z);
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, light, tone, lamps }
     }
+}
 
-    /// What pixel number `i` of a picture changes without streaks, over its luminance and a hundredth of white, beside what the
-    /// veil in their place adds: so much that many pixels together spread as those of pictures do. And with cones in place of
-    /// drops.
+impl Unseen for Streaks {
+    /// What pixel number `i` of a picture changes with cones in place of drops, and without streaks, over its luminance and a hundredth
+    /// of white, beside what the veil in their place adds: so much that many pixels together spread as those of pictures do.
     /// `picture` and `hidden` are its luminance without streaks and the optical depth of what they hide.
-    pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; 2] {
+    fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
         let low = (at as usize).min(ANGLES - 2);
@@ -111,6 +116,6 @@ impl Streaks {
         let normal = (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
         let streaks = normal * deviation * contrast;
         // On the mean they bring their own light.
-        [(streaks - hidden * contrast) as f32, (CONES_MISS * streaks) as f32]
+        [(CONES_MISS * streaks) as f32, (streaks - hidden * contrast) as f32, 0.0]
     }
 }

@@ -2,7 +2,41 @@
 
 use super::recipe::{Kind, Name, passes};
 use super::settings::{SkyModel, SkySettings};
-use crate::plan::{Candidate, Effect, Method, Units, Work};
+use crate::plan::parts::{Part, Worth};
+use crate::plan::{Candidate, Effect, Method, StepWork, Units, Work};
+
+/// Air and haze between the camera and what the host drew. How much it matters: atmosphere on objects, of the importance weights in
+/// the experiment of the machinery trainer's thesis.
+pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(0) };
+/// The clear sky above the horizon, behind clouds: a closed deck hides it.
+pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
+
+/// Work of a pixel, measured on a software driver (`cargo bench -- parts`) in units of a pixel with none of the parts: air between and
+/// clear sky for one lamp and for each further one.
+const AIR_WORK: (f64, f64) = (0.4, 0.2);
+const SKY_WORK: (f64, f64) = (0.07, 0.05);
+/// Where the host drew nothing, the pixel's way to the air costs this share of it all the same.
+const AIR_UNDRAWN: f64 = 0.6;
+/// The air before the fog, where there are both; more with the lamps, as the air itself.
+const AIR_BEFORE_FOG: f64 = 0.3;
+
+/// Work of the air of a picture under so many lamps.
+pub(crate) fn air_work(lamps: u32) -> StepWork {
+    let pixel = AIR_WORK.0 + AIR_WORK.1 * f64::from(lamps.saturating_sub(1));
+    StepWork { object: pixel, sky: AIR_UNDRAWN * pixel, fixed: 0.0 }
+}
+
+/// Work of the air before the fog, beyond that of either.
+pub(crate) fn air_before_fog_work(lamps: u32) -> StepWork {
+    let pixel = AIR_BEFORE_FOG / AIR_WORK.0 * air_work(lamps).object;
+    StepWork { object: pixel, sky: pixel, fixed: 0.0 }
+}
+
+/// Work of the clear sky of a picture under so many lamps.
+pub(crate) fn sky_work(lamps: u32) -> StepWork {
+    let sky = SKY_WORK.0 + SKY_WORK.1 * f64::from(lamps.saturating_sub(1));
+    StepWork { sky, ..StepWork::default() }
+}
 
 /// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal axes,
 /// half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple scattering.

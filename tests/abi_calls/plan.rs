@@ -11,8 +11,26 @@ fn budget(has: wk_budget_has_flags) -> wk_budget {
     wk_budget { has, tolerance: 0.01, milliseconds: 2.0, ..init("wk_budget") }
 }
 
-/// Draws a frame and answers the parts in it.
-fn drawn(world: &World) -> wk_part_flags {
+/// A wish for one part at one rung.
+fn at_rung(part: wk_part, rung: u32) -> wk_part_wish {
+    wk_part_wish { has: WK_PART_WISH_HAS_RUNG, part, rung, ..init("wk_part_wish") }
+}
+
+fn set(world: &World, has: wk_budget_has_flags, wishes: &[wk_part_wish]) -> (wk_status, String) {
+    let b = wk_budget { wishes: wishes.as_ptr(), wish_count: wishes.len() as u32, ..budget(has) };
+    // SAFETY: live pointers.
+    (unsafe { wk_view_set_budget(world.view, &b) }, message())
+}
+
+fn part(world: &World, number: wk_part) -> wk_part_plan {
+    let mut part = init::<wk_part_plan>("wk_part_plan");
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_view_get_part_plan(world.view, number, &mut part) }, WK_OK, "{}", message());
+    part
+}
+
+/// Draws a frame and answers the rungs of air, fog, sky and rain in it.
+fn drawn(world: &World) -> [u32; 4] {
     let target = wk_own_target { color: world.texture, ..init("wk_own_target") };
     let mut projection = [0.0; 16];
     (projection[0], projection[5], projection[11], projection[14]) = (1.0, 1.0, -1.0, 0.1);
@@ -25,7 +43,8 @@ fn drawn(world: &World) -> wk_part_flags {
         assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL & !WK_STAGE_TONE), WK_OK, "{}", message());
         assert_eq!(wk_view_get_plan(world.view, &mut plan), WK_OK);
     }
-    plan.drawn
+    assert_eq!(plan.part_count, 4);
+    [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN].map(|number| part(world, number).rung)
 }
 
 fn report(world: &World) -> wk_report {
@@ -71,74 +90,77 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         let b = wk_budget { milliseconds, ..budget(WK_BUDGET_HAS_MILLISECONDS) };
         refused(b, "budget.milliseconds must be in (0, 1000], got");
     }
-    for importance_fog in [-0.1, 1.1] {
-        let b = wk_budget { importance_fog, ..budget(WK_BUDGET_HAS_IMPORTANCE) };
-        refused(b, "budget.importance of fog must be in [0, 1], got");
+    let wish =
+        |part, importance| wk_part_wish { has: WK_PART_WISH_HAS_IMPORTANCE, part, importance, ..init("wk_part_wish") };
+    let wished = |wishes: &[wk_part_wish], names: &str| {
+        let (status, text) = set(&world, 0, wishes);
+        assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{names}");
+        assert!(text.starts_with(&format!("wk_view_set_budget: {names}")), "{text}");
+    };
+    for importance in [-0.1, 1.1] {
+        wished(&[wish(WK_PART_FOG, importance)], "budget.importance of fog must be in [0, 1], got");
     }
-    for importance_drops in [-0.1, 1.1] {
-        let b = wk_budget { importance_drops, ..budget(WK_BUDGET_HAS_RAIN_IMPORTANCE) };
-        refused(b, "budget.importance of drops must be in [0, 1], got");
-    }
+    let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, got 4";
+    wished(&[wish(WK_PART_FOG, 0.5), wish(4, 0.5)], &format!("budget.wishes[1].part {parts}"));
+    wished(&[wish(WK_PART_FOG, 0.5); 2], "budget.wishes[1].part must be a part that is not in the list yet, got 1");
+    wished(&[at_rung(WK_PART_RAIN, 3)], "budget.rung of rain must be in [0, 2]: drops, cones, none, got 3");
+    wished(&[at_rung(WK_PART_AIR, 0); 5], "budget.wishes");
+    wished(&[wk_part_wish { has: 4, ..wish(WK_PART_AIR, 0.5) }], "budget.wishes[0].has");
     for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
         assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().starts_with("wk_view_report_time: milliseconds must be in (0, 1e5] ms"), "{}", message());
         assert_eq!(report(&world).has & WK_REPORT_HAS_REPORTED_MS, 0);
     }
-    for part in [0, WK_PART_AIR | WK_PART_FOG, 32, u32::MAX] {
+    for part in [4, u32::MAX] {
         let mut plan = init::<wk_part_plan>("wk_part_plan");
         assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());
     }
     // What is not asked for is not looked at.
-    let b = wk_budget { tolerance: -1.0, milliseconds: -1.0, importance_air: 7.0, ..budget(0) };
+    let nothing = [wk_part_wish { importance: 7.0, rung: 9, ..init("wk_part_wish") }];
+    let b = wk_budget { tolerance: -1.0, milliseconds: -1.0, wishes: nothing.as_ptr(), wish_count: 1, ..budget(0) };
     assert_eq!(unsafe { wk_view_set_budget(world.view, &b) }, WK_OK);
 }
 
 #[test]
 fn a_plan_goes_from_one_view_to_another() {
     let (one, other) = (World::new(), World::new());
-    let rain = WK_PART_RAIN | WK_PART_DROPS;
-    let everything = WK_PART_AIR | WK_PART_FOG | WK_PART_SKY | rain;
-    assert_eq!((drawn(&one), drawn(&other)), (everything, everything));
-    let pins = wk_budget { pinned_parts: WK_PART_SKY, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
-    // SAFETY: live pointers.
-    assert_eq!(unsafe { wk_view_set_budget(one.view, &pins) }, WK_OK);
-    assert_eq!(drawn(&one), WK_PART_SKY | rain);
-    // Hosts that know of rain pin it too.
-    let has = WK_BUDGET_HAS_PINNED_PARTS | WK_BUDGET_HAS_PINNED_RAIN;
-    let pins = wk_budget { pinned_parts: WK_PART_SKY | WK_PART_RAIN, ..budget(has) };
-    // SAFETY: live pointers.
-    assert_eq!(unsafe { wk_view_set_budget(one.view, &pins) }, WK_OK);
-    assert_eq!(drawn(&one), pins.pinned_parts);
+    assert_eq!((drawn(&one), drawn(&other)), ([0; 4], [0; 4]));
+    // A part that is not in the list is not pinned; without a budget all of it is drawn.
+    assert_eq!(set(&one, 0, &[at_rung(WK_PART_FOG, 1), at_rung(WK_PART_AIR, 1)]).0, WK_OK);
+    assert_eq!(drawn(&one), [1, 1, 0, 0]);
+    assert_eq!(part(&one, WK_PART_SKY).reason, WK_PLAN_REASON_EVERYTHING_ASKED);
+    assert_eq!(set(&one, 0, &[at_rung(WK_PART_AIR, 1), at_rung(WK_PART_FOG, 1), at_rung(WK_PART_RAIN, 1)]).0, WK_OK);
+    assert_eq!(drawn(&one), [1, 1, 0, 1]);
+    let rain = part(&one, WK_PART_RAIN);
+    // SAFETY: texts that live as long as the process.
+    let texts = [rain.name, rain.rung_name, rain.reason_text].map(|p| unsafe { std::ffi::CStr::from_ptr(p) }.to_str());
+    assert_eq!(texts, [Ok("rain"), Ok("cones"), Ok("the host pinned it")]);
+    assert_eq!((rain.rung_count, rain.importance, rain.share), (3, 0.7, 0.5));
     let plan = saved(&one);
     assert_eq!(load(&other, &plan).0, WK_OK, "{}", message());
-    assert_eq!(drawn(&other), WK_PART_SKY | WK_PART_RAIN);
+    assert_eq!(drawn(&other), [1, 1, 0, 1]);
     assert_eq!(saved(&other), plan);
-    let mut part = init::<wk_part_plan>("wk_part_plan");
-    // SAFETY: live pointers.
-    unsafe {
-        assert_eq!(wk_view_get_part_plan(other.view, WK_PART_AIR, &mut part), WK_OK);
-        assert_eq!((part.reason, part.share), (WK_PLAN_REASON_PINNED, 0.0));
-        assert_eq!(wk_view_set_budget(other.view, null()), WK_OK);
-    }
-    assert_eq!(drawn(&other), everything, "wk_view_set_budget ends a pinned plan");
+    let air = part(&other, WK_PART_AIR);
+    assert_eq!((air.reason, air.share), (WK_PLAN_REASON_PINNED, 0.0));
+    // SAFETY: a live pointer.
+    assert_eq!(unsafe { wk_view_set_budget(other.view, null()) }, WK_OK);
+    assert_eq!(drawn(&other), [0; 4], "wk_view_set_budget ends a pinned plan");
 }
 
 #[test]
 fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
     let world = World::new();
-    let pins = wk_budget { pinned_parts: WK_PART_FOG, ..budget(WK_BUDGET_HAS_PINNED_PARTS) };
-    // SAFETY: live pointers.
-    assert_eq!(unsafe { wk_view_set_budget(world.view, &pins) }, WK_OK);
-    assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS);
+    assert_eq!(set(&world, 0, &[at_rung(WK_PART_AIR, 1), at_rung(WK_PART_SKY, 1)]).0, WK_OK);
+    assert_eq!(drawn(&world), [1, 0, 1, 0]);
     let plan = saved(&world);
-    let text = String::from_utf8(plan.clone()).unwrap().replace("= false", "= true");
-    let later = text.replace("version = 2", "version = 7");
+    let text = String::from_utf8(plan.clone()).unwrap().replace("\"none\"", "\"all\"");
+    let later = text.replace("version = 3", "version = 7");
     let finer = text.replace("suns = 64", "suns = 96");
     for (bytes, status, says) in [
-        (&[][..], WK_ERROR_PARSE, "plan.version must be 2, got nothing"),
+        (&[][..], WK_ERROR_PARSE, "plan.version must be 3, got nothing"),
         (&text.as_bytes()[..text.len() / 2], WK_ERROR_PARSE, "plan"),
-        (later.as_bytes(), WK_ERROR_PARSE, "plan.version must be 2, got 7"),
+        (later.as_bytes(), WK_ERROR_PARSE, "plan.version must be 3, got 7"),
         (finer.as_bytes(), WK_ERROR_INVALID_ARGUMENT, "plan.sky.suns must be 64 as in this view's context, got 96"),
         (&[0xff, 0, 0xff], WK_ERROR_PARSE, "plan: invalid utf-8"),
         (&[0; 4096], WK_ERROR_PARSE, "plan: TOML parse error at line 1"),
@@ -147,7 +169,7 @@ fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
         let (got, message) = load(&world, bytes);
         assert_eq!(got, status, "{message}");
         assert!(message.starts_with("wk_view_load_plan: ") && message.contains(says), "{says}: {message}");
-        assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS, "{says}");
+        assert_eq!(drawn(&world), [1, 0, 1, 0], "{says}");
     }
     // SAFETY: NULL, or sizes that are the buffer's.
     unsafe {
@@ -160,7 +182,7 @@ fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
         assert_eq!(wk_view_save_plan(world.view, at, 8, null_mut()), WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("out_size must not be NULL"), "{}", message());
     }
-    assert_eq!(drawn(&world), WK_PART_FOG | WK_PART_RAIN | WK_PART_DROPS);
+    assert_eq!(drawn(&world), [1, 0, 1, 0]);
 }
 
 #[test]

@@ -157,6 +157,10 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_get_ground_texture(context, p.cast())
         }),
         case("wk_budget", "budget", true, move |p| unsafe { wk_view_set_budget(view, p.cast()) }),
+        case("wk_part_wish", "budget.wishes[0]", true, move |p| {
+            let budget = wk_budget { wish_count: 1, wishes: p.cast(), wish_stride: 2 << 20, ..init("wk_budget") };
+            unsafe { wk_view_set_budget(view, &budget) }
+        }),
         case("wk_plan", "out_plan", false, move |p| unsafe { wk_view_get_plan(view, p.cast()) }),
         case("wk_part_plan", "out_part", false, move |p| unsafe { wk_view_get_part_plan(view, WK_PART_FOG, p.cast()) }),
         case("wk_report", "out_report", false, move |p| unsafe { wk_view_get_report(view, p.cast()) }),

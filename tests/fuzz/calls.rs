@@ -619,8 +619,14 @@ pub const CALLS: &[(&str, Call)] = &[
         set_one(d, "wk_rain", |p| unsafe { wk_view_set_rain(view, p.cast()) })
     }),
     ("wk_view_set_budget", |d, w| {
-        let view = handle(d, &w.views);
-        set_one(d, "wk_budget", |p| unsafe { wk_view_set_budget(view, p.cast()) })
+        let mut budget = Struct::random(d, "wk_budget", 6);
+        if d.one_in(2) {
+            let (wishes, count) = Struct::random_list(d, "wk_part_wish", 5);
+            budget.set("wish_count", count);
+            budget.set("wish_stride", wishes.stride());
+            budget.set_struct("wishes", wishes);
+        }
+        unsafe { wk_view_set_budget(handle(d, &w.views), budget.ptr().cast()) }.into()
     }),
     ("wk_view_report_time", |d, w| unsafe { wk_view_report_time(handle(d, &w.views), d.float()) }.into()),
     ("wk_view_get_plan", |d, w| {
@@ -628,7 +634,7 @@ pub const CALLS: &[(&str, Call)] = &[
         get("wk_plan", |p| unsafe { wk_view_get_plan(view, p.cast()) })
     }),
     ("wk_view_get_part_plan", |d, w| {
-        let (view, part) = (handle(d, &w.views), d.whole() as u32);
+        let (view, part) = (handle(d, &w.views), if d.one_in(8) { d.whole() as u32 } else { d.below(4) as u32 });
         get("wk_part_plan", |p| unsafe { wk_view_get_part_plan(view, part, p.cast()) })
     }),
     ("wk_view_save_plan", |d, w| {

@@ -2,7 +2,7 @@
 
 use welkin::{
     frame::FrameFlags,
-    plan::{Budget, GaveWay, PARTS, Reason},
+    plan::{Budget, GaveWay, Reason},
 };
 
 use crate::{
@@ -26,13 +26,13 @@ fn another_view_that_loads_a_plan_draws_the_same_parts_at_once() {
     assert_ne!(bench.everything(&near), planned);
     bench.plain.load_plan(text.as_bytes()).unwrap();
     assert_eq!(bench.everything(&near), planned, "the other channel draws alike in its first frame");
-    assert_eq!(bench.plain.plan().drawn(), plan.drawn());
+    assert_eq!(bench.plain.plan().rungs(), plan.rungs());
     assert_eq!(bench.plain.save_plan().unwrap(), text);
     // Whatever comes: a jump, another weather.
     let fog = Shot { weather: "fog", ..near.clone() };
     bench.set(&fog);
     bench.draw(&fog, false, FrameFlags::CUT);
-    assert_eq!(bench.plain.plan().drawn(), plan.drawn());
+    assert_eq!(bench.plain.plan().rungs(), plan.rungs());
     assert!(bench.plain.plan().parts.iter().all(|p| p.reason == Reason::Pinned));
 }
 
@@ -57,8 +57,8 @@ fn a_plan_that_is_no_plan_changes_nothing() {
     let text = bench.view.save_plan().unwrap();
     // The benches' sky has 4 orders, and a plan for one with the default's 5 would not look alike.
     for (from, to, says) in [
-        ("version = 2", "version = 3", "plan.version must be 2, got 3"),
-        ("air = false", "", "plan.drawn.air"),
+        ("version = 3", "version = 4", "plan.version must be 3, got 4"),
+        ("air = \"none\"", "", "plan.drawn.air"),
         ("orders = 4", "orders = 5", "plan.sky.orders must be 4"),
     ] {
         assert!(text.contains(from));
@@ -74,22 +74,22 @@ fn a_pinned_plan_says_what_it_does_not_keep() {
     let mut bench = Bench::new();
     let fog = Shot { weather: "fog", ..Shot::yard() };
     bench.set(&fog);
-    let mut pinned = |parts, tolerance, milliseconds| {
-        let budget = Budget { pinned: Some(parts), tolerance, milliseconds, ..Budget::default() };
+    let mut pinned = |rungs: [usize; 4], tolerance, milliseconds| {
+        let budget = Budget { tolerance, milliseconds, ..Budget::pinned(&rungs) };
         bench.view.set_budget(budget).unwrap();
         for _ in 0..12 {
             bench.draw(&fog, true, FrameFlags(0));
             bench.view.report_time(5.0).unwrap();
         }
-        let plan = *bench.view.plan();
+        let plan = bench.view.plan().clone();
         assert!(plan.parts.iter().all(|p| p.reason == Reason::Pinned));
-        assert_eq!(plan.drawn(), parts);
+        assert_eq!(plan.rungs(), rungs);
         plan
     };
-    let plan = pinned([true, false, true, true, true], Some(0.01), None);
+    let plan = pinned([0, 1, 0, 0], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Tolerance && plan.error.p95 > 0.1, "{plan:?}");
-    let plan = pinned([true; PARTS], Some(0.01), None);
+    let plan = pinned([0; 4], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Nothing && plan.error.p95 == 0.0, "{plan:?}");
-    assert_eq!(pinned([true; PARTS], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
-    assert_eq!(pinned([true; PARTS], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
+    assert_eq!(pinned([0; 4], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
+    assert_eq!(pinned([0; 4], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
 }

@@ -2,7 +2,7 @@
 
 use welkin::{
     frame::FrameFlags,
-    plan::{Budget, PARTS, Part, Reason, difference},
+    plan::{Budget, Reason, difference},
     rain::{RainModel, RainSettings},
     weather::Weather,
 };
@@ -12,8 +12,14 @@ use crate::{
     scenes::{Bench, SIZE, Shot},
 };
 
-const RAIN: usize = Part::Rain as usize;
-const DROPS: usize = Part::Drops as usize;
+/// Its place among the parts, and its rungs.
+const RAIN: usize = 3;
+const CONES: usize = 1;
+const VEIL: usize = 2;
+/// The other parts in full.
+const fn rain_at(rung: usize) -> [usize; 4] {
+    [0, 0, 0, rung]
+}
 /// Presets in which rain falls.
 const RAINY: [&str; 6] = ["drizzle", "rain", "heavy_rain", "showers", "thunderstorm", "freezing_rain"];
 
@@ -63,38 +69,28 @@ fn rain_is_drawn_as_the_picture_needs_it() {
         bench.set(&shot);
         let everything = bench.everything(&shot);
         let (_, plan) = bench.planned(&shot, SETTLED);
-        let drawn = plan.drawn();
-        let fewer = |rain, drops| {
-            let mut parts = [true; PARTS];
-            (parts[RAIN], parts[DROPS]) = (rain, drops);
-            parts
-        };
-        let veil = bench.pinned(&shot, fewer(false, false));
+        let veil = bench.pinned(&shot, &rain_at(VEIL));
         let d = difference(&veil, &everything, 1.0).unwrap();
-        let [rain, drops] = [RAIN, DROPS].map(|i| plan.parts[i]);
+        let (rain, worth) = (plan.parts[RAIN], plan.parts[RAIN].last());
         println!(
-            "{}: tolerance {}, a veil errs by {:.4} ({:.3}), estimated {:.4} ({:.3}); {:?} {:?}",
-            shot.name, shot.tolerance, d.p95, d.worst, rain.worth.p95, rain.worth.worst, rain.reason, drops.reason
+            "{}: tolerance {}, a veil errs by {:.4} ({:.3}), estimated {:.4} ({:.3}); {} {:?}",
+            shot.name, shot.tolerance, d.p95, d.worst, worth.p95, worth.worst, rain.rung, rain.reason
         );
-        assert!(rain.reason != Reason::Absent && drops.reason != Reason::Absent);
-        assert!(drawn[RAIN] || !drawn[DROPS], "no drops without streaks");
-        if !drawn[RAIN] {
+        assert!(rain.reason != Reason::Absent);
+        if rain.rung == VEIL {
             veiled += 1;
             if d.p95 > shot.tolerance || d.worst > 12.0 * shot.tolerance {
-                beyond.push(format!("{}: {d:?} {:?}", shot.name, rain.worth));
+                beyond.push(format!("{}: {d:?} {worth:?}", shot.name));
             }
-        } else if rain.worth.bound < 0.5 * shot.tolerance {
+        } else if worth.bound < 0.5 * shot.tolerance {
             panic!("{}: streaks that nobody sees are drawn, {plan:?}", shot.name);
         }
         // The closed form knows no splash and no single streak.
         if d.p95 > 0.001 {
-            assert!((0.75..1.4).contains(&(rain.worth.p95 / d.p95)), "{}: {d:?} {:?}", shot.name, rain.worth);
+            assert!((0.75..1.4).contains(&(worth.p95 / d.p95)), "{}: {d:?} {worth:?}", shot.name);
         }
-        match (drawn[RAIN], drawn[DROPS]) {
-            (true, false) => on_cones += 1,
-            (true, true) => dropped += 1,
-            _ => {}
-        }
+        on_cones += u32::from(rain.rung == CONES);
+        dropped += u32::from(rain.rung == 0);
     }
     println!("{veiled} as a veil, {on_cones} on cones, {dropped} drop by drop");
     assert!(veiled > 2 && on_cones > 1 && dropped > 0, "{veiled} {on_cones} {dropped}");
@@ -112,17 +108,15 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
         let mut pictures = [vec![], vec![]];
         for _ in 0..8 {
             bench.pass(1.3);
-            for (drops, pictures) in [true, false].into_iter().zip(&mut pictures) {
-                let mut parts = [true; PARTS];
-                parts[DROPS] = drops;
-                pictures.push(bench.pinned(&shot, parts));
+            for (rung, pictures) in [0, CONES].into_iter().zip(&mut pictures) {
+                pictures.push(bench.pinned(&shot, &rain_at(rung)));
             }
         }
         let [drops, cones] = pictures.map(|p| textures(&p));
         let error = apart(&cones, &drops);
         bench.view.set_budget(Budget::default()).unwrap();
         let (_, plan) = bench.planned(&shot, SETTLED);
-        println!("{}: textures {error:.4} apart, estimated {:.4}", shot.name, plan.parts[DROPS].worth.p95);
+        println!("{}: textures {error:.4} apart, estimated {:.4}", shot.name, plan.parts[RAIN].worth[CONES].p95);
         assert!(error <= shot.tolerance, "{}: {error}", shot.name);
     }
 }
@@ -139,11 +133,9 @@ fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
             bench.plain.set_rain(settings).unwrap();
             let everything = bench.everything(&shot);
             let (_, plan) = bench.planned(&shot, SETTLED);
-            let mut parts = [true; PARTS];
-            (parts[RAIN], parts[DROPS]) = (false, false);
-            let error = difference(&bench.pinned(&shot, parts), &everything, 1.0).unwrap().p95;
+            let error = difference(&bench.pinned(&shot, &rain_at(VEIL)), &everything, 1.0).unwrap().p95;
             bench.view.set_budget(Budget::default()).unwrap();
-            (error, plan.parts[RAIN].worth.p95)
+            (error, plan.parts[RAIN].last().p95)
         });
         println!("{}: (found, expected) {found:?}", shot.name);
         for (error, expected) in &mut found {
@@ -161,14 +153,14 @@ fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
     let settings = RainSettings { model: RainModel::Drops, ..RainSettings::default() };
     bench.view.set_rain(settings).unwrap();
     let (_, plan) = bench.planned(&shot, SETTLED);
-    assert_eq!([RAIN, DROPS].map(|i| plan.parts[i].reason), [Reason::Absent; 2]);
+    assert_eq!(plan.parts[RAIN].reason, Reason::Absent);
     assert!(bench.view.report().rain.drops > 0);
     bench.view.set_rain(RainSettings::default()).unwrap();
     let (_, plan) = bench.planned(&shot, 3 * SETTLED);
-    assert_eq!([RAIN, DROPS].map(|i| plan.parts[i].reason), [Reason::WithinTolerance; 2], "{plan:?}");
+    assert_eq!(plan.parts[RAIN].reason, Reason::WithinTolerance, "{plan:?}");
     assert!(bench.view.report().rain.drops == 0 && plan.parts[RAIN].share == 0.0);
     // Nothing of it at all: the fog's share of it too.
-    assert_eq!(plan.parts[Part::Fog as usize].reason, Reason::WithinTolerance);
+    assert_eq!(plan.parts[1].reason, Reason::WithinTolerance);
     // A picture that depends on nothing before it has all.
     bench.draw(&shot, true, FrameFlags::NO_HISTORY);
     assert!(bench.view.report().rain.drops > 0);
@@ -181,7 +173,5 @@ fn dry_air_has_no_rain_to_leave_out() {
     assert!(Weather::preset("overcast").unwrap().precipitation == Default::default());
     bench.set(&shot);
     let (_, plan) = bench.planned(&shot, SETTLED);
-    for i in [RAIN, DROPS] {
-        assert_eq!((plan.parts[i].reason, plan.parts[i].work > 0.0), (Reason::Absent, i == RAIN));
-    }
+    assert_eq!((plan.parts[RAIN].reason, plan.parts[RAIN].work > 0.0), (Reason::Absent, true));
 }

@@ -7,7 +7,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Exposure, Frame, FrameFlags, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
-    plan::{Budget, PARTS, Plan},
+    plan::{Budget, Plan},
     scene::Camera,
     sky::SkySettings,
     weather::Weather,
@@ -226,12 +226,12 @@ impl Bench {
         for _ in 1..frames {
             picture = self.draw(shot, true, FrameFlags(0));
         }
-        (picture, *self.view.plan())
+        (picture, self.view.plan().clone())
     }
 
     /// The picture of a host without a budget.
     pub fn unplanned(&mut self, shot: &Shot) -> (Vec<f64>, Plan) {
-        (self.draw(shot, true, FrameFlags(0)), *self.view.plan())
+        (self.draw(shot, true, FrameFlags(0)), self.view.plan().clone())
     }
 
     /// A picture that may not depend on earlier ones.
@@ -239,9 +239,9 @@ impl Bench {
         self.draw(shot, true, FrameFlags::NO_HISTORY)
     }
 
-    /// The picture with just these parts.
-    pub fn pinned(&mut self, shot: &Shot, parts: [bool; PARTS]) -> Vec<f64> {
-        self.view.set_budget(Budget { pinned: Some(parts), ..Budget::default() }).unwrap();
+    /// The picture with its parts at just these rungs.
+    pub fn pinned(&mut self, shot: &Shot, rungs: &[usize]) -> Vec<f64> {
+        self.view.set_budget(Budget::pinned(rungs)).unwrap();
         self.draw(shot, true, FrameFlags(0))
     }
 }
