@@ -20,7 +20,8 @@ pub fn write(directory: &Path) -> Result<()> {
     let rain = read("rain")?;
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
-         Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page.\n\n",
+         Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
+         What the tests measure of\n[rain](rain.md) and [wet ground](ground.md) has pages of its own.\n\n",
     );
     if let Some(table) = &sky {
         sky_section(&mut out, table);

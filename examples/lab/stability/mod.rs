@@ -387,7 +387,7 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "drag",
-        "Rain from 0.1 to 6 mm that a gust of 20 m/s meets. Explicit Euler blows drops faster than the wind that blows them (jumps), then explodes: below .38 mm at 1/60 s, below 1 mm at .1 s, every drop at 1 s. Both of Welkin's steps are solved exactly while they last and stay finite at any length: the first is the law of linear drag itself, the second what integrated drops are stepped by; its error is that of a rate held during each step, and held between a quarter and 8 times that at rest.",
+        "Rain from 0.1 to 6 mm that a gust of 20 m/s meets. Explicit Euler blows drops faster than the wind that blows them (jumps), then explodes: below 0.38 mm at 1/60 s, below 1 mm at 0.1 s, every drop at 1 s. Both of Welkin's steps are solved exactly while they last and stay finite at any length: the first is the law of linear drag itself, the second what integrated drops are stepped by; its error is that of a rate held during each step, and held between a quarter and 8 times that at rest.",
     ),
     (
         "gust",
