@@ -30,7 +30,7 @@
 //!
 //! Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. After a failure no output was written
 //! and nothing was changed or drawn; wk_last_error_message() has the calling thread's sentence, which names the parameter
-//! and what is accepted, as in "wk_view_record: frame.projection[5] must be finite, got NaN". Nothing aborts, prints or
+//! and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`. Nothing aborts, prints or
 //! throws. A fault inside Welkin is caught and answers WK_ERROR_INTERNAL; its device answers WK_ERROR_POISONED from then
 //! on, and only destroying works.
 //!

@@ -1,6 +1,6 @@
 //! Which parts of the weather a picture needs: chosen from what each is worth in that very picture.
 //!
-//! The gauge ([`super::gauge`]) says, at a grid of the picture's pixels, how the luminance would change without a part.
+//! The gauge (`gauge.rs`) says, at a grid of the picture's pixels, how the luminance would change without a part.
 //! Parts are left out as long as the whole change stays within the tolerance, those first that save most work.
 //!
 //! *Error* is that of the whole library: |Y' - Y| / (Y + 0.01 white) after exposure, its 95th percentile over pixels. A
