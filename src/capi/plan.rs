@@ -1,18 +1,18 @@
 //! What a picture needs, and no more
 //!
-//! With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
-//! composes with everything and without each part of the weather, and reads the differences back some frames later
-//! without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
-//! Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
-//! perceived for the time they save, and come back when there is room to spare.
-//! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//! With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
+//! with everything and without each part of the weather, and reads the differences back some frames later without
+//! waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+//! Under a budget of time, parts also fade out as the reported times demand, starting with those whose loss is
+//! perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
+//! weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
 //! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
 //!
-//! What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
-//! that must also leave out alike pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or one that another view found
-//! (wk_view_save_plan, wk_view_load_plan).
+//! Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
+//! Channels that must also leave out the same parts pin their plan: by hand (WK_BUDGET_HAS_PINNED_PARTS), or with one
+//! that another view found (wk_view_save_plan, wk_view_load_plan).
 
 use std::{
     ffi::{c_char, c_void},
@@ -33,19 +33,19 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
 
-/// Parts of the weather that a picture may do without.
+/// Parts of the weather that a picture may leave out.
 pub type wk_part_flags = u32;
 /// Air and haze between the camera and what the host drew.
 pub const WK_PART_AIR: wk_part_flags = 1;
-/// Fog, mist, dust and what falls, as a layer.
+/// Fog, mist, dust and precipitation, as a layer.
 pub const WK_PART_FOG: wk_part_flags = 2;
 /// The clear sky above the horizon, behind clouds.
 pub const WK_PART_SKY: wk_part_flags = 4;
 
-/// Streaks and splashes of rain: left out, all rain is a veil, and without WK_PART_FOG too nothing of it is drawn. Where the
-/// view has no rain model of the host's choice.
+/// Streaks and splashes of rain. Without this part all rain is a veil; without WK_PART_FOG too, no rain is drawn. Only
+/// if the host has chosen no rain model for the view.
 pub const WK_PART_RAIN: wk_part_flags = 8;
-/// Each drop near the camera by itself, and splashes: left out, cones stand for them.
+/// Single drops near the camera, and splashes. Without this part cones stand for them.
 pub const WK_PART_DROPS: wk_part_flags = 16;
 
 /// Which optional fields of a wk_budget are set.
@@ -58,7 +58,7 @@ pub const WK_BUDGET_HAS_PINNED_PARTS: wk_budget_has_flags = 2;
 pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 4;
 /// importance_air, importance_fog and importance_sky
 pub const WK_BUDGET_HAS_IMPORTANCE: wk_budget_has_flags = 8;
-/// pinned_parts says of WK_PART_RAIN and WK_PART_DROPS too whether they are drawn; without this bit both are.
+/// pinned_parts also decides WK_PART_RAIN and WK_PART_DROPS; without this bit both are drawn.
 pub const WK_BUDGET_HAS_PINNED_RAIN: wk_budget_has_flags = 16;
 /// importance_rain and importance_drops
 pub const WK_BUDGET_HAS_RAIN_IMPORTANCE: wk_budget_has_flags = 32;
@@ -67,11 +67,11 @@ pub const WK_BUDGET_HAS_RAIN_IMPORTANCE: wk_budget_has_flags = 32;
 pub type wk_plan_reason = u32;
 /// No tolerance was given: everything is drawn.
 pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
-/// This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn.
+/// This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn.
 pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
 /// The weather has none of it, or the recorded stages do not draw it.
 pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
-/// Without it the error would be beyond the tolerance.
+/// Without it the error would exceed the tolerance.
 pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
 /// The error without it is within the tolerance.
 pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
@@ -80,7 +80,7 @@ pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
 /// The time allows no more.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// What of a budget could not be kept, by the estimates.
+/// Part of a budget that could not be kept, by the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
@@ -102,22 +102,22 @@ pub struct wk_budget {
     pub next: *const c_void,
     /// Which optional fields are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
-    /// Optional: just these parts are drawn, whatever the tolerance and the time, so that all channels draw alike; a union of
-    /// WK_PART_ constants, 0 for none. What of a tolerance and a time they do not keep is still said (wk_plan.gave_way).
+    /// Optional: draw exactly these parts, whatever the tolerance and the time, so that all channels draw the same; a
+    /// union of WK_PART_ constants, 0 for none. wk_plan.gave_way still says what of a tolerance and a time is not kept.
     pub pinned_parts: wk_part_flags,
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
     /// Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
-    /// times from wk_view_report_time only.
+    /// only the times of wk_view_report_time.
     pub milliseconds: f64,
-    /// Optional, all three: how much the parts matter to those who look, which says what is left out first under a budget
+    /// Optional, all three: importance of the parts to the viewer, which decides what is left out first under a budget
     /// of time. Range [0, 1], default 0.9, 0.9 and 0.2.
     pub importance_air: f64,
     /// As importance_air.
     pub importance_fog: f64,
     /// As importance_air.
     pub importance_sky: f64,
-    /// Optional, both: likewise of rain. Range [0, 1], default 0.7 and 0.7.
+    /// Optional, both: the same for rain. Range [0, 1], default 0.7 and 0.7.
     pub importance_rain: f64,
     /// As importance_rain.
     pub importance_drops: f64,
@@ -140,7 +140,7 @@ impl wk_budget {
     };
 }
 
-/// What a view's last frame left out. Errors are estimates from the gauged pixels.
+/// Parts that a view's last frame left out. Errors are estimates from the gauged pixels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_plan {
@@ -152,9 +152,9 @@ pub struct wk_plan {
     pub next: *const c_void,
     /// The parts of which anything is drawn.
     pub drawn: wk_part_flags,
-    /// What of the budget could not be kept.
+    /// Part of the budget that could not be kept.
     pub gave_way: wk_gave_way,
-    /// Error of all that is left out together: 95th percentile over the gauged pixels.
+    /// Error of everything left out together: 95th percentile over the gauged pixels.
     pub error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
     pub error_bound: f64,
@@ -162,9 +162,9 @@ pub struct wk_plan {
     pub worst: f64,
     /// Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge.
     pub work: f64,
-    /// Work of the picture with everything, likewise.
+    /// Work of the picture with everything, in the same units.
     pub work_of_everything: f64,
-    /// What the picture should take by the times reported so far, ms; 0 before the first.
+    /// Predicted time of the picture from the times reported so far, ms; 0 before the first.
     pub milliseconds: f64,
 }
 
@@ -194,19 +194,19 @@ pub struct wk_part_plan {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Why it is drawn or not.
+    /// Reason why it is drawn or not.
     pub reason: wk_plan_reason,
     /// 0.
     pub reserved: u32,
     /// The reason in a few words of English; lives as long as the process.
     pub reason_text: *const c_char,
-    /// How much of it is drawn: 1 all, 0 nothing, between while it fades.
+    /// Drawn share: 1 all, 0 nothing, in between while it fades.
     pub share: f64,
     /// Error of the picture without this part alone, as last gauged.
     pub error: f64,
     /// The same at the worst gauged pixel.
     pub worst: f64,
-    /// What it adds to the work of this picture with everything, or would, in units of a pixel with none of the parts.
+    /// Work that it adds, or would add, to this picture with everything, in units of a pixel with none of the parts.
     pub work: f64,
 }
 
@@ -246,7 +246,7 @@ impl wk_part_plan {
     }
 }
 
-/// Sets how wrong the view's pictures may be; NULL asks for everything again. Unchanged after an error.
+/// Sets the tolerance and the time of the view's pictures; NULL draws everything again. Unchanged after an error.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -280,8 +280,8 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
     })
 }
 
-/// Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
-/// call). Under a budget of time the plan follows the median of the last five reports.
+/// Reports the time that the weather took in the last frame, ms, measured as for the budget (your GPU timer, or a call
+/// that you wait for). Under a budget of time the plan uses the median of the last five reports.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
 #[unsafe(no_mangle)]
@@ -293,7 +293,7 @@ pub unsafe extern "C" fn wk_view_report_time(view: *mut wk_view, milliseconds: f
     })
 }
 
-/// Says what the view's last frame left out.
+/// Gets what the view's last frame left out.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_plan) -> wk_status {
@@ -322,7 +322,7 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
     })
 }
 
-/// Says of one part (a single WK_PART_ constant) how much of it the view's last frame drew, and why.
+/// Gets how much of one part (a single WK_PART_ constant) the view's last frame drew, and why.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for no or several parts.
 #[unsafe(no_mangle)]
@@ -345,8 +345,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 }
 
 /// Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
-/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is
-/// written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
+/// else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
 /// jump of camera, sun or weather.
@@ -370,8 +370,8 @@ pub unsafe extern "C" fn wk_view_save_plan(
 /// wk_view_set_budget ends it.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
-/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. The view's plan stays as it
-/// was then.
+/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error the
+/// view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {
