@@ -18,60 +18,60 @@
  *
  * OWNERSHIP
  *
- * wk_x_create writes a new handle to its out-parameter, on success only; wk_x_destroy(handle) ends it, and NULL does
- * nothing. Children go before parents: a device has contexts, surfaces and textures, a context has views; a parent with
- * live children answers WK_ERROR_IN_USE. A handle is a number in pointer's clothing and is never followed: one that is
- * dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE.
- * Structs, texts and lists that are passed in are the caller's and are read during the call only. Texts that come back
- * live as long as their function says. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
+ * wk_x_create writes a new handle to its out-parameter, on success only. wk_x_destroy(handle) ends it; NULL does
+ * nothing. Destroy children before parents: a device has contexts, surfaces and textures, a context has views. A
+ * parent with live children answers WK_ERROR_IN_USE. A handle looks like a pointer but is a number, and Welkin never
+ * dereferences it: a handle that is dead, foreign or of another kind gives WK_ERROR_BAD_HANDLE. Structs, texts and
+ * lists that you pass in stay yours; Welkin reads them during the call only. Texts that come back live as long as
+ * their function says. Native objects (windows, OpenGL names, Vulkan handles) stay the host's.
  *
  * ERRORS
  *
- * Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. After a failure no output was written
- * and nothing was changed or drawn; wk_last_error_message() has the calling thread's sentence, which names the parameter
- * and what is accepted, as in "wk_view_record: frame.projection[5] must be finite, got NaN". Nothing aborts, prints or
- * throws. A fault inside Welkin is caught and answers WK_ERROR_INTERNAL; its device answers WK_ERROR_POISONED from then
- * on, and only destroying works.
+ * Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. A failed call writes no output,
+ * changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
+ * parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`. Welkin never
+ * aborts, prints or throws. It catches a fault of its own and answers WK_ERROR_INTERNAL. The device then answers
+ * WK_ERROR_POISONED, and only destroying works.
  *
  * STRUCTS
  *
- * Structs begin with struct_size, struct_type and next; start from WK_X_INIT (or wk_x_init, which writes the same bytes)
- * and change fields. Later versions append fields whose zero means "as before": a library takes the structs of older
- * headers and fills in defaults, and those of newer ones if what it does not know is zero. `next` leads to extension
- * structs where a call names them; an unknown one is refused. Reserved fields must be 0.
- * Zero is a value (0 degrees, north, calm), never "default"; what may be left out has a bit in `has`.
- * Lists are (pointer, count, stride): stride is the size of an element in your header.
- * Reals are doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+ * Structs begin with struct_size, struct_type and next. Start from WK_X_INIT (or wk_x_init, which writes the same
+ * bytes) and change fields. Later versions append fields whose zero means "as before". So a library takes structs of
+ * older headers and fills in defaults, and structs of newer headers if the fields that it does not know are zero.
+ * `next` leads to extension structs where a call names them; an unknown one is refused. Reserved fields must be 0.
+ * Zero is a value (0 degrees, north, calm), never "default". What you may leave out has a bit in `has`. Lists are
+ * (pointer, count, stride): stride is the size of an element in your header. Reals are doubles and must be finite.
+ * Texts are NUL-terminated UTF-8. Sizes are in bytes.
  *
  * THREADS
  *
- * Functions may be called from any thread. `const T *` may be shared: any number of calls with it at the same time.
- * `T *` is exclusive: one call at a time with that handle, and none with its `const` beside it; calls that break this
- * wait for each other. Welkin starts no threads. With an OpenGL host all calls that draw, create or destroy go to
- * the thread on which its context is (or can be made) current; what is destroyed on another is released at the device's
- * next call. Inside a callback no Welkin function may be called: it would answer WK_ERROR_WRONG_ORDER.
+ * You may call functions from any thread. `const T *` is shared: any number of calls with it at the same time. `T *`
+ * is exclusive: one call at a time with that handle, and none with its `const` at the same time. Calls that break this
+ * rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw, create or destroy
+ * on the thread where its context is (or can be made) current; what you destroy on another thread is released at the
+ * device's next call. Call no Welkin function inside a callback: it would answer WK_ERROR_WRONG_ORDER.
  *
  * UNITS AND COORDINATES
  *
- * SI units; a field's name ends in its unit unless that is metres, seconds or radians. Angles that people name are in
- * degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind comes from.
- * Positions are in the host's world in double precision, however far from its origin; see Contexts for world frames and
- * Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
+ * Units are SI. A field's name ends in its unit, except for metres, seconds and radians. Angles that people use by
+ * name are in degrees (_deg). Azimuths are clockwise from true north; wind direction is where the wind comes from.
+ * Positions are in the host's world, in double precision, however far from its origin. See Contexts for world frames
+ * and Frames for matrices, depth and clip space. Colours are linear Rec. 709 unless they say otherwise.
  *
  * DETERMINISM
  *
- * The same description, timeline, seed and time give the same world on every machine: channels of one simulator agree
- * when they are told the same, and wk_context_state_hash lets them compare. Changes of weather carry absolute times.
- * Pictures are bit-identical from run to run on one driver; drivers differ in the last bits.
+ * The same description, timeline, seed and time give the same world on every machine. Channels of one simulator with
+ * the same input agree, and wk_context_state_hash lets them compare. Changes of weather carry absolute times. Pictures
+ * are bit-identical from run to run on one driver; drivers differ in the last bits.
  *
  * WHAT COMES LATER, AND HOW
  *
- * Numbers, names and layouts here never change within a major version; new ones are added. For the effects that follow,
- * so that a host can plan for them:
- * terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with
- * its own functions; material ids, normals, base colour and motion are images appended to the target structs; bodies of water
- * are new functions of the context; allocator and file callbacks and the star sky's matrix come as extensions of
- * wk_device_desc and wk_context_desc through `next`; snow falls in the stage PARTICLES, as rain does.
+ * Numbers, names and layouts here never change within a major version; later versions add new ones. Planned, so that a
+ * host can prepare: terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new
+ * child of the context with its own functions; base colour and motion are images appended to
+ * the target structs; bodies of water are new functions of the context; allocator and file callbacks and the star
+ * sky's matrix come as extensions of wk_device_desc and wk_context_desc through `next`; snow falls in the stage
+ * PARTICLES, as rain does.
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -101,15 +101,15 @@ extern "C" {
  * ====================================================================================================
  * Status, versions, messages
  *
- * Every call answers a wk_status. 0 and positive values are answers; negative ones are failures, after which no
- * output was written and wk_last_error_message() says which parameter was wrong and what would have been accepted.
+ * Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
+ * output. wk_last_error_message() then says which parameter was wrong and what is accepted.
  * ====================================================================================================
  */
 
-/** What a call answers. The numbers never change and are never reused. */
+/** The result of a call. The numbers never change and are never reused. */
 typedef int32_t wk_status;
 
-/** The call did what it says. */
+/** The call succeeded. */
 #define WK_OK 0
 /** More steps are due than one update may take; call again. Not a failure. */
 #define WK_PENDING 1
@@ -117,9 +117,9 @@ typedef int32_t wk_status;
 #define WK_ERROR_INVALID_ARGUMENT (-1)
 /** A handle is NULL, destroyed, foreign or of another kind. */
 #define WK_ERROR_BAD_HANDLE (-2)
-/** A parent was to be destroyed while it has live children, or the handle is in another call at this moment. */
+/** The parent still has live children, or another call is using the handle at this moment. */
 #define WK_ERROR_IN_USE (-3)
-/** This device, tier or build cannot do what was asked; the message names the feature. */
+/** This device, tier or build does not support the request; the message names the feature. */
 #define WK_ERROR_UNSUPPORTED (-4)
 /** No adapter or driver serves the request. */
 #define WK_ERROR_NO_ADAPTER (-5)
@@ -137,32 +137,32 @@ typedef int32_t wk_status;
 #define WK_ERROR_IO (-11)
 /** The surface must be configured again: it was resized, minimised or lost. */
 #define WK_ERROR_SURFACE_OUTDATED (-12)
-/** Calls came in an order that the API forbids: stages of a frame, dates before the last update. */
+/** Calls in a wrong order: stages of a frame, or dates before the last update. */
 #define WK_ERROR_WRONG_ORDER (-13)
 /** The host aborted a long operation through its callback. */
 #define WK_ERROR_ABORTED (-14)
 /** A fault inside Welkin; the message says where. */
 #define WK_ERROR_INTERNAL (-15)
 
-/** How grave a message is. */
+/** Severity of a message. */
 typedef uint32_t wk_log_level;
 
-/** Something failed; the call also answers so. */
+/** Something failed; the call's status says so too. */
 #define WK_LOG_LEVEL_ERROR 1
-/** Something works worse than it could: a fallback, a slow path. */
+/** Something works less well than it could: a fallback, a slow path. */
 #define WK_LOG_LEVEL_WARNING 2
-/** Once-in-a-while news: which adapter, which plan. */
+/** Occasional information: which adapter, which plan. */
 #define WK_LOG_LEVEL_INFO 3
-/** For those who develop Welkin. */
+/** For developers of Welkin. */
 #define WK_LOG_LEVEL_DEBUG 4
 
 /**
- * Receives a message, NUL-terminated UTF-8 that is valid during the call. It may come from any thread that is in a
- * Welkin call; it must not call Welkin and must not unwind.
+ * Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls it from any thread that is in a Welkin
+ * call. It must not call Welkin and must not unwind.
  */
 typedef void (*wk_log_fn)(void *user, wk_log_level level, const char *message);
 
-/** Which struct a pointer leads to: the second field of every tagged struct. WK_X_INIT sets it. */
+/** The type of a tagged struct: its second field. WK_X_INIT sets it. */
 typedef uint32_t wk_struct_type;
 
 /** wk_device_desc */
@@ -268,22 +268,22 @@ typedef uint32_t wk_struct_type;
 WK_API const char *wk_status_name(wk_status status);
 
 /**
- * What the last failed call of the calling thread says: one sentence that begins with the function's name and names
+ * The message of the calling thread's last failed call: one sentence that begins with the function's name and names
  * the parameter and the accepted range. Empty before the first failure; successful calls leave it alone. Never NULL;
  * valid until the next failing call of this thread.
  */
 WK_API const char *wk_last_error_message(void);
 
 /**
- * The library's version, as WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library of the same major version
- * and at least the header's minor one serves it. Each of the three may be NULL.
+ * The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major
+ * version is equal and its minor version is at least the header's. Each of the three may be NULL.
  */
 WK_API wk_status wk_version(uint32_t *major, uint32_t *minor, uint32_t *patch);
 
 /**
  * Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
- * They are off until a host asks. Nothing is ever printed. One callback a process; `max_level` is the least grave
- * level that is sent. If `callback` fails it must return normally: Welkin ignores it.
+ * They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
+ * severe level that is sent. If `callback` fails, it must return normally; Welkin ignores the failure.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
  */
 WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_level max_level);
@@ -292,13 +292,13 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * ====================================================================================================
  * Devices
  *
- * A wk_device is one native queue or OpenGL context and everything on it that contexts share: pipelines, tables,
- * caches. It comes from one of four places: made here (below), round the host's OpenGL context, round the host's
- * Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all of them.
+ * A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
+ * caches. Make one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from the
+ * host's wgpu device. All later calls are the same for all four.
  *
  * Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
  * (driver reset, unplugged) every call answers WK_ERROR_DEVICE_LOST: destroy the views, contexts and the device,
- * create them anew, and load the state that was saved.
+ * create them again, and load the saved state.
  * ====================================================================================================
  */
 
@@ -308,7 +308,7 @@ typedef struct wk_device wk_device;
 /** Native graphics interfaces. */
 typedef uint32_t wk_backend_flags;
 
-/** Draws nothing and needs no GPU: for tests of the host's own code. */
+/** Draws nothing and needs no GPU: for tests of your own code. */
 #define WK_BACKEND_NOOP 1
 /** Vulkan. */
 #define WK_BACKEND_VULKAN 2
@@ -318,18 +318,18 @@ typedef uint32_t wk_backend_flags;
 #define WK_BACKEND_DX12 8
 /** OpenGL or OpenGL ES. */
 #define WK_BACKEND_GL 16
-/** Whatever serves, the best first. */
+/** Any that works, the best first. */
 #define WK_BACKEND_ANY 30
 
-/** Choices for an own device. */
+/** Flags of an own device. */
 typedef uint32_t wk_device_flags;
 
-/** Use no compute shaders even where there are any: draws as on an OpenGL 3.3 machine. */
+/** Use no compute shaders, even where the device has them: draws as on an OpenGL 3.3 machine. */
 #define WK_DEVICE_FORCE_TIER0 1
-/** Take the software driver. */
+/** Use the software driver. */
 #define WK_DEVICE_FORCE_SOFTWARE 2
 
-/** How to make an own device. */
+/** Settings for an own device. */
 typedef struct wk_device_desc {
     /** sizeof(wk_device_desc) of your header. */
     uint32_t struct_size;
@@ -337,7 +337,7 @@ typedef struct wk_device_desc {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Which native interfaces may serve. Default WK_BACKEND_ANY. */
+    /** Native interfaces that may be used. Default WK_BACKEND_ANY. */
     wk_backend_flags backends;
     /** Default 0. */
     wk_device_flags flags;
@@ -352,7 +352,7 @@ typedef struct wk_device_desc {
     /* flags */ 0 \
 }
 
-/** What a device can do. */
+/** Capabilities of a device. */
 typedef struct wk_caps {
     /** sizeof(wk_caps) of your header. */
     uint32_t struct_size;
@@ -360,14 +360,14 @@ typedef struct wk_caps {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** The one native interface that serves it. */
+    /** The native interface that it uses. */
     wk_backend_flags backend;
     /**
-     * 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. What needs tier 1 answers WK_ERROR_UNSUPPORTED
-     * by name on tier 0.
+     * 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. Features that need tier 1 answer
+     * WK_ERROR_UNSUPPORTED by name on tier 0.
      */
     uint32_t tier;
-    /** 1 if the driver computes on the CPU, else 0. */
+    /** 1 for a software driver, which draws on the CPU, else 0. */
     uint32_t software;
     /** Largest edge of a 2-D texture, pixels. */
     uint32_t max_texture_size;
@@ -397,19 +397,17 @@ typedef struct wk_caps {
 }
 
 /**
- * Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle that
- * the caller must give to `wk_device_destroy`; else it is not touched.
+ * Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
+ * which you destroy with `wk_device_destroy`; else it stays untouched.
  * Thread: any.
- * Errors: WK_ERROR_NO_ADAPTER if no driver serves the request; WK_ERROR_INVALID_ARGUMENT by name.
+ * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request; WK_ERROR_INVALID_ARGUMENT by name.
  */
-WK_API
-wk_status wk_device_create(const wk_device_desc *desc,
-                           wk_device **out_device);
+WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
 
 /**
  * Destroys a device. NULL does nothing.
- * Thread: for a device round an OpenGL context, one on which that is (or can be made) current: elsewhere, or when the
- * context is gone already, its objects are given up. For others any.
+ * Thread: for a device on an OpenGL context, one where that context is (or can be made) current; elsewhere, or when
+ * the context is already gone, its objects are abandoned. For other devices any.
  * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
@@ -421,7 +419,7 @@ WK_API wk_status wk_device_destroy(wk_device *device);
 WK_API wk_status wk_device_get_status(const wk_device *device);
 
 /**
- * Says what a device can do. The two texts in the answer live as long as the device.
+ * Gets the capabilities of a device. The two texts in the answer live as long as the device.
  * Thread: any, at any time.
  */
 WK_API wk_status wk_device_get_caps(const wk_device *device, wk_caps *out_caps);
@@ -444,8 +442,8 @@ WK_API wk_status wk_caps_init(wk_caps *out, uint32_t struct_size);
  * ====================================================================================================
  * Textures of an own device
  *
- * For hosts without graphics of their own: a program that wants pictures in memory, or one that draws with Welkin only.
- * Hosts with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
+ * For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
+ * with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
  * ====================================================================================================
  */
 
@@ -472,7 +470,7 @@ typedef uint32_t wk_format;
 /** 8-bit normalised, 1 byte: a mask. */
 #define WK_FORMAT_R8_UNORM 8
 
-/** How to make a texture. */
+/** Settings for a new texture. */
 typedef struct wk_texture_desc {
     /** sizeof(wk_texture_desc) of your header. */
     uint32_t struct_size;
@@ -512,14 +510,14 @@ wk_status wk_texture_create(wk_device *device,
                             wk_texture **out_texture);
 
 /**
- * Destroys a texture. NULL does nothing. Views that were given it keep it alive for as long as they need it.
+ * Destroys a texture. NULL does nothing. Views that use it keep it alive for as long as they need it.
  * Thread: any.
  */
 WK_API wk_status wk_texture_destroy(wk_texture *texture);
 
 /**
- * Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top.
- * `data_size` is what lies at `data`: at least `bytes_per_row` times the height. Copied during the call.
+ * Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
+ * the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
  * Thread: exclusive.
  */
 WK_API
@@ -529,8 +527,9 @@ wk_status wk_texture_write(wk_texture *texture,
                            uint32_t bytes_per_row);
 
 /**
- * Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the picture's
- * top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Not for every frame.
+ * Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
+ * picture's top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Slow: do not call it in
+ * every frame.
  * Thread: exclusive.
  * Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
  */
@@ -552,9 +551,9 @@ wk_status wk_texture_desc_init(wk_texture_desc *out,
  * ====================================================================================================
  * Windows
  *
- * For hosts without graphics of their own: Welkin presents to a window that the host named by its native handle. The
- * host makes the window, keeps its event loop, and says when its size changed. Nothing that a window may do is a fault:
- * resized, hidden, minimised and lost are answers.
+ * For hosts without graphics of their own: Welkin presents to a window that the host names by its native handle. The
+ * host makes the window, keeps its event loop, and tells Welkin when its size changes. Resized, hidden, minimised and
+ * lost windows give a status and never a fault.
  *
  *   wk_device_create_for_window, wk_surface_create, wk_surface_configure
  *   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
@@ -581,7 +580,8 @@ typedef uint32_t wk_window_kind;
 #define WK_WINDOW_APPKIT 5
 
 /**
- * A native window. What its kind does not use is ignored. The window outlives the surface, its connection the device.
+ * A native window. Welkin ignores fields that its kind does not use. The window must outlive the surface, and its
+ * connection the device.
  */
 typedef struct wk_window {
     /** sizeof(wk_window) of your header. */
@@ -614,7 +614,7 @@ typedef struct wk_window {
     /* id */ UINT64_C(0) \
 }
 
-/** What the values drawn to a surface mean; give the frame the same color_space. */
+/** Encoding of the values drawn to a surface; give the frame the matching color_space. */
 typedef uint32_t wk_surface_encoding;
 
 /** Display-linear: the hardware encodes to sRGB (WK_COLOR_DISPLAY_LINEAR, or TONE from WK_COLOR_SCENE_LINEAR). */
@@ -630,7 +630,7 @@ typedef uint32_t wk_pacing;
 /** As soon as possible; may tear. */
 #define WK_PACING_IMMEDIATE 1
 
-/** How a surface is set up. */
+/** Settings of a surface. */
 typedef struct wk_surface_config {
     /** sizeof(wk_surface_config) of your header. */
     uint32_t struct_size;
@@ -660,9 +660,9 @@ typedef struct wk_surface_config {
 }
 
 /**
- * Makes an own device that can present to `window`, and to other windows of the same connection. `desc` NULL means
+ * Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
  * WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
- * Thread: any; on macOS the main one. With X11 the host calls XInitThreads first if it uses Xlib from several threads.
+ * Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
  * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window.
  */
 WK_API
@@ -685,15 +685,15 @@ wk_status wk_surface_create(wk_device *device,
 WK_API wk_status wk_surface_destroy(wk_surface *surface);
 
 /**
- * Sets a surface up, or up again after its window changed. An image in hand is given back undrawn. With a width or
- * height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
+ * Configures a surface, the first time or after its window changed. An acquired image is given back undrawn. With a
+ * width or height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
  * Thread: exclusive.
  * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
  */
 WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_config *config);
 
 /**
- * Takes the next image to draw into; asked again before `wk_surface_present`, it is the same image.
+ * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
  * Thread: exclusive.
  * Answers WK_PENDING if the window shows nothing now: skip this frame.
  * Errors: WK_ERROR_SURFACE_OUTDATED: configure again, also while it is minimised.
@@ -701,7 +701,7 @@ WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_conf
 WK_API wk_status wk_surface_acquire(wk_surface *surface);
 
 /**
- * Shows the image in hand, after the work that was recorded for it.
+ * Presents the acquired image, after the work that was recorded for it.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER if no image was acquired; WK_ERROR_SURFACE_OUTDATED.
  */
@@ -727,50 +727,49 @@ wk_status wk_surface_config_init(wk_surface_config *out,
  *
  * Welkin draws into the host's own textures, renderbuffers or framebuffers, in one of two ways.
  *
- * SHARED (the default): the host makes a second context that shares objects with its own, and a callback that makes one
- * or the other current. Welkin draws in the second one, so none of the host's state can change. Fences order the two.
- * Framebuffers are not shared, so targets are textures and renderbuffers; bind a texture again before sampling what was
- * drawn into it, as OpenGL asks between contexts.
+ * SHARED (the default): the host makes a second context that shares objects with its own, and a callback that makes
+ * either context current. Welkin draws in the second one, so none of the host's state can change. Fences order the
+ * two. Contexts do not share framebuffers, so targets are textures and renderbuffers. Bind a texture again before you
+ * sample what Welkin drew into it, as OpenGL requires between contexts.
  *
- * HOST_CONTEXT: Welkin draws in the host's own context; every piece of state it touches is saved, set, and put back.
- * Any framebuffer can be a target, the window's (0) too, by copies in and out.
+ * HOST_CONTEXT: Welkin draws in the host's own context. It saves every piece of state that it touches, sets it, and
+ * puts it back. Any framebuffer can be a target, the window's (0) too, by copies in and out.
  *
- * One device serves all windows whose contexts share objects in SHARED mode, with a view each; in HOST_CONTEXT mode a device
- * belongs to one context.
+ * In SHARED mode one device serves all windows whose contexts share objects, with one view for each. In HOST_CONTEXT
+ * mode a device belongs to one context.
  *
- * When a call begins the host's context is current on the calling thread, and so it is when it returns. Needed: OpenGL
- * 3.3 or OpenGL ES 3.0, core or compatibility; compute shaders are used from 4.3 (ES 3.1) on.
+ * When a call begins, the host's context must be current on the calling thread; it is current again when the call
+ * returns. Needed: OpenGL 3.3 or OpenGL ES 3.0, core or compatibility. From 4.3 (ES 3.1) on Welkin uses compute
+ * shaders.
  * ====================================================================================================
  */
 
 /**
- * Answers the address of an OpenGL function, or NULL: what glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
- * or glXGetProcAddress answer. Called with the host's or Welkin's context current.
+ * Returns the address of an OpenGL function, or NULL, as glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress
+ * or glXGetProcAddress do. Called with the host's or Welkin's context current.
  */
 typedef const void *(*wk_opengl_get_proc_fn)(void *user, const char *name);
 
 /**
- * Makes a context current on the calling thread: `which` is WK_OPENGL_CONTEXT_HOST or WK_OPENGL_CONTEXT_WELKIN. Answers
- * 0 when it is, anything else when it cannot be.
+ * Makes a context current on the calling thread: `which` is WK_OPENGL_CONTEXT_HOST or WK_OPENGL_CONTEXT_WELKIN.
+ * Returns 0 on success, anything else on failure.
  */
 typedef int32_t (*wk_opengl_make_current_fn)(void *user, uint32_t which);
 
-/** How Welkin lives beside the host's OpenGL. */
+/** The context that Welkin draws in. */
 typedef uint32_t wk_opengl_mode;
 
-/** In a context of its own that shares objects with the host's. */
+/** Its own context, which shares objects with the host's. */
 #define WK_OPENGL_SHARED 0
-/** In the host's context, whose state is put back. */
+/** The host's context, whose state it puts back. */
 #define WK_OPENGL_HOST_CONTEXT 1
 
-/** How one context's commands are ordered after the other's in shared mode. */
+/** Order of the two contexts' commands in shared mode. */
 typedef uint32_t wk_opengl_handover;
 
-/** By fences, as the standard asks. */
+/** By fences, as the standard requires. */
 #define WK_OPENGL_FENCE 0
-/**
- * By a flush alone: enough where one queue serves both contexts, and cheaper there. Measure before you rely on it.
- */
+/** By a flush alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it. */
 #define WK_OPENGL_FLUSH 1
 
 /** The host's OpenGL. */
@@ -784,11 +783,11 @@ typedef struct wk_opengl_host_desc {
     /** Finds functions. Default NULL; must be given. */
     wk_opengl_get_proc_fn get_proc;
     /**
-     * Makes contexts current. Must be given in shared mode; in the host's context it may be NULL (the default), then
-     * the host's context is taken as it is.
+     * Makes contexts current. Required in shared mode. In the host's context it may be NULL (the default); Welkin then
+     * uses the current context as it is.
      */
     wk_opengl_make_current_fn make_current;
-    /** Handed to both. They are called on whatever thread calls Welkin, one at a time. Default NULL. */
+    /** Passed to both callbacks. Welkin calls them on the thread that calls it, one at a time. Default NULL. */
     void *user;
     /** Default WK_OPENGL_SHARED. */
     wk_opengl_mode mode;
@@ -814,7 +813,7 @@ typedef struct wk_opengl_host_desc {
     /* reserved0 */ 0 \
 }
 
-/** What an OpenGL name is a name of. */
+/** Type of the object that an OpenGL name stands for. */
 typedef uint32_t wk_opengl_image_kind;
 
 /** No image. */
@@ -823,7 +822,7 @@ typedef uint32_t wk_opengl_image_kind;
 #define WK_OPENGL_TEXTURE 1
 /** A renderbuffer. */
 #define WK_OPENGL_RENDERBUFFER 2
-/** What a framebuffer draws to, 0 being the window's; only in the host's own context. */
+/** The attachments of a framebuffer, 0 being the window's; only in the host's own context. */
 #define WK_OPENGL_FRAMEBUFFER 3
 
 /** A host's image, embedded in wk_opengl_target. */
@@ -846,12 +845,14 @@ typedef struct wk_opengl_image {
     /* reserved0 */ 0 \
 }
 
-/** What is done about multisampled images. */
+/** Handling of multisampled images. */
 typedef uint32_t wk_opengl_multisample;
 
-/** Depth is read and weather drawn per sample. From OpenGL 4.0 on; not on OpenGL ES nor on a forced tier 0. */
+/** Reads depth and draws weather for each sample. From OpenGL 4.0 on; not on OpenGL ES nor on a forced tier 0. */
 #define WK_OPENGL_MULTISAMPLE_EACH 0
-/** Colour comes in averaged and goes back to every sample alike; depth is that of one sample. Not on OpenGL ES. */
+/**
+ * Averages colour, draws, and writes the result to every sample alike; uses the depth of one sample. Not on OpenGL ES.
+ */
 #define WK_OPENGL_MULTISAMPLE_RESOLVE 1
 
 /** The images of a frame of an OpenGL host. */
@@ -862,37 +863,37 @@ typedef struct wk_opengl_target {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** What is drawn into. Default none. */
+    /** The image to draw into. Default none. */
     wk_opengl_image color;
     /**
-     * The host's depth; none (the default) shows the sky in every pixel. Where `color` is a framebuffer, the same one; else another
-     * image. It has as many samples as `color`. Where that has one (a resolved picture) depth may have more, not on OpenGL ES: one
-     * sample of each pixel counts.
+     * The host's depth; none (the default) shows the sky in every pixel. If `color` is a framebuffer, use the same
+     * one, else another image. It has as many samples as `color`. If `color` has one sample (a resolved picture),
+     * depth may have more, except on OpenGL ES; one sample of each pixel then counts.
      */
     wk_opengl_image depth;
     /**
-     * A texture of one sample: where its red is 1, the host's pixel stays; where 0, weather is drawn. Default none.
+     * A mask of one sample: where red is 1, the host's pixel stays; where it is 0, Welkin draws weather. Default none.
      */
     wk_opengl_image mask;
-    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
+    /** Pixels; must equal the images' size, and a window's present size. Default 0; must be given. */
     uint32_t width;
-    /** Pixels; must be the images' own, and a window's size now. Default 0; must be given. */
+    /** Pixels; must equal the images' size, and a window's present size. Default 0; must be given. */
     uint32_t height;
-    /** A number that the host raises when it makes an object anew under an old name; it never falls. Default 0. */
+    /** Raise this number when you make an object again under an old name. It must never fall. Default 0. */
     uint64_t generation;
     /** Default WK_OPENGL_MULTISAMPLE_EACH. */
     wk_opengl_multisample multisample;
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * A texture of one sample that says what each pixel shows is made of: the byte of red is a wk_surface_class, 0 where
-     * wk_ground_grid or the context's default says it. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+     * A texture of one sample with each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use
+     * wk_ground_grid or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
      */
     wk_opengl_image surface_classes;
     /**
-     * A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in
-     * GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. What is no unit vector, as a cleared pixel,
-     * leaves it to the host's terrain and depth. Default none.
+     * A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE):
+     * (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel is no
+     * unit vector (a cleared pixel), Welkin uses the host's terrain or depth. Default none.
      */
     wk_opengl_image normals;
 } wk_opengl_target;
@@ -914,22 +915,23 @@ typedef struct wk_opengl_target {
     /* normals */ WK_OPENGL_IMAGE_INIT \
 }
 
-/** Which context is asked for. */
+/** A context that Welkin asks for. */
 typedef uint32_t wk_opengl_context;
 
 /**
- * The one the host draws in: with several windows, the one that was current when the call came (keep it for each thread).
+ * The context that the host draws in. With several windows: the one that was current when the call came (remember it
+ * for each thread).
  */
 #define WK_OPENGL_CONTEXT_HOST 0
-/** The one the host made for Welkin, sharing objects with its own. */
+/** The context that the host made for Welkin, sharing objects with its own. */
 #define WK_OPENGL_CONTEXT_WELKIN 1
 
 /**
- * Wraps the host's OpenGL context, which is current on this thread. On success `*out_device` is a new handle for
- * `wk_device_destroy`, to be called while the contexts live; nothing of the host's is ever deleted.
+ * Wraps the host's OpenGL context, which must be current on this thread. On success `*out_device` is a new handle for
+ * `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
  * Thread: the one on which the host's context is current.
- * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or answer NULL; WK_ERROR_WRONG_ORDER if no context is
- * current, or the wrong one; WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
+ * is current, or the wrong one; WK_ERROR_UNSUPPORTED if it is too old; WK_ERROR_ALREADY_WRAPPED if it has a wk_device.
  */
 WK_API
 wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc,
@@ -955,19 +957,19 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  * ====================================================================================================
  * Vulkan hosts
  *
- * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits itself: when wk_view_record
- * returns, its work is on the queue. Vulkan wants a queue used by one thread at a time, so the host stays away from the
- * queue during Welkin's calls on this device, or passes lock_queue and unlock_queue, which Welkin calls round every
- * submission; no Welkin function may be called inside them.
+ * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
+ * wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. So either keep other
+ * threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
+ * calls around every submission. Call no Welkin function inside them.
  *
- * An image is taken over in the layout the host left it in and comes back in the one it asks for. What the host
- * submitted to the same queue before is waited for without a semaphore, and so is Welkin's work by what the host
- * submits there afterwards. Semaphores order work with other queues.
+ * Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
+ * On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
+ * submits afterwards waits for Welkin's. Semaphores order work with other queues.
  *
- * Handles are passed as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
+ * Pass handles as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
  *
  * Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
- * computes. Besides, enabled on the device and listed here:
+ * computes. For these features, enable on the device and list here:
  *
  *     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions
  *     colour of several samples                     VkPhysicalDeviceFeatures::sampleRateShading in enabled_features
@@ -975,15 +977,15 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  *     DEPTH_ATTACHMENT and DEPTH_READ_ONLY layouts  separateDepthStencilLayouts in enabled_features
  *     ATTACHMENT and READ_ONLY layouts              synchronization2 in enabled_features
  *
- * Everything else is used if the host says that it enabled it, and else not.
+ * Welkin uses other extensions and features only if the host lists them.
  *
- * Views, contexts and textures go first, then the wk_device, then the VkDevice, then the VkInstance. While anything of
- * a wk_device is alive, wk_device_destroy answers WK_ERROR_IN_USE: the VkDevice must then stay too. Vulkan cannot be
- * asked whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
+ * Destroy views, contexts and textures first, then the wk_device, then the VkDevice, then the VkInstance. While a
+ * wk_device has children, wk_device_destroy answers WK_ERROR_IN_USE, and the VkDevice must stay too. Vulkan cannot
+ * tell whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
  * ====================================================================================================
  */
 
-/** The host's vkGetInstanceProcAddr. Cast yours to this type: it answers a function pointer, or NULL. */
+/** The host's vkGetInstanceProcAddr, cast to this type: it returns a function pointer, or NULL. */
 typedef void *(*wk_vulkan_get_proc_fn)(void *instance, const char *name);
 
 /** Takes or releases the host's lock on its queue. */
@@ -1009,14 +1011,14 @@ typedef struct wk_vulkan_host_desc {
     uint32_t instance_api_version;
     /** Family of the queue; it must draw and compute. Default 0. */
     uint32_t queue_family_index;
-    /** Which queue of the family. Default 0. */
+    /** Index of the queue in the family. Default 0. */
     uint32_t queue_index;
     /** Number of enabled_instance_extensions. Default 0. */
     uint32_t instance_extension_count;
     /** Names of the instance extensions that the host enabled. Default NULL. */
     const char *const *enabled_instance_extensions;
     /**
-     * Names of the device extensions that the host enabled; among them VK_KHR_swapchain where it presents. Default NULL.
+     * Names of the device extensions that the host enabled, VK_KHR_swapchain among them if it presents. Default NULL.
      */
     const char *const *enabled_device_extensions;
     /** Number of enabled_device_extensions. Default 0. */
@@ -1024,15 +1026,15 @@ typedef struct wk_vulkan_host_desc {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * What the host enabled: the VkDeviceCreateInfo it gave to vkCreateDevice, or a chain of VkPhysicalDevice..Features
-     * structs. Read during the call. NULL (the default): no feature is enabled.
+     * The features that the host enabled: the VkDeviceCreateInfo that it gave to vkCreateDevice, or a chain of
+     * VkPhysicalDevice..Features structs. Read during the call. NULL (the default): no feature is enabled.
      */
     const void *enabled_features;
-    /** Takes the host's queue lock; with unlock_queue, or both NULL (the default). */
+    /** Takes the host's queue lock. Give it together with unlock_queue, or leave both NULL (the default). */
     wk_vulkan_queue_fn lock_queue;
     /** Releases it. */
     wk_vulkan_queue_fn unlock_queue;
-    /** Handed to both. Default NULL. */
+    /** Passed to both. Default NULL. */
     void *user;
 } wk_vulkan_host_desc;
 
@@ -1076,25 +1078,27 @@ typedef struct wk_vulkan_image {
     /** Pixels. Default 0; must be given. */
     uint32_t height;
     /**
-     * Samples a pixel. Default 1. Colour of several needs sampleRateShading in enabled_features of the wk_vulkan_host_desc.
+     * Samples of a pixel. Default 1. Colour with several needs sampleRateShading in enabled_features of the
+     * wk_vulkan_host_desc.
      */
     uint32_t samples;
     /**
      * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
      */
     uint32_t usage;
-    /** Array layers that it was created with. Default 1. Of an occluder map, 1. */
+    /** Array layers that it was created with. Default 1. For an occluder map it must be 1. */
     uint32_t array_layers;
-    /** Layer that is handed over, as one eye of a stereo or multiview host; the others stay untouched. Default 0. */
+    /**
+     * The layer handed over, such as one eye of a stereo or multiview host; the others stay untouched. Default 0.
+     */
     uint32_t layer;
     /**
-     * VkImageLayout that the host left it in, of the layer that is handed over. Default 0 (UNDEFINED: its content may be
-     * dropped; colour only).
+     * VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be dropped; colour only).
      */
     uint32_t layout;
     /**
-     * VkImageLayout that the host wants it back in. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`, needs
-     * VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
+     * VkImageLayout in which the host wants it back. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`,
+     * needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
      */
     uint32_t final_layout;
     /** Must be 0. */
@@ -1164,20 +1168,21 @@ typedef struct wk_vulkan_target {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** What is drawn into. Default NULL. */
+    /** The image to draw into. Default NULL. */
     const wk_vulkan_image *color;
     /**
-     * The host's depth, as large as `color` and with as many samples. Where `color` has one sample (a resolved picture)
-     * depth may have more: the first of each pixel counts. NULL (the default) shows the sky in every pixel.
+     * The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
+     * depth may have more; the first of each pixel then counts. NULL (the default) shows the sky in every pixel.
      */
     const wk_vulkan_image *depth;
     /**
-     * Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample, another image. Default NULL.
+     * A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
+     * sample, another image. Default NULL.
      */
     const wk_vulkan_image *mask;
-    /** Waited for before anything is drawn; a binary one must have its signal submitted. At most 16. */
+    /** Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16. */
     const wk_vulkan_semaphore *waits;
-    /** Signalled when all is drawn and the images are in their final layouts. At most 16. */
+    /** Semaphores to signal when all is drawn and the images are in their final layouts. At most 16. */
     const wk_vulkan_semaphore *signals;
     /** Number of waits. Default 0. */
     uint32_t wait_count;
@@ -1188,14 +1193,14 @@ typedef struct wk_vulkan_target {
     /** Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default. */
     uint32_t signal_stride;
     /**
-     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
-     * it. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+     * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+     * default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
      */
     const wk_vulkan_image *surface_classes;
     /**
-     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
-     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`, one
-     * sample. Default NULL.
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
+     * formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
+     * or depth. As large as `color`, one sample. Default NULL.
      */
     const wk_vulkan_image *normals;
 } wk_vulkan_target;
@@ -1219,22 +1224,20 @@ typedef struct wk_vulkan_target {
 }
 
 /**
- * Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`, to be called before
- * the host destroys its device; nothing of the host's is ever destroyed.
+ * Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`; call that before
+ * you destroy your device. Welkin never destroys the host's objects.
  * Thread: any that may use the queue.
- * Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong, or all extensions, features and fields
- * that are missing; WK_ERROR_UNSUPPORTED what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+ * Errors: WK_ERROR_INVALID_ARGUMENT names a NULL or foreign handle, or all missing extensions, features and fields;
+ * WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
  */
-WK_API
-wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc,
-                                  wk_device **out_device);
+WK_API wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc, wk_device **out_device);
 
 /**
- * Waits until the GPU no longer uses a VkImage and forgets it. An image that was handed over is forgotten before or after
- * it is destroyed (an engine may rebuild its swapchain inside a call), but before a new one is handed over: Vulkan may give
- * that the old one's number, and Welkin would draw into the dead image. Destroyed it is only when the GPU has done with it, as ever:
- * after the signals of its last wk_view_record, or vkDeviceWaitIdle. A number that Welkin does not know is no error. Not
- * for every frame.
+ * Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
+ * after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
+ * may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
+ * when the GPU has finished with it: after the signals of its last wk_view_record, or after vkDeviceWaitIdle. An
+ * unknown image is no error. Slow: do not call it in every frame.
  * Thread: exclusive on the device.
  */
 WK_API
@@ -1277,11 +1280,11 @@ wk_status wk_vulkan_target_init(wk_vulkan_target *out,
  * ====================================================================================================
  * Kinds of weather
  *
- * What a report names by words. The numbers are stable for ever.
+ * Kinds that a report names by words. The numbers never change.
  * ====================================================================================================
  */
 
-/** What the dry particles of the air are. */
+/** Kind of the air's dry particles. */
 typedef uint32_t wk_aerosol_kind;
 
 /** Average continental air: soil, soot-poor industry, sulphates. */
@@ -1308,7 +1311,7 @@ typedef uint32_t wk_aerosol_kind;
 /** Fog and mist: suspended droplets at the ground. */
 typedef uint32_t wk_fog_kind;
 
-/** No fog; what visibility lacks is the aerosol's. */
+/** No fog: the aerosol takes what visibility lacks. */
 #define WK_FOG_NONE 0
 /** Mist (METAR BR): droplets, 1 to 5 km. */
 #define WK_FOG_MIST 1
@@ -1326,7 +1329,7 @@ typedef uint32_t wk_fog_kind;
 /** Cloud genera, and the two that METAR names. */
 typedef uint32_t wk_cloud_kind;
 
-/** Not known: chosen from height, cover and precipitation by derive. */
+/** Not known: Welkin chooses by height, cover and precipitation. */
 #define WK_CLOUD_UNKNOWN 0
 /** Low grey sheet. */
 #define WK_CLOUD_STRATUS 1
@@ -1352,9 +1355,9 @@ typedef uint32_t wk_cloud_kind;
 #define WK_CLOUD_CIRROCUMULUS 11
 
 /**
- * What falls. The types of rain: frontal (stratiform) is RAIN, usually 1 to 10 mm/h; convective is RAIN with
- * WK_PRECIPITATION_SHOWERS, 10 to 100; relief (orographic) rain, many small drops, is DRIZZLE of 0.5 to 3; drizzle itself 0.1 to
- * 1. docs/rain.md has the drop sizes of each.
+ * Kind of precipitation. For the types of rain choose: frontal (stratiform): RAIN, usually 1 to 10 mm/h; convective:
+ * RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic), with many small drops: DRIZZLE, 0.5 to 3
+ * mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
  */
 typedef uint32_t wk_precipitation_kind;
 
@@ -1383,7 +1386,7 @@ typedef uint32_t wk_precipitation_kind;
 /** Freezing rain (FZRA). */
 #define WK_PRECIPITATION_FREEZING_RAIN 11
 
-/** What the wind lifts from the ground. */
+/** Kind of matter that the wind lifts from the ground. */
 typedef uint32_t wk_lofted_kind;
 
 /** Nothing. */
@@ -1401,7 +1404,7 @@ typedef uint32_t wk_lofted_kind;
 /** Blowing spray (BLPY). */
 #define WK_LOFTED_BLOWING_SPRAY 6
 
-/** The ground's state as an observer names it. */
+/** State of the ground as an observer names it. */
 typedef uint32_t wk_surface_state;
 
 /** Dry. */
@@ -1416,17 +1419,17 @@ typedef uint32_t wk_surface_state;
 #define WK_SURFACE_FROST 4
 /** Ice. */
 #define WK_SURFACE_ICE 5
-/** Snow lies; see snow_depth_m. */
+/** Lying snow; see snow_depth_m. */
 #define WK_SURFACE_SNOW 6
 
 /*
  * ====================================================================================================
  * Weather
  *
- * A wk_weather is what the host says the weather is: plain data in SI units, copied by every call that takes it. Start
- * from WK_WEATHER_INIT (a clear standard day), a METAR report or a preset, and change what you know better. Zero is a
- * value everywhere (0 degrees, north, calm, 0 %); what may be unknown has a bit in `has`, and where the bit is clear
- * Welkin derives the value by a named physical law and ignores the field. All reals are doubles.
+ * A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
+ * clear standard day), a METAR report or a preset, and change what you know better. Zero is a value everywhere (0
+ * degrees, north, calm, 0 %). What may be unknown has a bit in `has`: where the bit is clear, Welkin ignores the field
+ * and derives the value by a named physical law. All reals are doubles.
  * ====================================================================================================
  */
 
@@ -1450,9 +1453,9 @@ typedef struct wk_cloud_layer {
     const void *next;
     /** Which optional fields are set. Default 0. */
     wk_cloud_layer_has_flags has;
-    /** Which cloud. Default WK_CLOUD_UNKNOWN. */
+    /** Kind of cloud. Default WK_CLOUD_UNKNOWN. */
     wk_cloud_kind kind;
-    /** Part of the sky it covers, fraction (eighths / 8). Range [0, 1], default 0. */
+    /** Fraction of the sky that it covers (eighths / 8). Range [0, 1], default 0. */
     double cover;
     /** Base above the station, m. Range [0, 20000], default 0. */
     double base_m;
@@ -1522,17 +1525,17 @@ typedef uint64_t wk_weather_has_flags;
 /** lofted_top_m */
 #define WK_WEATHER_HAS_LOFTED_TOP 524288
 
-/** How it falls. */
+/** How precipitation falls. */
 typedef uint32_t wk_precipitation_flags;
 
-/** From convective cloud (SH): fewer and larger drops, onset and end are sharp. */
+/** From convective cloud (SH): fewer and larger drops, sharp onset and end. */
 #define WK_PRECIPITATION_SHOWERS 1
 /** With thunder (TS). */
 #define WK_PRECIPITATION_THUNDERSTORM 2
-/** With hail beside what the kind says (GR, GS). */
+/** With hail besides the kind (GR, GS). */
 #define WK_PRECIPITATION_WITH_HAIL 4
 
-/** The weather at a station and moment. Heights are above the station unless they say otherwise. */
+/** The weather at a station and moment. Heights are above the station unless stated otherwise. */
 typedef struct wk_weather {
     /** sizeof(wk_weather) of your header. */
     uint32_t struct_size;
@@ -1552,9 +1555,9 @@ typedef struct wk_weather {
      * it sets the fog's depth.
      */
     double vertical_visibility_m;
-    /** Optional: runway visual range, m. Range [1, 10000]. For information; extinction follows visibility_m. */
+    /** Optional: runway visual range, m. Range [1, 10000]. Information only; extinction follows visibility_m. */
     double runway_visual_range_m;
-    /** Air at 2 m, degrees Celsius. Range [-90, 60], default 15. */
+    /** Air temperature at 2 m, degrees Celsius. Range [-90, 60], default 15. */
     double temperature_c;
     /** Relative humidity over water, fraction. Range [0, 1], default 0.5. */
     double relative_humidity;
@@ -1564,71 +1567,77 @@ typedef struct wk_weather {
     double station_altitude_m;
     /** Ozone column, Dobson units. Range [0, 700], default 300. */
     double ozone_du;
-    /** What the dry particles are. Default WK_AEROSOL_CONTINENTAL. */
+    /** Kind of dry particles. Default WK_AEROSOL_CONTINENTAL. */
     wk_aerosol_kind aerosol_kind;
     /** Fog or mist. Default WK_FOG_NONE. */
     wk_fog_kind fog_kind;
-    /** Optional: extinction goes with wavelength^-exponent. Range [-1, 4]; else by kind. */
+    /** Optional: exponent with which extinction falls, wavelength^-exponent. Range [-1, 4]; else by kind. */
     double aerosol_angstrom_exponent;
     /** Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity. */
     double aerosol_single_scattering_albedo;
     /** Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity. */
     double aerosol_asymmetry;
     /**
-     * Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. Held to the station's altitude over
-     * 4.6 at least (435 m at 2000 m): the sky counts densities from the sea.
+     * Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. At least the
+     * station's altitude over 4.6 is used (435 m at 2000 m), because the sky counts densities from the sea.
      */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
     double fog_top_m;
-    /** Optional: part of the ground under fog, fraction. Range [0, 1]; else by kind. */
+    /** Optional: fraction of the ground under fog. Range [0, 1]; else by kind. */
     double fog_coverage;
     /**
      * Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
      * that the reported visibility looks over or past.
      */
     double fog_visibility_inside_m;
-    /** What falls. Default WK_PRECIPITATION_NONE. */
+    /** Kind of precipitation. Default WK_PRECIPITATION_NONE. */
     wk_precipitation_kind precipitation_kind;
-    /** How it falls. Default 0. */
+    /** How precipitation falls. Default 0. */
     wk_precipitation_flags precipitation_flags;
-    /** How much, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls. */
+    /** Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls. */
     double precipitation_rate_mm_h;
-    /** Optional: part of it that is liquid, fraction. Range [0, 1]; else by kind. */
+    /** Optional: liquid fraction of it. Range [0, 1]; else by kind. */
     double precipitation_liquid_fraction;
     /** Mean wind at 10 m above ground, m/s. Range [0, 120], default 0. */
     double wind_speed_m_s;
-    /** Where it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    /** Direction that the wind comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double wind_from_deg;
     /** Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence. */
     double wind_gust_m_s;
-    /** Optional, with the next: the direction varies clockwise from here, degrees. Range [0, 360]. */
+    /**
+     * Optional, together with the next field: start of the range of varying direction, degrees; the range runs
+     * clockwise. Range [0, 360].
+     */
     double wind_variable_from_deg;
-    /** To here, degrees. Range [0, 360]. 0 to 360 says that it varies all round (VRB). */
+    /** End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB). */
     double wind_variable_to_deg;
-    /** Optional: standard deviation of speed over its mean. Range [0, 1]; else from the roughness. */
+    /**
+     * Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
+     * roughness.
+     */
     double wind_turbulence_intensity;
     /** Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind. */
     double sea_significant_wave_height_m;
-    /** Optional: water, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8. */
+    /** Optional: water temperature, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8. */
     double sea_temperature_c;
-    /** Optional, with the next two: significant height of the swell, m. Range [0, 20]. */
+    /** Optional, together with the next two fields: significant height of the swell, m. Range [0, 20]. */
     double swell_height_m;
-    /** Peak period of the swell, s. Range [1, 30] where the swell is set. */
+    /** Peak period of the swell, s. Range [1, 30] if the swell is set. */
     double swell_period_s;
-    /** Where the swell comes from, degrees clockwise from true north. Range [0, 360]. */
+    /** Direction that the swell comes from, degrees clockwise from true north. Range [0, 360]. */
     double swell_from_deg;
     /** Optional: WMO sea state, code table 3700. Range 0 to 9. */
     uint32_t sea_state;
-    /** Optional: the ground as observed; else from precipitation, temperature and snow depth. */
+    /** Optional: observed state of the ground; else from precipitation, temperature and snow depth. */
     wk_surface_state surface_state;
     /** Depth of lying snow, m. Range [0, 20], default 0. */
     double surface_snow_depth_m;
     /** Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03. */
     double surface_roughness_length_m;
-    /** Optional: depth of what the wind lifts, m. Range [0.1, 5000]; else by kind. */
+    /** Optional: depth of the layer that the wind lifts, m. Range [0.1, 5000]; else by kind. */
     double lofted_top_m;
-    /** What the wind lifts. Default WK_LOFTED_NONE. */
+    /** Kind of matter that the wind lifts. Default WK_LOFTED_NONE. */
     wk_lofted_kind lofted_kind;
     /** Number of cloud layers, at most wk_caps.max_cloud_layers (16). Default 0. */
     uint32_t cloud_count;
@@ -1707,7 +1716,7 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_RAYLEIGH_DENSITY 32
 /** rayleigh_scale_height_m */
 #define WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT 64
-/** Rain does not bring a cloud that the report has not. */
+/** Rain adds no cloud that the report lacks. */
 #define WK_OVERRIDE_RAIN_WITHOUT_CLOUD 128
 /** cloud_direct and cloud_diffuse */
 #define WK_OVERRIDE_CLOUD_LIGHT 256
@@ -1717,7 +1726,7 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_WETNESS 1024
 
 /**
- * The host's own figures in place of the laws that tie the parts of the weather together. An extension: put it into
+ * Your own values in place of the laws that couple the parts of the weather. An extension: put it into
  * wk_weather.next.
  */
 typedef struct wk_weather_overrides {
@@ -1727,7 +1736,7 @@ typedef struct wk_weather_overrides {
     wk_struct_type struct_type;
     /** The next extension. Default NULL. */
     const void *next;
-    /** Which fields are set; the laws give the others. Default 0. */
+    /** Which fields are set; laws give the others. Default 0. */
     wk_override_flags set;
     /** Must be 0. */
     uint32_t reserved0;
@@ -1737,27 +1746,26 @@ typedef struct wk_weather_overrides {
     double aerosol_extinction_per_m;
     /** Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10]. */
     double fog_extinction_per_m;
-    /** Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10]. */
+    /** Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10]. */
     double precipitation_extinction_per_m;
-    /**
-     * Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
-     */
+    /** Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog. */
     double visibility_above_fog_m;
     /**
-     * Growth of particles by humidity over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches it off.
+     * Growth factor of particles by humidity, over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches
+     * growth off.
      */
     double humidity_growth;
     /** Air density at sea level over the standard's. Range [0, 10]. */
     double rayleigh_density_ratio;
     /** Scale height of the air, m. Range [100, 50000]. */
     double rayleigh_scale_height_m;
-    /** Part of the sun's beam below the clouds. Range [0, 1]. */
+    /** Fraction of the sun's direct beam that passes the clouds. Range [0, 1]. */
     double cloud_direct;
-    /** Diffuse light below the clouds as part of the light above. Range [0, 1]. */
+    /** Diffuse light below the clouds as a fraction of the light above. Range [0, 1]. */
     double cloud_diffuse;
-    /** Significant wave height, m, in place of what wind or state say. Range [0, 30]. */
+    /** Significant wave height, m, in place of what wind or sea state give. Range [0, 30]. */
     double wave_height_m;
-    /** Wetness of the ground, in place of what falls on it. Range [0, 1]. */
+    /** Wetness of the ground, in place of what precipitation gives. Range [0, 1]. */
     double wetness;
 } wk_weather_overrides;
 
@@ -1807,11 +1815,12 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
  * ====================================================================================================
  * Weather reports and presets
  *
- * A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
+ * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Fields that the report leaves out keep their
+ * defaults.
  * ====================================================================================================
  */
 
-/** What kind of report it is. */
+/** Flags of a report. */
 typedef uint32_t wk_metar_flags;
 
 /** A special report (SPECI). */
@@ -1823,7 +1832,7 @@ typedef uint32_t wk_metar_flags;
 /** The report says only that visibility is at least so much (CAVOK, 9999, 10SM). */
 #define WK_METAR_VISIBILITY_IS_MINIMUM 8
 
-/** Where and when a report was made. */
+/** Place and time of a report. */
 typedef struct wk_metar {
     /** sizeof(wk_metar) of your header. */
     uint32_t struct_size;
@@ -1839,7 +1848,7 @@ typedef struct wk_metar {
     uint32_t hour;
     /** Minute, UTC. */
     uint32_t minute;
-    /** What kind of report it is. */
+    /** Flags of a report. */
     wk_metar_flags flags;
 } wk_metar;
 
@@ -1872,7 +1881,8 @@ wk_status wk_weather_from_metar(const char *report,
                                 wk_metar *out_metar);
 
 /**
- * The weather of a named preset into `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the names.
+ * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
+ * names.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
  */
@@ -1884,15 +1894,12 @@ wk_status wk_weather_from_preset(const char *name,
                                  wk_weather *out_weather);
 
 /**
- * Name and one-line description of the preset `index`, from 0 in the order of a menu; both live as long as the process,
- * and either place may be NULL.
+ * Gets name and one-line description of the preset `index`, from 0 in the order of a menu. Both texts live as long as
+ * the process. Either pointer may be NULL.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
  */
-WK_API
-wk_status wk_get_preset(uint32_t index,
-                        const char **out_name,
-                        const char **out_description);
+WK_API wk_status wk_get_preset(uint32_t index, const char **out_name, const char **out_description);
 
 /**
  * Writes the default of every field: the same bytes as `WK_METAR_INIT`. `struct_size` is `sizeof(wk_metar)`
@@ -1904,8 +1911,8 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * ====================================================================================================
  * Contexts
  *
- * A wk_context is the weather, the time and the place that all views of a simulator share. It is a function of its
- * description, its timeline and its time: two contexts that were told the same answer the same, on every machine.
+ * A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
+ * description, its timeline and its time: two contexts with the same input answer the same, on every machine.
  *
  * The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
  * with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
@@ -1917,7 +1924,7 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
 /** Weather, time and place. Child of a wk_device, parent of views. */
 typedef struct wk_context wk_context;
 
-/** How the host's world lies on the planet. */
+/** How the host's world is placed on the planet. */
 typedef uint32_t wk_world_kind;
 
 /** A plane: up is the same everywhere, altitude is the up coordinate plus the origin's. */
@@ -1925,12 +1932,12 @@ typedef uint32_t wk_world_kind;
 /** East-north-up at the origin's place, the curved planet below. */
 #define WK_WORLD_TANGENT 1
 /**
- * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
- * simulated ground (WK_GROUND_SIMULATED).
+ * Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
+ * that dries a simulated ground (WK_GROUND_SIMULATED).
  */
 #define WK_WORLD_ECEF 2
 
-/** Which of the host's axes point where, in flat and tangent worlds. */
+/** Directions of the host's axes in flat and tangent worlds. */
 typedef uint32_t wk_axes;
 
 /** x east, y north, z up. */
@@ -1938,7 +1945,7 @@ typedef uint32_t wk_axes;
 /** x east, y up, z south. */
 #define WK_AXES_Y_UP 1
 
-/** How exposure is chosen: one value for all channels of a simulator, never measured per view. */
+/** Source of the exposure: one value for all channels of a simulator, never measured from a view. */
 typedef uint32_t wk_exposure_mode;
 
 /** From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20]. */
@@ -1947,10 +1954,10 @@ typedef uint32_t wk_exposure_mode;
 #define WK_EXPOSURE_EV100 1
 /** exposure_value is display units per cd/m^2, (0, 1e6]. */
 #define WK_EXPOSURE_FACTOR 2
-/** In a wk_frame: as the context says; exposure_value is not used. */
+/** In a wk_frame: the context's exposure; exposure_value is not used. */
 #define WK_EXPOSURE_OF_CONTEXT 3
 
-/** How exposed luminance becomes display values. */
+/** Curve from exposed luminance to display values. */
 typedef uint32_t wk_tone_curve;
 
 /** Clamp. */
@@ -1960,7 +1967,7 @@ typedef uint32_t wk_tone_curve;
 /** Hable's filmic curve, white at 11.2. */
 #define WK_TONE_FILMIC 2
 
-/** How to make a context. */
+/** Settings for a new context. */
 typedef struct wk_context_desc {
     /** sizeof(wk_context_desc) of your header. */
     uint32_t struct_size;
@@ -1972,19 +1979,22 @@ typedef struct wk_context_desc {
     wk_world_kind world_kind;
     /** Default WK_AXES_Z_UP. */
     wk_axes axes;
-    /** Where the host's (0, 0, 0) lies: degrees north. Range [-90, 90], default 50. */
+    /** Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50. */
     double latitude_deg;
-    /** Degrees east. Range [-360, 360], default 10. */
+    /** Longitude of the host's (0, 0, 0), degrees east. Range [-360, 360], default 10. */
     double longitude_deg;
-    /** Height above mean sea level, m. Range [-1e4, 1e9], default 0. */
+    /** Altitude of the host's (0, 0, 0) above mean sea level, m. Range [-1e4, 1e9], default 0. */
     double altitude_m;
     /** Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0. */
     double grid_bearing_deg;
-    /** Seed of everything that chance decides. Default 0. */
+    /** Seed of everything random. Default 0. */
     uint64_t seed;
     /** A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth. */
     const char *planet_toml;
-    /** Exposure of frames that bring none. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused here. */
+    /**
+     * Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
+     * here.
+     */
     wk_exposure_mode exposure_mode;
     /** Default WK_TONE_EXPONENTIAL. */
     wk_tone_curve tone_curve;
@@ -1996,10 +2006,10 @@ typedef struct wk_context_desc {
      */
     double utc_at_zero_s;
     /**
-     * A directory, UTF-8, for the sky's finished tables, made if it is not there: a later start with the same planet, sky
-     * settings and weather reads them in place of building them. The tables of the first weather that is drawn and those
-     * of wk_context_build_sky are kept, the newest 32 of all programs that name the directory (2 MB each). A file that is
-     * damaged or cannot be written is said through the log callback, and the tables are built. Read during the call.
+     * A directory, UTF-8, for the sky's finished tables; Welkin makes it if needed. A later start with the same
+     * planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
+     * drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
+     * each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
      * Default NULL: no files.
      */
     const char *cache_dir;
@@ -2026,17 +2036,17 @@ typedef struct wk_context_desc {
 }
 
 /**
- * Told how much of a long operation is done, from 0 to 1, never less than before. Anything but 0 as the answer ends the
- * operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind; it may draw with the host's own means, an
- * OpenGL context included.
+ * Receives how much of a long operation is done, from 0 to 1, never less than before. Return 0 to go on; anything else
+ * ends the operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind. It may draw with the host's
+ * own means, an OpenGL context included.
  */
 typedef int32_t (*wk_progress_fn)(void *user, double share);
 
 /**
  * Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
- * `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
+ * `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
  * Thread: exclusive on the device.
- * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+ * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
  */
 WK_API
 wk_status wk_context_create(wk_device *device,
@@ -2044,13 +2054,13 @@ wk_status wk_context_create(wk_device *device,
                             wk_context **out_context);
 
 /**
- * Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
- * frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
- * lies in the context's cache_dir, and writes it there. Without this call the first frame shows a draft of the sky, a few
- * steps of 255 from the whole one, which some hundred frames refine without a visible step; WK_FRAME_NO_HISTORY in a frame
- * builds the whole there and then (docs/first-frames.md).
- * `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
- * no file.
+ * Builds the sky's tables for the context's planet and the weather of its present time completely, so that no frame
+ * has to. Call it at load time, behind a progress bar. It takes tables that another context of the device already
+ * shows or that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a
+ * draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
+ * WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
+ * it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
+ * file.
  * Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
  * while `progress` runs.
  * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
@@ -2079,30 +2089,31 @@ wk_status wk_context_desc_init(wk_context_desc *out,
  * ====================================================================================================
  * How the sky is drawn
  *
- * Four models share the same look-ups. The default holds within 3 % of converged multiple scattering; the others are
- * for comparison and for slow machines. A wk_sky_settings goes into wk_context_desc.next.
+ * Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
+ * scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
+ * wk_context_desc.next.
  * ====================================================================================================
  */
 
-/** The ways to draw one sky. */
+/** Model of the sky. */
 typedef uint32_t wk_sky_model;
 
-/** Light scattered more than once keeps its direction, order by order. */
+/** Light scattered more than once keeps its direction, order by order. The default. */
 #define WK_SKY_DIRECTIONAL 0
 /**
- * Light scattered more than once is the same in all directions (Hillaire 2020): -3 to -6 % near the horizon, +3 % at
- * the zenith; built in a tenth of the time.
+ * Light scattered more than once is the same in all directions (Hillaire 2020); less accurate and quicker to build.
+ * docs/lab charts both.
  */
 #define WK_SKY_ISOTROPIC 1
 /**
- * Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008); 20 to 50 % of the light is
- * missing. How older systems drew.
+ * Light scattered once, from a table over altitude, view angle and sun angle (Elek 2008), as in older systems; light
+ * scattered more often is missing.
  */
 #define WK_SKY_TABLE_3D 2
-/** As the default, but light scattered once is marched in every pixel: what the tables are measured against. */
+/** As the default, but light scattered once is marched in every pixel: a reference for the tables. */
 #define WK_SKY_BRUTE_FORCE 3
 
-/** Numbers of the sky's tables. An extension: put it into wk_context_desc.next. */
+/** Sizes of the sky's tables. An extension: put it into wk_context_desc.next. */
 typedef struct wk_sky_settings {
     /** sizeof(wk_sky_settings) of your header. */
     uint32_t struct_size;
@@ -2110,10 +2121,10 @@ typedef struct wk_sky_settings {
     wk_struct_type struct_type;
     /** The next extension. Default NULL. */
     const void *next;
-    /** Which model draws. Default WK_SKY_DIRECTIONAL. */
+    /** Model of the sky. Default WK_SKY_DIRECTIONAL. */
     wk_sky_model model;
     /**
-     * Orders of scattering that are carried one by one; the rest is a geometric series. Range [3, 16], default 5.
+     * Orders of scattering computed one by one; a geometric series stands for the rest. Range [3, 16], default 5.
      */
     uint32_t orders;
     /** Sun angles of the planet's tables. Range [16, 128], default 64. */
@@ -2131,11 +2142,11 @@ typedef struct wk_sky_settings {
     /** Cells of a march per pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
     uint32_t march_cells;
     /**
-     * Wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean the planet's
-     * own three. More of them give colours where three err: at a low sun 9 wavelengths halve the error, 15 leave about
-     * 1 % (of the luminance) in place of 10 %. Every table is then built so many times over: with 15, five times the time
-     * for a change of air and of the tables that follow a moving sun; pixels cost the same. WK_SKY_DIRECTIONAL and
-     * WK_SKY_ISOTROPIC only.
+     * Wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean the
+     * planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over the
+     * luminance is 6 % with 3, 2.4 % with 9, and 15 are within 1 % of 40. The time to build tables grows in
+     * proportion, for a change of air as for a moving sun: five times with 15. Pixels cost the same.
+     * WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
      */
     uint32_t wavelengths;
 } wk_sky_settings;
@@ -2169,16 +2180,17 @@ wk_status wk_sky_settings_init(wk_sky_settings *out,
  * ====================================================================================================
  * Weather over time
  *
- * Simulation time is the host's: seconds in double precision, moved forward by wk_context_update. Weather is a timeline
- * of changes, each with its absolute start and duration; between them it stays. A change that begins while another is
- * under way is laid over it, so neither the weather nor its rate of change jumps. What the host says twice in the same
- * order gives the same weather on every machine.
+ * The host owns simulation time: seconds in double precision, moved forward by wk_context_update. Weather is a
+ * timeline of changes, each with an absolute start and a duration; between changes it stays. A change that begins
+ * during another one is laid over it, so neither the weather nor its rate of change jumps. The same calls in the same
+ * order give the same weather on every machine.
  *
- * Sun and moon follow from place and universal time, which is tied to simulation time, or are put where the host says.
+ * Sun and moon follow from place and universal time, which is tied to simulation time, or stand where the host puts
+ * them.
  * ====================================================================================================
  */
 
-/** A direction to a light, given by the host in place of the almanac. */
+/** A direction to the sun or moon, given by the host in place of the almanac. */
 typedef struct wk_given_direction {
     /** sizeof(wk_given_direction) of your header. */
     uint32_t struct_size;
@@ -2202,11 +2214,11 @@ typedef struct wk_given_direction {
 }
 
 /**
- * Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
- * have a wk_weather_overrides in its chain. Copied during the call.
+ * Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0
+ * changes at once). `weather` may have a wk_weather_overrides in its chain. Copied during the call.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
- * before a change that was given earlier. The weather stays as it was then.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER if the change begins before the last update
+ * or before a change that was given earlier. After an error the weather stays as it was.
  */
 WK_API
 wk_status wk_context_set_weather(wk_context *context,
@@ -2216,15 +2228,14 @@ wk_status wk_context_set_weather(wk_context *context,
 
 /**
  * Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
- * the views record.
- * Weather and light are functions of time and follow at once. A simulated ground (WK_GROUND_SIMULATED) is stepped, one step for
- * every 10 s: in one call for 50 ms at most, but one step at least. Where that is not enough, after a leap of hours, the call
- * answers WK_PENDING: call it again with the same time, in a loop or once a frame, until it answers WK_OK. Until then water on
- * the ground is drawn and answered as of wk_context_get_state_time, what is set acts only after the steps that remain, and a time
- * later than the one under way is taken when these are done. So the state is the same however many calls it takes.
- * A leap of more than a day begins the ground anew a day before its end, as the weather reports the ground then.
- * Thread: exclusive.
- * Answers WK_PENDING, which is no error, if steps remain.
+ * the views record. Weather and light are functions of time and follow at once. A simulated ground
+ * (WK_GROUND_SIMULATED) takes one step for every 10 s. One call steps for at most 50 ms, and at least once. If steps
+ * remain, as after a leap of hours, the call answers WK_PENDING: call it again with the same time, in a loop or once a
+ * frame, until it answers WK_OK. Until then water on the ground is drawn and answered as of wk_context_get_state_time,
+ * settings take effect only after the remaining steps, and a later time is taken up when these are done. So the state
+ * is the same however many calls it takes. A leap of more than a day starts the ground a day before its end, as wet as
+ * the weather reports it then.
+ * Thread: exclusive. Answers WK_PENDING, which is no error, while steps remain.
  * Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
  */
 WK_API
@@ -2232,17 +2243,15 @@ wk_status wk_context_update(wk_context *context,
                             double time_s);
 
 /**
- * Simulation time of all that has state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING; how far
- * the state lags behind is the difference. It never goes back, but for wk_context_load.
+ * Simulation time of the state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING. The
+ * difference is how far the state lags behind. It never goes back, except by wk_context_load.
  * Thread: concurrent.
  */
-WK_API
-wk_status wk_context_get_state_time(const wk_context *context,
-                                    double *out_state_time_s);
+WK_API wk_status wk_context_get_state_time(const wk_context *context, double *out_state_time_s);
 
 /**
- * Ties universal time to simulation time: it is `utc_s` (Unix time, seconds without leap seconds) at simulation time
- * `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at 0.
+ * Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
+ * simulation time `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at simulation time 0.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
@@ -2262,47 +2271,45 @@ wk_status wk_utc_from_calendar(int32_t year,
                                double *out_utc_s);
 
 /**
- * Puts the sun where the host says; NULL returns it to the almanac.
+ * Puts the sun into a given direction; NULL returns it to the almanac.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_sun(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Puts the moon where the host says (its phase follows from the sun's place); NULL returns it to the almanac.
+ * Puts the moon into a given direction (its phase follows from the sun's place); NULL returns it to the almanac.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Sets the exposure of frames that bring none; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
+ * Sets the exposure of frames that have none of their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused
+ * here.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
 
 /**
- * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine: weather, time,
- * clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain with its water, and of which
- * world, place, planet, seed, tone curve and ground model it is. Not in it: how it is drawn (sky settings, views, plans), and the
- * images of wk_context_set_occluder_maps, which may be other ones on each channel.
- * `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
- * or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
+ * weather, time, clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain
+ * with its water, and the world, place, planet, seed, tone curve and ground model that it belongs to. Not included:
+ * how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
+ * may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
+ * and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
-WK_API
-wk_status wk_context_save(const wk_context *context,
-                          void *buffer,
-                          size_t capacity,
-                          size_t *out_size);
+WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t capacity, size_t *out_size);
 
 /**
- * Loads a state that wk_context_save wrote, in place of all that it holds, on a context that was created alike: with the same
- * world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for WK_WORLD_ECEF), seed,
- * planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
+ * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
+ * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
+ * WK_WORLD_ECEF), seed, planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
  * Thread: exclusive.
- * Errors: WK_ERROR_PARSE for bytes that are no such state, cut short, changed by as little as a byte, or of another format, which
- * the message names (this version reads format 2; format 1, which did not say of which place it was, must be saved anew);
- * WK_ERROR_INVALID_ARGUMENT naming all that was created otherwise. The context stays as it was then.
+ * Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
+ * format, which the message names (this version reads format 2; save states of format 1 again, because they did not
+ * say what place they were of); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
+ * stays as it was.
  */
 WK_API
 wk_status wk_context_load(wk_context *context,
@@ -2310,13 +2317,12 @@ wk_status wk_context_load(wk_context *context,
                           size_t size);
 
 /**
- * A number that is equal on two channels whose contexts show the same world from now on: a hash of what wk_context_save writes.
+ * Gets a hash of what wk_context_save writes. It is equal on two channels whose contexts show the same world from now
+ * on.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
  */
-WK_API
-wk_status wk_context_state_hash(const wk_context *context,
-                                uint64_t *out_hash);
+WK_API wk_status wk_context_state_hash(const wk_context *context, uint64_t *out_hash);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GIVEN_DIRECTION_INIT`. `struct_size` is `sizeof(wk_given_direction)`
@@ -2330,12 +2336,12 @@ wk_status wk_given_direction_init(wk_given_direction *out,
  * ====================================================================================================
  * Fog laws of older simulators
  *
- * Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, the laws of older
- * systems can be drawn in its place: linear, exponential, exponential squared, on range or plane distance.
+ * Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can draw the
+ * laws of older systems instead: linear, exponential, exponential squared, on range or plane distance.
  * ====================================================================================================
  */
 
-/** The curve: V is what is left of an object's colour at a distance d, 1 clear, 0 all fog. */
+/** Curve of the fog: V is the share of an object's colour that is left at distance d, 1 clear, 0 all fog. */
 typedef uint32_t wk_fog_curve;
 
 /** No fog at all, whatever the weather. */
@@ -2347,12 +2353,12 @@ typedef uint32_t wk_fog_curve;
 /** V = exp(-(density d)^2). */
 #define WK_FOG_CURVE_EXPONENTIAL_SQUARED 3
 
-/** What is taken as distance. */
+/** Measure of distance. */
 typedef uint32_t wk_fog_distance;
 
-/** From the camera's centre: turning on the spot changes nothing. */
+/** From the camera's centre: turning the camera changes nothing. */
 #define WK_FOG_DISTANCE_RANGE 0
-/** From the camera's plane, as the oldest systems have it. */
+/** From the camera's plane, as in the oldest systems. */
 #define WK_FOG_DISTANCE_PLANE 1
 
 /** Which optional fields of a wk_fog_law are set. */
@@ -2377,20 +2383,20 @@ typedef struct wk_fog_law {
     wk_fog_law_has_flags has;
     /** Must be 0. */
     uint32_t reserved0;
-    /** Linear: where fog begins, m. Range [0, 1e9], default 0. */
+    /** Linear: distance where fog begins, m. Range [0, 1e9], default 0. */
     double start_m;
-    /** Linear: where nothing is left, m. Above start_m, at most 1e9; default 1000. */
+    /** Linear: distance where all is fog, m. Above start_m, at most 1e9; default 1000. */
     double end_m;
-    /** Exponential and squared: 1/m. Range [0, 10], default 0.003. */
+    /** Exponential and squared: density, 1/m. Range [0, 10], default 0.003. */
     double density_per_m;
     /**
-     * Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else what deep fog under the
-     * present light would show.
+     * Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else that of deep fog under
+     * the present light.
      */
     double color[3];
     /**
-     * Sky pixels fade fully at the horizon and not at all this high above it, rad. Range [0, pi], default 0.2: 0 leaves
-     * the sky as it is, pi covers all of it.
+     * Elevation above the horizon up to which sky pixels fade, rad: fully at the horizon, not at all here. Range [0,
+     * pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
      */
     double sky_band;
 } wk_fog_law;
@@ -2412,14 +2418,14 @@ typedef struct wk_fog_law {
 }
 
 /**
- * Draws a fog law in place of the weather's fog; NULL returns to the weather's.
+ * Draws a fog law in place of the weather's fog; NULL returns to the weather's fog.
  * Thread: exclusive.
  */
 WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *fog_law);
 
 /**
- * Distance beyond which a fog law leaves less than 1/255 of an object's colour, m: a host need not draw what is farther.
- * Measured as the law measures; infinite if it never comes to that.
+ * Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
+ * farther away. It uses the law's measure of distance, and is infinite if the law never reaches that.
  * Thread: any.
  */
 WK_API
@@ -2427,8 +2433,8 @@ wk_status wk_fog_law_cull_distance(const wk_fog_law *fog_law,
                                    double *out_distance_m);
 
 /**
- * Distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than 1/255 of an
- * object's contrast, m: about 1.85 times the visibility.
+ * Gets the distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than
+ * 1/255 of an object's contrast, m: about 1.85 times the visibility.
  * Thread: any.
  */
 WK_API wk_status wk_visibility_cull_distance(double visibility_m, double *out_distance_m);
@@ -2443,12 +2449,12 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * ====================================================================================================
  * Queries: conditions
  *
- * What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
- * come: closed form, no device is asked. Heights are above the station unless they say otherwise. Every number is continuous in
- * time while the weather changes, and of a layer that comes or goes the geometry too.
+ * The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
+ * answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
+ * is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
  *
- * A position, here and in every other function, is a place if it lies within 1e12 m of the world's origin and at an altitude in
- * [-1e4, 1e9] m above the sea. At other positions nothing is answered.
+ * Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
+ * [-1e4, 1e9] m above the sea. Other positions are refused.
  * ====================================================================================================
  */
 
@@ -2464,7 +2470,7 @@ typedef struct wk_conditions {
     double extinction_per_m;
     /** Meteorological optical range at station height, m. */
     double visibility_m;
-    /** Air at 2 m, degrees Celsius. */
+    /** Air temperature at 2 m, degrees Celsius. */
     double temperature_c;
     /** Fraction. */
     double relative_humidity;
@@ -2476,21 +2482,21 @@ typedef struct wk_conditions {
     double station_altitude_m;
     /** Air density at sea level over that at 15 C and 1013.25 hPa. */
     double rayleigh_density_ratio;
-    /** Height over which air thins out by 1/e, m. */
+    /** Scale height of the air: density falls by 1/e over it, m. */
     double rayleigh_scale_height_m;
-    /** Of air, at 550 nm and station height, 1/m. */
+    /** Extinction by air, at 550 nm and station height, 1/m. */
     double rayleigh_extinction_per_m;
-    /** Of particles, at 550 nm and station height, 1/m. */
+    /** Extinction by particles, at 550 nm and station height, 1/m. */
     double aerosol_extinction_per_m;
-    /** Extinction goes with (wavelength / 550 nm)^-exponent. */
+    /** Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent. */
     double aerosol_angstrom_exponent;
     /** At 550 nm. */
     double aerosol_single_scattering_albedo;
     /** Mean cosine of the phase function. */
     double aerosol_asymmetry;
-    /** Height over which particles thin out by 1/e, m. */
+    /** Scale height of the particles: density falls by 1/e over it, m. */
     double aerosol_scale_height_m;
-    /** Inside the layer at the ground, at 550 nm, 1/m; 0 where there is none. */
+    /** Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none. */
     double fog_extinction_per_m;
     /** Base of the layer, m. */
     double fog_base_m;
@@ -2498,10 +2504,10 @@ typedef struct wk_conditions {
     double fog_top_m;
     /** Depth of its soft upper edge, m. */
     double fog_softness_m;
-    /** Part of the ground that it covers, fraction. */
+    /** Fraction of the ground that the layer covers. */
     double fog_coverage;
     /**
-     * Part of the sky hidden by all layers together, fraction. During a change never less and never more than at both its ends.
+     * Fraction of the sky hidden by all layers together. During a change it stays between the values at both ends.
      */
     double cloud_cover;
     /** Rain, mm/h. */
@@ -2514,13 +2520,13 @@ typedef struct wk_conditions {
     double ice_pellets_mm_h;
     /** Hail, mm/h of melted water. */
     double hail_mm_h;
-    /** Part of rain and drizzle that freezes where it lands, fraction. */
+    /** Fraction of rain and drizzle that freezes where it lands. */
     double freezing;
     /** How convective it is: 0 steady, 1 showers. */
     double showers;
     /** Whether there is thunder: 0 to 1. */
     double thunder;
-    /** By all that falls, at 550 nm, 1/m. */
+    /** Extinction by all precipitation, at 550 nm, 1/m. */
     double precipitation_extinction_per_m;
     /** Velocity at 10 m towards the east, m/s. */
     double wind_east_m_s;
@@ -2542,17 +2548,17 @@ typedef struct wk_conditions {
     double swell_height_m;
     /** Its peak period, s. */
     double swell_period_s;
-    /** Its direction of travel, unit vector's east. */
+    /** Its direction of travel: east component of the unit vector. */
     double swell_east;
-    /** Its direction of travel, unit vector's north. */
+    /** Its direction of travel: north component of the unit vector. */
     double swell_north;
     /** Water, degrees Celsius. */
     double sea_temperature_c;
     /** Of the ground: 0 dry, 0.3 damp, 1 under a closed film. */
     double wetness;
-    /** Part of the ground under standing water, fraction. */
+    /** Fraction of the ground under standing water. */
     double puddles;
-    /** Part of the ground under ice or frost, fraction. */
+    /** Fraction of the ground under ice or frost. */
     double ice;
     /** Lying snow, m. */
     double snow_depth_m;
@@ -2617,7 +2623,7 @@ typedef struct wk_conditions {
 
 /** A horizontally mixed layer of cloud; plain values of a list. */
 typedef struct wk_cloud_slab {
-    /** Part of the sky covered, fraction. */
+    /** Fraction of the sky covered. */
     double cover;
     /** Base, m. */
     double base_m;
@@ -2631,17 +2637,16 @@ typedef struct wk_cloud_slab {
     double asymmetry;
     /** Shape: 0 a sheet, 0.5 fair-weather heaps, 1 cumulonimbus. */
     double convection;
-    /** Part of the water that is ice, fraction. */
+    /** Fraction of the water that is ice. */
     double ice_fraction;
 } wk_cloud_slab;
 
 /**
- * The conditions over a place of the host's world at a simulation time, past or to come. Every field is at the
- * station's height or says at which; the position chooses the weather, of which this version has one for all the world:
- * it must be a place, and every place answers alike.
+ * Gets the conditions at a position and a past or future simulation time. Every field is at the station's height
+ * unless it says otherwise. In this version the weather is the same everywhere, so `position` only has to be valid.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place, and for a time before what the timeline still
- * knows: the end of the last change that was over at the last update.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
+ * the end of the last change that was over at the last update.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -2650,9 +2655,9 @@ wk_status wk_context_get_conditions(const wk_context *context,
                                     wk_conditions *out_conditions);
 
 /**
- * The cloud layers at a place and time, low ones first; place and time as in wk_context_get_conditions. `*out_count` gets their number, at most 16, also where
- * `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
- * sizeof(wk_cloud_slab) of your header.
+ * Gets the cloud layers at a position and time, low ones first; position and time as in wk_context_get_conditions.
+ * `*out_count` gets their number, at most 16, even if `capacity` is too small (then nothing else is written and the
+ * call fails) or 0 (then it succeeds). `slab_size` is sizeof(wk_cloud_slab) of your header.
  * Thread: concurrent.
  */
 WK_API
@@ -2674,14 +2679,14 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  * ====================================================================================================
  * Queries: light and visibility
  *
- * At any place of the host's world, now or (the functions that end in _at) at any simulation time that the timeline still
- * knows, past or to come: closed form, no device is asked. A sun or moon put somewhere by the host stands there at all
- * times. Only wk_context_get_ambient looks into the sky's tables and answers for now alone. Directions are unit vectors (east, north, up) at the
- * place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
- * (0.2126, 0.7152, 0.0722) is the photometric value.
+ * These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
+ * simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
+ * the host has placed stands there at all times. Only wk_context_get_ambient reads the sky's tables, and it answers
+ * for the present alone. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
+ * cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
+ * value.
  *
- * Lists go in and out as (pointer, count, size of an element in your header); everything is checked before anything is
- * written.
+ * Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
  * ====================================================================================================
  */
 
@@ -2693,11 +2698,11 @@ typedef struct wk_celestial {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Towards it, without refraction: what scattering sees. */
+    /** Direction towards it, without refraction, as scattering uses it. */
     double direction[3];
-    /** Towards it as it appears, lifted by refraction. */
+    /** Direction towards it as it appears, lifted by refraction. */
     double apparent[3];
-    /** In the disc's plane, towards the middle of the lit limb (moon). */
+    /** Direction in the disc's plane towards the middle of the lit limb (moon). */
     double bright_limb[3];
     /** Illuminance above the air on a surface facing it, lux a channel. */
     double illuminance_lux[3];
@@ -2709,7 +2714,7 @@ typedef struct wk_celestial {
     double apparent_elevation_deg;
     /** Angular radius, rad. */
     double angular_radius;
-    /** Lit part of the face, fraction. */
+    /** Lit fraction of the face. */
     double lit;
     /** Vertical over horizontal diameter of the disc. */
     double flattening;
@@ -2752,9 +2757,9 @@ typedef struct wk_ground_light {
 
 /** Two points of the host's world, m; plain values of a list. */
 typedef struct wk_segment {
-    /** Where the eye is. */
+    /** Position of the eye. */
     double from_m[3];
-    /** Where the object is, at least a millimetre away. */
+    /** Position of the object, at least a millimetre away. */
     double to_m[3];
 } wk_segment;
 
@@ -2763,8 +2768,8 @@ typedef struct wk_between {
     /** Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file). */
     double transmittance[3];
     /**
-     * Meteorological optical range along the way, m: where 550 nm light would fall to 5 % if all the way were like this
-     * part of it. Infinite where nothing stops light.
+     * Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
+     * air were everywhere as on this segment. Infinite if nothing stops light.
      */
     double visibility_m;
 } wk_between;
@@ -2794,7 +2799,7 @@ typedef struct wk_ambient {
 }
 
 /**
- * The sun over a place of the host's world, now.
+ * Gets the sun over a place of the host's world, now.
  * Thread: concurrent.
  */
 WK_API
@@ -2803,7 +2808,7 @@ wk_status wk_context_get_sun(const wk_context *context,
                              wk_celestial *out_sun);
 
 /**
- * The sun over a place of the host's world at a simulation time.
+ * Gets the sun over a place of the host's world at a simulation time.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -2814,7 +2819,7 @@ wk_status wk_context_get_sun_at(const wk_context *context,
                                 wk_celestial *out_sun);
 
 /**
- * The moon over a place of the host's world, now.
+ * Gets the moon over a place of the host's world, now.
  * Thread: concurrent.
  */
 WK_API
@@ -2823,7 +2828,7 @@ wk_status wk_context_get_moon(const wk_context *context,
                               wk_celestial *out_moon);
 
 /**
- * The moon over a place of the host's world at a simulation time.
+ * Gets the moon over a place of the host's world at a simulation time.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -2834,8 +2839,8 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size` and
- * `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size`
+ * and `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
  * Thread: concurrent.
  */
 WK_API
@@ -2861,8 +2866,9 @@ wk_status wk_context_get_light_at(const wk_context *context,
                                   uint32_t light_size);
 
 /**
- * Transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them: air, haze, fog and what
- * falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
+ * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog and
+ * precipitation count, the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
+ * your header.
  * Thread: concurrent.
  */
 WK_API
@@ -2888,8 +2894,8 @@ wk_status wk_context_get_between_at(const wk_context *context,
                                     uint32_t between_size);
 
 /**
- * The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,
- * and waits for the GPU once after every change of the air.
+ * Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
+ * done so yet, and waits for the GPU once after every change of the air.
  * Thread: as wk_view_record.
  */
 WK_API
@@ -2913,9 +2919,9 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * ====================================================================================================
  * Queries: wind and rain
  *
- * How the air moves and how far it has come, what falls through it, and what lands on a surface, at any place and any
- * simulation time that the timeline still knows: closed form, no device is asked. Vectors are (east, north, up) at the
- * place. What is said of a surface is without shelter: it knows no roofs.
+ * How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
+ * simulation time that the timeline still knows. The answers are in closed form and need no device. Vectors are (east,
+ * north, up) at the place. Only wk_context_get_rain_on_at knows shelters.
  * ====================================================================================================
  */
 
@@ -2927,13 +2933,13 @@ typedef struct wk_wind {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Where the air goes at this moment, gusts included, m/s. */
+    /** Velocity of the air at this moment, gusts included, m/s. */
     double velocity_m_s[3];
-    /** The mean about which gusts go, m/s. */
+    /** Mean velocity, without gusts, m/s. */
     double mean_m_s[3];
     /**
-     * How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m; the same at every place. What
-     * goes with the air is moved by its differences, never by velocity times time: it is continuous whatever the weather
+     * Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move what
+     * the air carries by differences of this, never by velocity times time: it is continuous whatever the weather
      * does, and the same to the last bit on every channel.
      */
     double displacement_m[3];
@@ -2952,7 +2958,7 @@ typedef struct wk_wind {
     /* gust_deviation_m_s */ 0.0 \
 }
 
-/** What falls at a place and time: rain and drizzle, hail and ice pellets; all 0 where none does. */
+/** Precipitation at a place and time: rain and drizzle, hail and ice pellets; all 0 if nothing falls. */
 typedef struct wk_rainfall {
     /** sizeof(wk_rainfall) of your header. */
     uint32_t struct_size;
@@ -2960,11 +2966,11 @@ typedef struct wk_rainfall {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** On level ground, mm/h. */
+    /** Rate of rain and drizzle on level ground, mm/h. */
     double rate_mm_h;
     /**
-     * Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; their number
-     * such that they make the rate).
+     * Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; scaled
+     * so that they give the rate).
      */
     double number_per_m3;
     /** Water in the air, g/m^3. */
@@ -2973,14 +2979,14 @@ typedef struct wk_rainfall {
     double extinction_per_m;
     /** Mean diameter of the drops in the air, mm. */
     double mean_diameter_mm;
-    /** Diameter below which half of the water in the air is, mm. */
+    /** Median volume diameter, mm: half of the water in the air is in smaller drops. */
     double median_volume_diameter_mm;
     /** Drops that land on level ground, 1/(m^2 s). */
     double drops_per_m2_s;
     /**
-     * Velocity of the drop that divides the water that falls into halves, m/s: one half comes steeper, the other flatter. Its
-     * direction is the one along which to take a picture of what keeps rain off. It falls at Gunn and Kinzer's (1949) speed
-     * and goes with the wind at 10 m.
+     * Velocity of the median drop of the falling water, m/s: half of the water falls steeper, the other half flatter.
+     * Draw occluder maps along its direction. It falls at Gunn and Kinzer's (1949) speed and moves with the wind at 10
+     * m.
      */
     double fall_velocity_m_s[3];
     /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
@@ -3017,31 +3023,32 @@ typedef struct wk_rainfall {
     /* stones_per_m2_s */ 0.0 \
 }
 
-/** A surface that rain lands on, or an opening that it comes through; plain values of a list. */
+/** A surface that rain lands on, or an opening that it falls through; plain values of a list. */
 typedef struct wk_rain_surface {
-    /** Where, in the host's world. */
+    /** Position in the host's world, m. */
     double position_m[3];
-    /** The way its wet side faces, (east, north, up) of the place; of any length but 0. */
+    /** Normal of its wet side, (east, north, up) of the place; of any length but 0. */
     double normal[3];
-    /** How it moves, m/s (east, north, up). Range [-1000, 1000] each. */
+    /** Its velocity, m/s (east, north, up). Range [-1000, 1000] each. */
     double velocity_m_s[3];
-    /** Its size, m^2. Range [0, 1e6]. */
+    /** Its area, m^2. Range [0, 1e6]. */
     double area_m2;
 } wk_rain_surface;
 
-/** What lands on a surface; plain values of a list. */
+/** Rain on a surface; plain values of a list. */
 typedef struct wk_rain_on {
-    /** Water, mm/h: litres a square metre and hour. */
+    /** Water, mm/h, which is litres for each square metre and hour. */
     double rate_mm_h;
-    /** Drops of 0.1 to 6 mm on all of it, 1/s. */
+    /** Drops of 0.1 to 6 mm on the whole surface, 1/s. */
     double drops_per_s;
 } wk_rain_on;
 
 /**
- * The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
- * roughness up to 100 m and stays as it is there above, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
- * from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
- * plus the height above its own ground. At and below the roughness length nothing blows.
+ * Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
+ * the ground's roughness up to 100 m and stays constant above. Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
+ * and are the same all over the world. Heights count from the station's altitude, and reported wind holds 10 m above
+ * it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
+ * roughness length there is no wind.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3052,8 +3059,8 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * What falls at a place of the host's world and a simulation time. Above the clouds that it falls from there is none: above
- * their bases, on the mean over what covers the sky.
+ * Gets what falls at a place of the host's world and a simulation time. Above the clouds nothing falls: above their
+ * bases, averaged over what covers the sky.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3064,10 +3071,11 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
                                      wk_rainfall *out_rainfall);
 
 /**
- * What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
- * the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
- * the ground. What boxes (wk_context_set_shelters) keep off a point 5 cm before the surface does not land; maps are not asked. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
- * surface, and nothing is written.
+ * Gets what lands on surfaces at a simulation time, at most wk_caps.max_batch of them. Every size of drop comes along
+ * its own slant, in the wind at 10 m with its gusts and in the wind that the surface makes by moving. A windscreen at
+ * 25 m/s meets far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm
+ * before the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+ * sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; the field of a surface by name and range.
  */
@@ -3096,20 +3104,21 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
  * ====================================================================================================
  * Frames and targets
  *
- * A wk_frame says what the host has drawn and from where: the camera, what the numbers in its depth and colour mean,
- * and the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
+ * A wk_frame describes what the host has drawn: the camera, the meaning of the numbers in its depth and colour, and
+ * the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
  *
- * The camera's position is taken from position_m in double precision; the translation of `view` is ignored. Any
- * projection serves: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+ * position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
+ * works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
  *
- * Depth is read as the projection gives it, z / w mapped to the depth buffer's 0 to 1; with WK_DEPTH_LOGARITHMIC the
- * host's shaders have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+ * Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
+ * the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
  *
- * `target` leads to the images, in the struct of the device's kind: wk_own_target, wk_opengl_target, wk_vulkan_target.
+ * `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target,
+ * wk_vulkan_target.
  * ====================================================================================================
  */
 
-/** How depth grows with distance. */
+/** Relation of depth to distance. */
 typedef uint32_t wk_depth_kind;
 
 /** As the projection matrix says: perspective (finite or infinite far) or orthographic. */
@@ -3117,25 +3126,26 @@ typedef uint32_t wk_depth_kind;
 /** ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders. */
 #define WK_DEPTH_LOGARITHMIC 1
 
-/** What clip-space z runs over. */
+/** Range of clip-space z. */
 typedef uint32_t wk_clip_space;
 
 /** 0 to 1: Vulkan, Direct3D, Metal, OpenGL with GL_ZERO_TO_ONE. */
 #define WK_CLIP_ZERO_TO_ONE 0
-/** -1 to 1: OpenGL as it comes. */
+/** -1 to 1: OpenGL's default. */
 #define WK_CLIP_MINUS_ONE_TO_ONE 1
 
 /** Flags of a frame. */
 typedef uint32_t wk_frame_flags;
 
 /**
- * The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
- * built in this frame, as with WK_FRAME_NO_HISTORY.
+ * The camera jumped: nothing of earlier frames may show. If the sky's tables do not fit the weather yet, this frame
+ * builds them, as with WK_FRAME_NO_HISTORY.
  */
 #define WK_FRAME_CUT 1
 /**
- * Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
- * are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
+ * Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
+ * yet, this frame builds them, which takes as long as many frames: use it for stills and comparisons, not for every
+ * frame of a changing weather.
  */
 #define WK_FRAME_NO_HISTORY 2
 /** Depth is reversed: 1 is near, 0 is far. */
@@ -3146,27 +3156,27 @@ typedef uint32_t wk_frame_flags;
  */
 #define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
 /**
- * Measure what each effect costs: wk_report.ms, wk_view_get_costs. Stages are drawn one by one and each is waited for, so
- * such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
+ * Measure what each effect costs: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
+ * so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
  * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
  */
 #define WK_FRAME_MEASURE 16
 /**
- * The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
- * those of the host's world.
+ * The target's normals are in the camera's axes (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal),
+ * not in those of the host's world.
  */
 #define WK_FRAME_NORMALS_IN_EYE_SPACE 32
 
-/** What the numbers in the host's colour mean. */
+/** Meaning of the numbers in the host's colour. */
 typedef uint32_t wk_color_space;
 
 /**
  * Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
  */
 #define WK_COLOR_SCENE_LINEAR 0
-/** Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
+/** Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
 #define WK_COLOR_DISPLAY_LINEAR 1
-/** Tone-mapped already and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes. */
+/** Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes. */
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /** One frame of one view. */
@@ -3179,9 +3189,9 @@ typedef struct wk_frame {
     const void *next;
     /** The host's frame number: the same in all calls of a frame and on all channels of a simulator. Default 0. */
     uint64_t frame_id;
-    /** The camera in the host's world, m. Default 0, 0, 0. */
+    /** Position of the camera in the host's world, m. Default 0, 0, 0. */
     double position_m[3];
-    /** World to eye: only its rotation is used. Default identity. */
+    /** World to eye; only its rotation counts. Default identity. */
     double view[16];
     /** Eye to clip, invertible. Default identity. */
     double projection[16];
@@ -3208,11 +3218,13 @@ typedef struct wk_frame {
     /** See wk_exposure_mode. Default 0. */
     double exposure_value;
     /**
-     * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
+     * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
+     * PREPARE alone.
      */
     const void *target;
     /**
-     * Velocity of the camera in the host's world, m/s, at most 2000 in all: streaks of rain lean against it. Default 0, 0, 0.
+     * Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
+     * 0, 0, 0.
      */
     double velocity_m_s[3];
 } wk_frame;
@@ -3241,12 +3253,12 @@ typedef struct wk_frame {
 }
 
 /**
- * Light for the host's own shading of a frame, in the numbers of its colour_space: a surface of colour c whose normal is n
+ * Light for the host's own shading of a frame, in the numbers of its color_space. A surface of colour c with normal n
  * shows c * (ambient + direct * max(dot(n, direction), 0)).
  *
- * Scene-linear: exact for matt surfaces. Display spaces: the tone curve at the frame's exposure is in it, so that one pair of
- * lights cannot be right for every surface; it is for a grey card of 18 %, in shade and facing the sun. For
- * WK_COLOR_DISPLAY_LINEAR c is linear and the host (or its sRGB framebuffer) encodes what comes out; for
+ * Scene-linear: exact for matt surfaces. Display spaces: the light includes the tone curve at the frame's exposure, so
+ * one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, in shade and facing the
+ * sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer) encodes the result. With
  * WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
  */
 typedef struct wk_frame_light {
@@ -3262,9 +3274,7 @@ typedef struct wk_frame_light {
     double direct[3];
     /** Light of sky, clouds and fog on level ground. */
     double ambient[3];
-    /**
-     * Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
-     */
+    /** Light from the ground on a surface that faces down, for hosts with one ambient light above and one below. */
     double ambient_below[3];
     /** Display units per cd/m^2 with which Welkin draws the frame. */
     double exposure;
@@ -3290,23 +3300,26 @@ typedef struct wk_own_target {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** What is drawn into. Default NULL. */
+    /** The image to draw into. Default NULL. */
     const wk_texture *color;
-    /** Or, where `color` is NULL, the image in hand of a surface. Default NULL. */
+    /** If `color` is NULL: the surface whose acquired image is drawn into. Default NULL. */
     const wk_surface *surface;
     /** The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel. */
     const wk_texture *depth;
-    /** Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL. */
+    /**
+     * A mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
+     * `color`. Default NULL.
+     */
     const wk_texture *mask;
     /**
-     * What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
-     * it. R8_UNORM or the like, as large as `color`. Default NULL.
+     * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+     * default. R8_UNORM or the like, as large as `color`. Default NULL.
      */
     const wk_texture *surface_classes;
     /**
-     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
-     * float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
-     * Default NULL.
+     * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
+     * formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
+     * or depth. As large as `color`. Default NULL.
      */
     const wk_texture *normals;
 } wk_own_target;
@@ -3325,10 +3338,10 @@ typedef struct wk_own_target {
 }
 
 /**
- * Says how the host should light its own objects in a frame, before it draws them: of `frame` the camera's position, the
- * colour_space with cd_m2_per_unit, and the exposure count; its target is not looked at.
+ * Gets the light with which the host should light its own objects in a frame; call it before you draw them. Of `frame`
+ * the camera's position, the color_space with cd_m2_per_unit, and the exposure count; its target is ignored.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT by the field's name.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
  */
 WK_API
 wk_status wk_context_get_frame_light(const wk_context *context,
@@ -3359,8 +3372,8 @@ wk_status wk_frame_light_init(wk_frame_light *out,
  * ====================================================================================================
  * Views
  *
- * A wk_view is one camera or projector channel with what it keeps between frames. A host draws opaque things, then
- * glass and lamps, then the cab, then the HUD; wk_view_record puts Welkin's stages between them:
+ * A wk_view is one camera or projector channel, with the data that it keeps between frames. A host draws opaque
+ * things, then glass and lamps, then the cab, then the HUD. wk_view_record draws Welkin's stages between them:
  *
  *   PREPARE     tables and simulation textures; needs no target
  *   BACKGROUND  the sky behind everything; before or after the opaque things
@@ -3370,16 +3383,16 @@ wk_status wk_frame_light_init(wk_frame_light *out,
  *   LENS        water on the windscreen
  *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
  *
- * The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
- * in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
- * work is submitted to the device's queue, not finished.
+ * The calls of one frame share frame_id and record stages in this order, each at most once. WK_STAGE_ALL does
+ * everything in one call and lets neighbouring stages share one pass. Stages with nothing to draw cost nothing. When
+ * the call returns, the work is submitted to the device's queue but not finished.
  * ====================================================================================================
  */
 
 /** One camera or projector channel. Child of a wk_context. */
 typedef struct wk_view wk_view;
 
-/** How to make a view. */
+/** Settings for a new view. */
 typedef struct wk_view_desc {
     /** sizeof(wk_view_desc) of your header. */
     uint32_t struct_size;
@@ -3396,25 +3409,25 @@ typedef struct wk_view_desc {
     /* next */ NULL \
 }
 
-/** Which stages a call records. */
+/** Stages that a call records. */
 typedef uint32_t wk_stage_flags;
 
 /** Tables and simulation textures; needs no target. */
 #define WK_STAGE_PREPARE 1
-/** Sky behind everything: pixels at the far depth, or all of them where there is no depth. */
+/** Sky behind everything: pixels at the far depth, or all pixels without depth. */
 #define WK_STAGE_BACKGROUND 2
-/** What weather does to surfaces; after the host's opaque objects. */
+/** Water on surfaces; after the host's opaque objects. */
 #define WK_STAGE_SURFACE 4
-/** Fog and aerial perspective on all that the host drew. */
+/** Fog and aerial perspective on everything that the host has drawn. */
 #define WK_STAGE_MEDIUM 8
 /** What falls and flies. */
 #define WK_STAGE_PARTICLES 16
 /** Water on the windscreen. */
 #define WK_STAGE_LENS 32
 /**
- * Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
- * values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
- * that: TONE does nothing then, alone or among other stages.
+ * Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
+ * display-linear values, other formats get sRGB-encoded ones. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB
+ * the host has done all that, and TONE does nothing, alone or with other stages.
  */
 #define WK_STAGE_TONE 64
 /** Everything in one call. */
@@ -3425,7 +3438,7 @@ typedef uint32_t wk_report_flags;
 
 /** wk_report.ms. */
 #define WK_REPORT_HAS_MS 1
-/** wk_report.predicted_ms: the view has a budget, its picture was gauged and a time reported. */
+/** wk_report.predicted_ms: the view has a budget, its picture was gauged and a time was reported. */
 #define WK_REPORT_HAS_PREDICTED_MS 2
 /** wk_report.reported_ms: wk_view_report_time was called since the frame. */
 #define WK_REPORT_HAS_REPORTED_MS 4
@@ -3434,7 +3447,7 @@ typedef uint32_t wk_report_flags;
 /** wk_report.checked_error_bound and checked_error: it was gauged again since. */
 #define WK_REPORT_HAS_CHECKED_ERROR 16
 
-/** What the last frame of a view took and showed. */
+/** Costs and contents of a view's last frame. */
 typedef struct wk_report {
     /** sizeof(wk_report) of your header. */
     uint32_t struct_size;
@@ -3459,34 +3472,38 @@ typedef struct wk_report {
     /** 0. */
     uint32_t reserved0;
     /**
-     * What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
+     * Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
+     * (WK_FRAME_MEASURE).
      */
     double ms;
-    /** What the plan expected the weather to take in this frame, ms, by the times reported before it. */
+    /** Predicted time of the weather in this frame, ms, from the times reported before it. */
     double predicted_ms;
-    /** What the host said that it took, ms. */
+    /** Time that the host reported for it, ms. */
     double reported_ms;
     /**
-     * Estimated error of what this frame left out, parts that still fade not counted: 95th percentile over the gauged pixels.
+     * Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
+     * pixels.
      */
     double predicted_error;
     /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
     double predicted_error_bound;
-    /** Of the newest gauge's picture: the bound that had been predicted for what it left out .. */
+    /** For the newest gauge's picture: the bound predicted for what it left out ... */
     double checked_error_bound;
-    /** .. and the error that was found. */
+    /** ... and the error that was found. */
     double checked_error;
-    /** Drops and stones round the camera, of which those in the picture were drawn. */
+    /** Drops and stones around the camera; those in the picture were drawn. */
     uint32_t drops;
     /** 0. */
     uint32_t reserved1;
-    /** Drops that each drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
+    /** Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
     double drop_weight;
-    /** Splashes of the smallest drops that a second and m^2 of level ground had no room for. */
+    /** Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops. */
     double splashes_left_out_per_m2_s;
-    /** Likewise the smallest stones that did not hop. */
+    /** Stones, 1/(m^2 s), that did not bounce for lack of room: the smallest ones. */
     double stones_left_out_per_m2_s;
-    /** The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn. */
+    /**
+     * The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
+     */
     double contrast_gain;
 } wk_report;
 
@@ -3517,7 +3534,7 @@ typedef struct wk_report {
     /* contrast_gain */ 0.0 \
 }
 
-/** What a frame spends time on. */
+/** Effect whose cost is measured. */
 typedef uint32_t wk_effect;
 
 /** Tables over the planet: built when the air changes. */
@@ -3530,11 +3547,11 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_MEDIUM 3
 /** Exposure, tone curve, encoding. */
 #define WK_EFFECT_TONE 4
-/** Stages in one draw that the target's format does not let be drawn one by one. */
+/** Stages in one draw, where the target's format does not allow separate draws. */
 #define WK_EFFECT_COMPOSITION 5
 /** Textures for the host's own transparent shaders. */
 #define WK_EFFECT_VEIL 6
-/** Taking over the host's context and images, and giving them back. */
+/** Taking the host's context and images, and giving them back. */
 #define WK_EFFECT_HAND_OVER 7
 /** Rain. */
 #define WK_EFFECT_PARTICLES 8
@@ -3543,17 +3560,15 @@ typedef uint32_t wk_effect;
 /** Water on the windscreen: its steps (after the sky's tables) and the lens. */
 #define WK_EFFECT_WINDSCREEN 10
 
-/** What one effect of a frame cost; plain values of a list. */
+/** Cost of one effect in a frame; plain values of a list. */
 typedef struct wk_effect_cost {
     /** Which effect. */
     wk_effect effect;
     /** 0. */
     uint32_t reserved0;
-    /** Its name for people, English; lives as long as the library. */
+    /** Its name in English; lives as long as the library. */
     const char *name;
-    /**
-     * Milliseconds: wall time round a submission that is waited for, the CPU's part included. 0 if it did not run.
-     */
+    /** Wall time around a submission that is waited for, the CPU's part included, ms. 0 if it did not run. */
     double ms;
 } wk_effect_cost;
 
@@ -3571,25 +3586,28 @@ WK_API wk_status wk_view_create(wk_context *context, const wk_view_desc *desc, w
 WK_API wk_status wk_view_destroy(wk_view *view);
 
 /**
- * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
- * What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
+ * Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty. Welkin checks
+ * the frame before any work: after an error nothing is drawn, built or changed.
  * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
- * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
- * the field's name; WK_ERROR_DEVICE_LOST.
+ * Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT
+ * naming the field; WK_ERROR_DEVICE_LOST.
  */
-WK_API wk_status wk_view_record(wk_view *view, const wk_frame *frame, wk_stage_flags stages);
+WK_API
+wk_status wk_view_record(wk_view *view,
+                         const wk_frame *frame,
+                         wk_stage_flags stages);
 
 /**
- * Says what the view's last frame took and showed.
+ * Gets costs and contents of the view's last frame.
  * Thread: exclusive on the view.
  */
 WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
 
 /**
- * Says what each effect of the view's last frame cost, in the order in which they happen. `*out_count` gets their number,
- * 0 if the frame was not measured (WK_FRAME_MEASURE), also where `capacity` is too small (then nothing else is written
- * and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later versions may
- * know more effects.
+ * Gets the cost of each effect of the view's last frame, in the order in which they happen. `*out_count` gets their
+ * number, 0 if the frame was not measured (WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
+ * written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
+ * versions may know more effects.
  * Thread: exclusive on the view.
  */
 WK_API
@@ -3616,8 +3634,8 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * Textures for the host's transparent things
  *
  * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
- * light that air, fog and rain add on the way to a point, and the share of the light behind that gets through. The mapping
- * from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
+ * the light that air, fog and rain add on the way to a point, and the share of the light behind it that gets through.
+ * The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
  * ====================================================================================================
  */
 
@@ -3637,7 +3655,7 @@ typedef struct wk_frame_textures {
     uint32_t width;
     /** Pixels of both. */
     uint32_t height;
-    /** Multiply `light` by this to have it in units of the host's colour. */
+    /** Multiply `light` by this to get units of the host's colour. */
     double light_scale;
 } wk_frame_textures;
 
@@ -3662,18 +3680,16 @@ typedef uint32_t wk_shading_language;
 #define WK_SHADING_WGSL 1
 
 /**
- * The native textures of the veil. From the first call on, each frame's MEDIUM stage fills them; they stay the same
- * until the view is destroyed and belong to it. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
- * wk_view_record calls with MEDIUM. Ask after each frame for its light_scale.
+ * Gets the native textures of the veil. From the first call on, each frame's MEDIUM stage fills them. They belong to
+ * the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+ * between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
  */
-WK_API
-wk_status wk_view_get_frame_textures(wk_view *view,
-                                     wk_frame_textures *out_textures);
+WK_API wk_status wk_view_get_frame_textures(wk_view *view, wk_frame_textures *out_textures);
 
 /**
- * Gives the text of the sampling functions, NUL-terminated UTF-8 that lives as long as the process.
+ * Gets the text of the sampling functions: NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
  */
 WK_API wk_status wk_get_veil_snippet(wk_shading_language language, const char **out_text);
@@ -3690,23 +3706,23 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * ====================================================================================================
  * What a picture needs, and no more
  *
- * With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
- * composes with everything and without each part of the weather, and reads the differences back some frames later
- * without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
- * Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
- * perceived for the time they save, and come back when there is room to spare.
+ * With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
+ * with everything and without each part of the weather, and reads the differences back some frames later without
+ * waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+ * Under a budget of time, parts also fade out as the reported times demand, starting with those whose loss is
+ * perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
+ * weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
- * Parts have numbers (WK_PART_) and names, and each is drawn at one of its rungs: 0 is all of it, the last is nothing of it or the
- * cheapest that stands for it. Later versions have more parts, at the end; wk_plan.part_count says how many, and
- * wk_view_get_part_plan what they are called.
- * After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+ * A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest that
+ * stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many, wk_view_get_part_plan what
+ * they are called.
  *
  * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
  * percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
  *
- * What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
- * that must also leave out alike pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or one that another view found
- * (wk_view_save_plan, wk_view_load_plan).
+ * Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
+ * Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
+ * that another view found (wk_view_save_plan, wk_view_load_plan).
  * ====================================================================================================
  */
 
@@ -3754,8 +3770,8 @@ typedef struct wk_part_wish {
     /** Of which part. */
     wk_part part;
     /**
-     * Optional: the part is drawn at this rung, whatever the tolerance and the time, so that all channels draw alike. Range: below the
-     * part's wk_part_plan.rung_count. What of a tolerance and a time that does not keep is still said (wk_plan.gave_way).
+     * Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the same.
+     * Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a time is not kept.
      */
     uint32_t rung;
     /** 0. */
@@ -3801,7 +3817,7 @@ typedef struct wk_budget {
     double tolerance;
     /**
      * Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
-     * times from wk_view_report_time only.
+     * only the times of wk_view_report_time.
      */
     double milliseconds;
 } wk_budget;
@@ -3820,7 +3836,7 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0 \
 }
 
-/** What of a budget could not be kept, by the estimates. */
+/** Part of a budget that could not be kept, by the estimates. */
 typedef uint32_t wk_gave_way;
 
 /** Nothing had to give way. */
@@ -3833,7 +3849,7 @@ typedef uint32_t wk_gave_way;
  */
 #define WK_GAVE_WAY_TIME 2
 
-/** What a view's last frame left out. Errors are estimates from the gauged pixels. */
+/** Parts that a view's last frame left out. Errors are estimates from the gauged pixels. */
 typedef struct wk_plan {
     /** sizeof(wk_plan) of your header. */
     uint32_t struct_size;
@@ -3845,7 +3861,7 @@ typedef struct wk_plan {
     uint32_t part_count;
     /** What of the budget could not be kept. */
     wk_gave_way gave_way;
-    /** Error of all that is left out together: 95th percentile over the gauged pixels. */
+    /** Error of everything left out together: 95th percentile over the gauged pixels. */
     double error;
     /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
     double error_bound;
@@ -3853,9 +3869,9 @@ typedef struct wk_plan {
     double worst;
     /** Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge. */
     double work;
-    /** Work of the picture with everything, likewise. */
+    /** Work of the picture with everything, in the same units. */
     double work_of_everything;
-    /** What the picture should take by the times reported so far, ms; 0 before the first. */
+    /** Predicted time of the picture from the times reported so far, ms; 0 before the first. */
     double milliseconds;
 } wk_plan;
 
@@ -3879,7 +3895,7 @@ typedef uint32_t wk_plan_reason;
 
 /** No tolerance was given: everything is drawn. */
 #define WK_PLAN_REASON_EVERYTHING_ASKED 0
-/** This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn. */
+/** This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn. */
 #define WK_PLAN_REASON_NOT_GAUGED 1
 /** The weather has none of it, or the recorded stages do not draw it. */
 #define WK_PLAN_REASON_ABSENT 2
@@ -3948,22 +3964,22 @@ typedef struct wk_part_plan {
 }
 
 /**
- * Sets how wrong the view's pictures may be; NULL asks for everything again. Unchanged after an error.
+ * Sets the tolerance and the time of the view's pictures; NULL draws everything again. Unchanged after an error.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
 
 /**
- * Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
- * call). Under a budget of time the plan follows the median of the last five reports.
+ * Reports the time that the weather took in the last frame, ms, measured as for the budget (your GPU timer, or a call
+ * that you wait for). Under a budget of time the plan uses the median of the last five reports.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
  */
 WK_API wk_status wk_view_report_time(wk_view *view, double milliseconds);
 
 /**
- * Says what the view's last frame left out.
+ * Gets what the view's last frame left out.
  * Thread: exclusive on the view.
  */
 WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
@@ -3980,8 +3996,8 @@ wk_status wk_view_get_part_plan(wk_view *view,
 
 /**
  * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
- * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is
- * written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+ * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
+ * else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
  * jump of camera, sun or weather.
@@ -3997,8 +4013,8 @@ wk_status wk_view_save_plan(wk_view *view,
  * wk_view_set_budget ends it.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
- * WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. The view's plan stays as it
- * was then.
+ * WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error the
+ * view's plan stays as it was.
  */
 WK_API
 wk_status wk_view_load_plan(wk_view *view,
@@ -4033,18 +4049,19 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  * Rain
  *
- * Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, near ones in
- * a place each that follows from seed and time alone, farther ones as streaks on cones that do too, so that all channels of a
- * simulator draw the same rain and any time can be shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
- * picture shows within ten metres.
+ * WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
+ * drops have places of their own, farther ones are streaks on cones. Both follow from seed and time alone, so all
+ * channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops, the host's
+ * depth hides them, sky, ground, sun and lamps light them, and they splash on what the picture shows within ten
+ * metres.
  *
- * What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
- * crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry. Planes cut a box to any
- * convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
+ * Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is gone,
+ * whatever the wind. So it is wet on the windward side of a box, dry on its lee side and dry inside. Planes cut a box
+ * to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
  * ====================================================================================================
  */
 
-/** wk_rain.shutter_s of an eye: it adds up light over about so long by day. Streaks are long and faint. */
+/** wk_rain.shutter_s of an eye, which adds up light over about this time by day. Streaks are long and faint. */
 #define WK_RAIN_SHUTTER_EYE_S 0.05
 
 /** wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default. */
@@ -4053,28 +4070,28 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 /** wk_rain.shutter_s of a camera in good light. Streaks are short. */
 #define WK_RAIN_SHUTTER_CAMERA_500_S 0.002
 
-/** wk_rain.contrast_gain for trainers: rain by day shows on a display of eight bits as it does in a film. */
+/** wk_rain.contrast_gain for trainers: on a display of eight bits rain by day is as visible as in a film. */
 #define WK_RAIN_GAIN_TRAINER 4.0
 
-/** With what a view draws rain; what falls is the same. */
+/** How a view draws rain; what falls is the same. */
 typedef uint32_t wk_rain_model;
 
 /**
- * Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
- * the time does not allow it (WK_PART_RAIN).
+ * Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
+ * or the time does not allow it (WK_PART_RAIN).
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
 #define WK_RAIN_MODEL_VEIL 1
 /**
- * Streaks on four nested cones about the camera, at a cost that depends on the picture's size and not on the rate: the cheapest
- * that moves where there are no compute shaders (wk_caps.tier 0). No splashes.
+ * Streaks on four nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
+ * rain without compute shaders (wk_caps.tier 0). No splashes.
  */
 #define WK_RAIN_MODEL_CONES 2
-/** Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain. */
+/** Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
 /**
- * Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders
+ * Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
  * (wk_caps.tier 1).
  */
 #define WK_RAIN_MODEL_INTEGRATED 4
@@ -4088,22 +4105,22 @@ typedef struct wk_rain {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Time for which a picture is exposed, s: it makes streaks of drops, the longer and the fainter the longer it is
-     * (WK_RAIN_SHUTTER_ constants). Range [1e-4, 0.1], default 1/60.
+     * Exposure time of a picture, s. Longer exposure makes streaks longer and fainter (WK_RAIN_SHUTTER_ constants).
+     * Range [1e-4, 0.1], default 1/60.
      */
     double shutter_s;
     /**
-     * Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
-     * 400 000, and 100 000 on a software driver.
+     * Most drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or 0, the
+     * default: 400 000, and 100 000 on a software driver.
      */
     uint32_t most_drops;
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
     /**
-     * By how much what falls stands out of the picture more than it does in nature. Range [1, 16], or 0, the default: 1, as in
-     * nature. Beyond 1 streaks, stones and splashes hide as much as so many of them one before the other, a departure from
-     * physics for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water
-     * and queries do not depend on it. Set it alike on all channels of a simulator.
+     * Contrast of rain, over that in nature. Range [1, 16], or 0, the default: 1, as in nature. Beyond 1 a streak,
+     * stone or splash hides as much as that many of them one before the other. This departs from physics, for displays
+     * on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do
+     * not depend on it. Set the same value on all channels of a simulator.
      */
     double contrast_gain;
 } wk_rain;
@@ -4119,7 +4136,7 @@ typedef struct wk_rain {
     /* contrast_gain */ 0.0 \
 }
 
-/** A box that rain does not pass, in the host's world. */
+/** A box that keeps rain off, in the host's world. */
 typedef struct wk_shelter {
     /** sizeof(wk_shelter) of your header. */
     uint32_t struct_size;
@@ -4127,9 +4144,9 @@ typedef struct wk_shelter {
     wk_struct_type struct_type;
     /** NULL (the default), or a wk_shelter_shape. */
     const void *next;
-    /** Its middle, m, within 1e12 m of the origin. Default 0, 0, 0. */
+    /** Its centre, m, within 1e12 m of the origin. Default 0, 0, 0. */
     double center_m[3];
-    /** Its three axes one after the other: unit vectors at right angles. Default the world's. */
+    /** Its three axes, one after the other: unit vectors at right angles. Default: the world's axes. */
     double axes[9];
     /** Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
     double half_size_m[3];
@@ -4149,8 +4166,8 @@ typedef struct wk_shelter {
 }
 
 /**
- * Planes that cut a wk_shelter, in whose chain it stands, to another convex shape: what of the box lies beyond any of them
- * keeps nothing off. So a convex shape is the box about it and its faces.
+ * Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
+ * any plane keeps nothing off. Describe a convex shape by the box around it and the planes of its faces.
  */
 typedef struct wk_shelter_shape {
     /** sizeof(wk_shelter_shape) of your header. */
@@ -4159,13 +4176,13 @@ typedef struct wk_shelter_shape {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Planes. Range [0, 16], default 0: the box stays whole. */
+    /** Number of planes. Range [0, 16], default 0: the box stays whole. */
     uint32_t plane_count;
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Four numbers each: a unit vector along the box's axes that points out of the shape, and how far along it from the box's
-     * middle the plane lies, m, within 1e6. They must leave some of the box. Default 0.
+     * Four numbers for each plane: a unit normal in the box's axes that points out of the shape, and the plane's
+     * distance along it from the box's centre, m, within 1e6. The planes must leave some of the box. Default 0.
      */
     double planes[64];
 } wk_shelter_shape;
@@ -4191,8 +4208,8 @@ wk_status wk_view_set_rain(wk_view *view,
                            const wk_rain *rain);
 
 /**
- * Sets what keeps rain off, in place of what did before; a moving box is set anew every frame. count 0 removes all. At most
- * 32. Unchanged after an error.
+ * Sets the boxes that keep rain off, in place of those before; set moving ones again in every frame. count 0 removes
+ * all. At most 32. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -4226,15 +4243,16 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  * ====================================================================================================
  * Rain areas
  *
- * Regions with rain of their own: a shower that passes, a squall line, a dry hole in steady rain. In a region the weather's
- * rain and drizzle give way to the area's, smoothly over the rim inside of its border; where areas overlap, a later one of
- * the list lies over the earlier ones. A camera inside sees the drops of the rate where each of them is; from outside the rain
- * is a shaft with falling curtains, leaning as the drops fall behind their cloud. All queries of rain and visibility and
- * the wetness of the ground that follows the weather of the moment know the areas. They are kept by wk_context_save.
+ * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
+ * weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
+ * later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
+ * From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
+ * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas.
+ * wk_context_save keeps them.
  * ====================================================================================================
  */
 
-/** What falls in a rain area. */
+/** Kind of rain in a rain area. */
 typedef uint32_t wk_area_rain;
 
 /** Steady rain. */
@@ -4244,7 +4262,7 @@ typedef uint32_t wk_area_rain;
 /** Drizzle. */
 #define WK_AREA_RAIN_DRIZZLE 2
 
-/** What moves a rain area. */
+/** Motion of a rain area. */
 typedef uint32_t wk_area_motion;
 
 /** The wind at 10 m with its gusts, by its displacement. */
@@ -4261,8 +4279,8 @@ typedef struct wk_rain_area {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height does not matter. Default
-     * 0, 0, 0.
+     * Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect.
+     * Default 0, 0, 0.
      */
     double center_m[3];
     /**
@@ -4270,8 +4288,9 @@ typedef struct wk_rain_area {
      */
     double semi_axes_m[2];
     /**
-     * Corners of a polygon in place of the ellipse, one after the other either way round, two numbers each: to the right of the
-     * heading and along it from the centre, m, within 1e6. The region must be convex and larger than 1 m^2. Default 0.
+     * Corners of a polygon in place of the ellipse, in either direction around it, two numbers each: distance from the
+     * centre to the right of the heading and along it, m, within 1e6. The region must be convex and larger than 1 m^2.
+     * Default 0.
      */
     double corners_m[16];
     /** Corners of the polygon, [3, 8], or 0, the default, for the ellipse. */
@@ -4288,15 +4307,15 @@ typedef struct wk_rain_area {
     /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
-     * Altitude above the sea (not above the ground) of the cloud base that it falls from, m: above it there is neither the
-     * area's rain nor the weather's. Range [-1000, 20 000], default 1500.
+     * Altitude of the cloud base above the sea (not above the ground), m: above it falls neither the area's rain nor
+     * the weather's. Range [-1000, 20 000], default 1500.
      */
     double top_m;
     /** Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN. */
     double velocity_m_s[2];
     /**
-     * Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
-     * timeline knows, but for 0, from which the wind's way is counted. Default 0.
+     * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND not
+     * before what the timeline still knows, except 0, from which the wind's displacement counts. Default 0.
      */
     double at_s;
     /** Default WK_AREA_MOTION_WITH_WIND. */
@@ -4326,8 +4345,8 @@ typedef struct wk_rain_area {
 }
 
 /**
- * Sets the regions with rain of their own, in place of those before. They go on moving by themselves: set them again only to
- * change them. count 0 removes all. At most 16. Unchanged after an error.
+ * Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
+ * removes all. At most 16. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -4347,22 +4366,24 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * ====================================================================================================
  * Wind that varies in space
  *
- * A host that knows how air flows round its buildings, over its deck or under its rotor gives the velocities on a grid. They
- * blow in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. All else goes with the weather's wind.
+ * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
+ * They act in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. Everything else follows the weather's
+ * wind.
  * ====================================================================================================
  */
 
-/** What the velocities of a grid are. */
+/** Meaning of a grid's velocities. */
 typedef uint32_t wk_wind_grid_kind;
 
-/** The whole wind: it replaces the weather's within the grid. */
+/** The whole wind: replaces the weather's wind inside the grid. */
 #define WK_WIND_GRID_WHOLE 0
-/** What is to be added to the weather's wind. */
+/** A difference: added to the weather's wind. */
 #define WK_WIND_GRID_ADDED 1
 
 /**
- * Velocities of the air at the nodes of a grid that is level and aligned to true north; between the nodes they go linearly
- * along each axis. Outside blows the weather's wind: give the grid room until the flow has become it again.
+ * Velocities of the air at the nodes of a grid that is level and aligned to true north, linear between nodes along
+ * each axis. Outside the grid the weather's wind blows: make the grid large enough for the flow to have become that
+ * wind at its border.
  */
 typedef struct wk_wind_grid {
     /** sizeof(wk_wind_grid) of your header. */
@@ -4375,18 +4396,18 @@ typedef struct wk_wind_grid {
      * The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
      */
     double origin_m[3];
-    /** From node to node east, north and up, m. Range [0.01, 10 000], default 1, 1, 1. */
+    /** Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1. */
     double cell_m[3];
-    /** Nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2. */
+    /** Number of nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2. */
     uint32_t nodes[3];
     /** A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE. */
     wk_wind_grid_kind kind;
     /**
-     * Three numbers a node (east, north, up), m/s, of at most 300 m/s together; the node to the east comes next, after a row
-     * the next row to the north, after a layer the next layer up. Copied by the call.
+     * Three numbers for each node (east, north, up), m/s, of at most 300 m/s together. Nodes run from west to east,
+     * rows from south to north, layers upwards. Copied by the call.
      */
     const float *velocities_m_s;
-    /** Nodes in velocities_m_s: the product of `nodes`. */
+    /** Number of nodes in velocities_m_s: the product of `nodes`. */
     uint32_t velocity_count;
     /** Must be 0. */
     uint32_t reserved0;
@@ -4407,13 +4428,11 @@ typedef struct wk_wind_grid {
 }
 
 /**
- * Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Unchanged after an error.
+ * Sets a wind that varies in space, in place of the one before; NULL removes it. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_context_set_wind_grid(wk_context *context,
-                                   const wk_wind_grid *wind_grid);
+WK_API wk_status wk_context_set_wind_grid(wk_context *context, const wk_wind_grid *wind_grid);
 
 /**
  * Writes the default of every field: the same bytes as `WK_WIND_GRID_INIT`. `struct_size` is `sizeof(wk_wind_grid)`
@@ -4425,15 +4444,16 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * ====================================================================================================
  * Maps of what keeps rain off
  *
- * What is more than some boxes is told as pictures: up to four depth images that the host takes of its world, standing or
- * moving things, from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
+ * For everything that boxes cannot describe, give up to four depth images of your world, of standing or moving things,
+ * from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
  *
- * A map knows nothing of what its surfaces hide. Take it along wk_rainfall.fall_velocity_m_s: then nothing that matters is
- * hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) further maps
- * along slower drops, the same wind with falls of 3.4 and 2.1 m/s, close what is left. What it shows is exact to two texels.
+ * A map knows nothing of what its surfaces hide. Draw it along wk_rainfall.fall_velocity_m_s: then it hides nothing
+ * that matters for half of the rain, and little for the rest. Where things stand below others (a pier below a deck),
+ * add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. What a map shows is exact to two
+ * texels.
  *
- * What a map shows is taken over during the call: what the host has submitted to the queue before counts as drawn (an OpenGL host has
- * issued it), and afterwards the image is the host's again.
+ * Welkin copies a map during the call. Work that you submitted to the queue before (or, with OpenGL, issued) is
+ * included. Afterwards the image is yours again.
  * ====================================================================================================
  */
 
@@ -4445,7 +4465,7 @@ typedef uint32_t wk_occluder_map_flags;
 /** The first row of the image lies at clip y = -1: always so in OpenGL (there it need not be set). */
 #define WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y 2
 
-/** A depth image of what keeps rain off: one sample, from 8 to 4096 texels along either side. */
+/** A depth image of things that keep rain off: one sample, from 8 to 4096 texels along either side. */
 typedef struct wk_occluder_map {
     /** sizeof(wk_occluder_map) of your header. */
     uint32_t struct_size;
@@ -4454,7 +4474,8 @@ typedef struct wk_occluder_map {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * From the host's world to clip space, invertible: parallel rays or perspective, column-major. Default identity.
+     * Matrix from the host's world to clip space, invertible: parallel rays or perspective, column-major. Default
+     * identity.
      */
     double clip_from_world[16];
     /** Default 0. */
@@ -4464,8 +4485,8 @@ typedef struct wk_occluder_map {
     /** Simulation time of what it shows, s. Default 0. */
     double time_s;
     /**
-     * Velocity of what it shows, m/s, at most 2000 in all: a truck's own map need not be taken anew each frame. Default 0, 0,
-     * 0.
+     * Velocity of what it shows, m/s, at most 2000 in all, so that a truck's own map need not be drawn in every frame.
+     * Default 0, 0, 0.
      */
     double velocity_m_s[3];
     /** The image on an own device. Default NULL. */
@@ -4478,7 +4499,7 @@ typedef struct wk_occluder_map {
     uint32_t width;
     /** Texels of an OpenGL host's image; must be its own. Default 0. */
     uint32_t height;
-    /** Of an OpenGL host's image: raise it when an object is made anew under an old name. Default 0. */
+    /** For an OpenGL host's image: raise it when you make an object again under an old name. Default 0. */
     uint64_t generation;
 } wk_occluder_map;
 
@@ -4501,8 +4522,8 @@ typedef struct wk_occluder_map {
 }
 
 /**
- * Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
- * after an error. They are no part of a saved state: each channel may have its own.
+ * Sets the maps of things that keep rain off, in place of those before. count 0 removes them. At most 4. After an
+ * error the maps before stay. They are not part of a saved state, because each channel may have its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
  * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
@@ -4525,8 +4546,8 @@ wk_status wk_occluder_map_init(wk_occluder_map *out,
  * ====================================================================================================
  * Lamps
  *
- * Head lights, work lights, search lights: what the host tells of its lamps lights what Welkin draws in their beams, today
- * drops and splashes of rain. The host goes on lighting its own world itself.
+ * Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, hail and
+ * splashes) and shine in wet ground. The host lights its own world itself.
  * ====================================================================================================
  */
 
@@ -4538,18 +4559,18 @@ typedef struct wk_light {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Where it is in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0. */
+    /** Position in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0. */
     double position_m[3];
-    /** Where it shines to in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
+    /** Direction that it shines in, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0. */
     double direction[3];
     /**
-     * Luminous intensity in its middle, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000 each. A low beam has
-     * some 10 000, a work light 2000 to 5000.
+     * Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
+     * each. A low beam has about 10 000, a work light 2000 to 5000.
      */
     double intensity_cd[3];
-    /** Angle from the middle up to which the beam is full, degrees. Range [0, 180], default 10. */
+    /** Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10. */
     double inner_deg;
-    /** Angle from the middle at which it has ended, degrees. Range [inner_deg, 180], default 30; 180: no end. */
+    /** Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; 180: no end. */
     double outer_deg;
 } wk_light;
 
@@ -4566,8 +4587,8 @@ typedef struct wk_light {
 }
 
 /**
- * Sets the host's lamps, in place of those before; a moving one is set anew every frame. count 0 removes all. At most 64.
- * Unchanged after an error.
+ * Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At most
+ * 64. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -4587,20 +4608,21 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
  * ====================================================================================================
  * Water on the windscreen
  *
- * A view may look through a window: rain lands on it at the rate and speed at which the window meets it, beads merge, run
- * down by gravity or up by the air, are wiped, and bend the picture behind them; mist on the inside blurs it. The stage
- * LENS draws that over all that was drawn so far, within the window only; pixels of the mask stay. In a call with TONE the
- * glass lies before the tone curve where the target is a float one, else after it.
+ * A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
+ * run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
+ * picture. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
+ * a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
  *
- * The water is part of the view and moves on a grid of 1/60 s from simulation time 0, with the frame that records
- * WK_STAGE_PREPARE or first comes after: the frame rate changes nothing, views of one seed and history agree bit for bit.
- * At the first frame, after WK_FRAME_CUT, and where a frame comes more than half a second after the one before, it takes the
- * declared state of that moment, a pure function of (seed, time, rain); with WK_FRAME_NO_HISTORY it always has that state.
- * Without a windscreen, or where it is dry and clear, LENS costs nothing.
+ * The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
+ * WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
+ * agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second after the
+ * one before, the water takes the declared state of that moment: a function of seed, time and rain. With
+ * WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
+ * nothing.
  * ====================================================================================================
  */
 
-/** Where the glass is. */
+/** Shape of the glass. */
 typedef uint32_t wk_windscreen_pane;
 
 /** A flat window of four corners. */
@@ -4621,9 +4643,9 @@ typedef struct wk_wiper_arm {
      * Default 0, 0.
      */
     double pivot_m[2];
-    /** From the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
+    /** Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
     double length_m;
-    /** From the pivot to the blade's inner end, m. Range [0, length_m), default 0.1. */
+    /** Distance from the pivot to the blade's inner end, m. Range [0, length_m), default 0.1. */
     double inner_radius_m;
     /**
      * Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
@@ -4633,7 +4655,7 @@ typedef struct wk_wiper_arm {
     /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
     double far_deg;
     /**
-     * Where the blade is in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+     * Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
      */
     double position;
     /** Width of the rubber on the glass, m. Range [0, 0.1], default 0.006. */
@@ -4676,8 +4698,8 @@ typedef struct wk_windscreen {
     /** Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6. */
     double distance_m;
     /**
-     * Velocity of the glass against the air (the vehicle's less the wind's) in the camera's axes, m/s: decides how many
-     * drops it meets. Range [-400, 400] each, default 0, 0, 0.
+     * Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s: decides
+     * how many drops it meets. Range [-400, 400] each, default 0, 0, 0.
      */
     double velocity_m_s[3];
     /**
@@ -4686,9 +4708,9 @@ typedef struct wk_windscreen {
      */
     double airflow_m_s;
     /**
-     * Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. What wk_context_set_shelters
-     * and wk_context_set_occluder_maps tell of keeps rain off each part of the pane by itself, but for the vehicle's own box: one
-     * that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+     * Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as
+     * shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
+     * not count: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
      */
     double exposed;
     /** Mist on the inside. Range [0, 1], default 0. */
@@ -4732,7 +4754,7 @@ typedef struct wk_windscreen_report {
     const void *next;
     /** Drops that hit the pane in a second (rain from 0.1 mm of diameter). */
     double drops_per_s;
-    /** Water that hits it, mm/h of its area. */
+    /** Water that hits it, mm/h on its area. */
     double water_mm_h;
     /** Share of the pane under water, 0 to 1. */
     double covered;
@@ -4755,19 +4777,18 @@ typedef struct wk_windscreen_report {
 }
 
 /**
- * Sets the window that the view looks through; NULL takes it away. A host that drives, wipes or turns its head sets it anew
- * before each frame: the water stays on the glass as long as its size does. Unchanged after an error.
- * The stage LENS then answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+ * Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
+ * before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
+ * a window the stage LENS answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_view_set_windscreen(wk_view *view,
-                                 const wk_windscreen *windscreen);
+WK_API wk_status wk_view_set_windscreen(wk_view *view, const wk_windscreen *windscreen);
 
 /**
- * Says how much water is on the view's windscreen as of its last frame, and what it meets. Reads the state back and waits
- * for the GPU: for a figure now and then, not for every frame. All 0 without a windscreen or before its first frame.
+ * Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
+ * and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before its first
+ * frame.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_DEVICE_LOST.
  */
@@ -4799,28 +4820,29 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * ====================================================================================================
  * Wet ground
  *
- * The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky,
- * paved ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
- * colour is taken for the ground's own. What is not marked by a wk_surface_class is natural ground, which hardly mirrors: mark
- * roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky, and of objects only that what keeps rain off is dark.
+ * The stage SURFACE reads the host's depth and draws water onto its picture. Wet ground is darker and mirrors the sky,
+ * paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in the display
+ * spaces Welkin takes the shown colour for the ground's own. Ground without a wk_surface_class is natural and hardly
+ * mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky; of objects only shelters and occluder
+ * maps appear in them, as dark shapes.
  *
- * How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
- * in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
+ * Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
+ * wk_context_desc.next it is a state that fills, drains and dries over time, and wk_context_save keeps it.
  * ====================================================================================================
  */
 
 /**
- * What the ground is made of, in a wk_ground_grid, in an image of the target (the byte of red), and where neither says it, for
- * all of a context. The image counts first, then the grid, then the context's default.
+ * What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid, then the
+ * context's default.
  */
 typedef uint32_t wk_surface_class;
 
 /**
- * In a grid or an image: as the context's default. As that default: natural ground, soil where the host's colour is not green and
- * vegetation where it is.
+ * In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
+ * the host's colour is green and soil elsewhere.
  */
 #define WK_SURFACE_CLASS_UNSPECIFIED 0
-/** Earth, sand, gravel: darkens, and mirrors hardly. */
+/** Earth, sand, gravel: darkens and hardly mirrors. */
 #define WK_SURFACE_CLASS_SOIL 1
 /** Bare rock: darkens, and shines in parts. */
 #define WK_SURFACE_CLASS_ROCK 2
@@ -4841,11 +4863,11 @@ typedef struct wk_ground {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Depth of water there, mm: the film, and what stands in the hollow if there is one. For tyres. */
+    /** Depth of water there, mm, as tyres meet it: the film, plus standing water in a hollow. */
     double water_mm;
-    /** Film on level ground outside of hollows, mm; on the host's terrain that of the place. */
+    /** Film on level ground outside hollows, mm; on the host's terrain the film at the place. */
     double film_mm;
-    /** Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film. */
+    /** Wetness of all the ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film. */
     double wetness;
     /** Share of all the ground, or of the host's terrain, under standing water. */
     double puddles;
@@ -4874,21 +4896,23 @@ typedef struct wk_ground {
     /* reserved1 */ 0 \
 }
 
-/** Where the wetness of the ground comes from. */
+/** Source of the ground's wetness. */
 typedef uint32_t wk_ground_model;
 
 /**
- * The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
+ * The weather of the moment: as reported, or as wet as the rain of the moment keeps it. When the rain ends, the ground
+ * is dry.
  */
 #define WK_GROUND_REPORTED 0
 /**
- * A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
- * (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
- * ground then. See wk_context_update for leaps that take more than one call.
+ * A state that begins at simulation time 0 as wet as the weather has the ground then. Rain fills pores, film and
+ * hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. A leap of more than a day is
+ * simulated over its last day, which begins as wet as the weather has the ground then. See wk_context_update for leaps
+ * that take more than one call.
  */
 #define WK_GROUND_SIMULATED 1
 
-/** What has state, and how. An extension: put it into wk_context_desc.next. */
+/** Simulated state of a context. An extension: put it into wk_context_desc.next. */
 typedef struct wk_simulation_desc {
     /** sizeof(wk_simulation_desc) of your header. */
     uint32_t struct_size;
@@ -4912,11 +4936,11 @@ typedef struct wk_simulation_desc {
 }
 
 /**
- * Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
- * it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
- * the context's seed.
+ * Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
+ * (wk_context_set_ground_grid) and up to 3 m above it, the answer is that of its cells. Elsewhere it is that of level,
+ * open ground with the hollows that are drawn, a pattern fixed to the world by the context's seed.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
  */
 WK_API
 wk_status wk_context_get_ground(const wk_context *context,
@@ -4924,7 +4948,7 @@ wk_status wk_context_get_ground(const wk_context *context,
                                 wk_ground *out_ground);
 
 /**
- * What the ground is made of where neither the target's image nor the host's terrain says it. Default
+ * Sets the class of ground for which neither the target's image nor the host's terrain has one. Default
  * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
@@ -4949,17 +4973,18 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
  * ====================================================================================================
  * Water on the host's terrain
  *
- * A host that gives the heights of its terrain on a grid gets wetness and puddles cell by cell: rain areas and standing
- * boxes (wk_context_set_shelters) decide what falls where, what runs off fills the terrain's hollows up to where they spill.
- * wk_context_get_ground answers by the place, the stage SURFACE draws it, and wk_context_get_ground_cells hands it over for
- * the host's own materials. With WK_GROUND_SIMULATED it is a state, which wk_context_save keeps together with the heights; else
- * the weather's wetness, spread over the hollows.
+ * Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
+ * standing boxes (wk_context_set_shelters) decide what falls where. Water runs off and fills the terrain's hollows
+ * until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
+ * wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
+ * wk_context_save keeps together with the heights; else it is the weather's wetness, spread over the hollows.
  * ====================================================================================================
  */
 
 /**
- * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square cell about
- * it; between nodes water goes linearly. Outside is the world's ground, into which the picture fades over two cells.
+ * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
+ * cell around it; water is linear between nodes. Outside lies the world's ground; the picture blends into it over two
+ * cells.
  */
 typedef struct wk_ground_grid {
     /** sizeof(wk_ground_grid) of your header. */
@@ -4973,13 +4998,13 @@ typedef struct wk_ground_grid {
      * Default 0, 0, 0.
      */
     double origin_m[3];
-    /** From node to node, m. Range [0.01, 10 000], default 1. Puddles smaller than a few cells are not in it. */
+    /** Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
     double cell_m;
-    /** Nodes east and north. Range 2 to 512, default 2, 2. */
+    /** Number of nodes east and north. Range 2 to 512, default 2, 2. */
     uint32_t nodes[2];
     /**
-     * Heights above the origin, m, within 1e5; the node to the east comes next, after a row the next row to the north. Copied by
-     * the call.
+     * Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
+     * call.
      */
     const float *heights_m;
     /** Numbers in heights_m: the product of `nodes`. */
@@ -4987,8 +5012,8 @@ typedef struct wk_ground_grid {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * What each cell is made of, in the order of the heights: numbers of wk_surface_class, 0 where the context's default holds.
-     * Copied by the call. Default NULL: nothing is said of any cell.
+     * Class of each cell, in the order of the heights: a wk_surface_class, or 0 to use the context's default. Copied
+     * by the call. Default NULL: 0 for all cells.
      */
     const uint8_t *surface_classes;
     /** Numbers in surface_classes: 0 (the default), or height_count. */
@@ -5014,36 +5039,34 @@ typedef struct wk_ground_grid {
 }
 
 /**
- * Water of a cell of the host's terrain; plain values of a list: packed it is the upload of a texture of four floats.
+ * Water of a cell of the host's terrain; plain values of a list. Packed, the list can be uploaded as a texture of four
+ * floats.
  */
 typedef struct wk_ground_cell {
-    /** Water between and on the grains, mm; none under standing water. */
+    /** Film: water between and on the grains, mm; 0 under standing water. */
     float film_mm;
-    /** In the pores, as a share of what they hold. */
+    /** Water in the pores, as a share of what they can hold. */
     float soaked;
     /** Standing water, mm. */
     float standing_mm;
-    /**
-     * Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
-     */
+    /** Share under ice, by the weather of the moment; freezing rain leaves none where standing boxes keep it off. */
     float ice;
 } wk_ground_cell;
 
 /**
- * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
- * keeps its water, whatever it is made of, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
- * error.
+ * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
+ * same grid again keeps its water, even with other classes; another grid begins as wet as level ground is. May take
+ * some tenths of a second for the largest grids. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_context_set_ground_grid(wk_context *context,
-                                     const wk_ground_grid *ground_grid);
+WK_API wk_status wk_context_set_ground_grid(wk_context *context, const wk_ground_grid *ground_grid);
 
 /**
- * Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
- * `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
- * upload anew what has changed, every 10 s of simulation time at most.
+ * Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights; `cell_size` is
+ * sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
+ * once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
+ * nothing has changed.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
  */
@@ -5066,9 +5089,9 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * ====================================================================================================
  * Water on the host's terrain as a texture
  *
- * For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture, uploaded once
- * for them and for the stage SURFACE. One texel a node, the first one south-west, rows to the north, in every graphics interface.
- * How it looks is in the published functions, GLSL and WGSL.
+ * For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture,
+ * uploaded once for the host and for the stage SURFACE. One texel for each node, the first one south-west, rows to the
+ * north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
  * ====================================================================================================
  */
 
@@ -5081,23 +5104,26 @@ typedef struct wk_ground_texture {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm, soaked,
-     * standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm. Where none stands,
-     * standing_mm is negative: how far its hollow's level lies below the ground, mm, or -50 where the hollow is dry; so between
-     * texels a shore is where it crosses 0.
+     * RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm,
+     * soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm.
+     * Where none stands, standing_mm is negative: the depth of its hollow's level below the ground, mm, or -50 where
+     * the hollow is dry. So a shore between texels lies where it crosses 0.
      */
     uint64_t texture;
-    /** Another number whenever `texture` is another object, whatever its name: another grid was set or loaded. */
+    /**
+     * Changes whenever `texture` becomes another object, whatever its name: after another grid was set or loaded.
+     */
     uint64_t generation;
-    /** That of wk_context_get_ground_cells, of what the texture holds. */
+    /** Revision of the texture's contents, as in wk_context_get_ground_cells. */
     uint64_t revision;
     /** Texels: the grid's nodes east and north. */
     uint32_t width;
     /** Texels: the grid's nodes east and north. */
     uint32_t height;
     /**
-     * Two rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v; (0, 0) is the south-western corner of
-     * the first texel. Single precision is enough after the camera's place is taken into the fourth column.
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. (0,
+     * 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
+     * the camera's position.
      */
     double uv_from_world[2][4];
 } wk_ground_texture;
@@ -5116,11 +5142,12 @@ typedef struct wk_ground_texture {
 }
 
 /**
- * The native texture of the terrain's water, up to date: ask after each wk_context_update. What has not changed costs nothing;
- * what has is uploaded, every 10 s of simulation time at most, in this call or in a wk_view_record with SURFACE, in order with the
- * host's work on the device's queue or context. It belongs to the context and stays the same until another grid, or none, is set or
- * loaded: wait for the GPU's work that samples it before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
- * calls, and may be copied from. It has no mipmaps; filter and wrap are the host's own.
+ * Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
+ * if nothing has changed. Changes come at most once every 10 s of simulation time; this call, or a wk_view_record with
+ * SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
+ * context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
+ * before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
+ * has no mipmaps; choose filter and wrap yourself.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
  */
@@ -5129,13 +5156,11 @@ wk_status wk_context_get_ground_texture(wk_context *context,
                                         wk_ground_texture *out_texture);
 
 /**
- * Gives the text of the functions that say how a place of the texture looks: how dark, how much of it mirrors, how rough;
- * NUL-terminated UTF-8 that lives as long as the process.
+ * Gets the text of the functions that compute how a place of the texture looks: how dark, how much of it mirrors, how
+ * rough. NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
  */
-WK_API
-wk_status wk_get_ground_snippet(wk_shading_language language,
-                                const char **out_text);
+WK_API wk_status wk_get_ground_snippet(wk_shading_language language, const char **out_text);
 
 /**
  * Writes the default of every field: the same bytes as `WK_GROUND_TEXTURE_INIT`. `struct_size` is `sizeof(wk_ground_texture)`

@@ -22,7 +22,7 @@
 namespace welkin {
 
 #ifndef WELKIN_NO_EXCEPTIONS
-/* A failed call: what() is the sentence of wk_last_error_message. */
+/* A failed call: what() is the message of wk_last_error_message. */
 class error : public std::runtime_error {
 public:
     explicit error(wk_status status) : std::runtime_error(wk_last_error_message()), status_(status) {}
@@ -33,7 +33,7 @@ private:
 };
 #endif
 
-/* Throws on a failure if exceptions are in use; answers the status. */
+/* Throws on a failure if exceptions are in use; returns the status. */
 inline wk_status check(wk_status status)
 {
 #ifndef WELKIN_NO_EXCEPTIONS
@@ -67,7 +67,7 @@ public:
         raw_ = nullptr;
         return raw;
     }
-    /* Destroys what is owned and owns `raw` instead. */
+    /* Destroys the owned handle and owns `raw` instead. */
     void reset(T *raw = nullptr) noexcept
     {
         if (raw_) (void)Destroy(raw_);
@@ -75,7 +75,7 @@ public:
     }
 
 protected:
-    /* Takes what a wk_x_create made. */
+    /* Takes ownership of a handle that a wk_x_create made. */
     wk_status adopt(wk_status status, T *made)
     {
         if (status >= 0) reset(made);
@@ -142,7 +142,7 @@ public:
         return adopt(status, made);
     }
     wk_status configure(const wk_surface_config &config) { return check(wk_surface_configure(get(), &config)); }
-    /* WK_PENDING and WK_ERROR_SURFACE_OUTDATED are daily life of a window: neither throws. */
+    /* WK_PENDING and WK_ERROR_SURFACE_OUTDATED are normal for a window: neither throws. */
     wk_status acquire() { return unless_outdated(wk_surface_acquire(get())); }
     wk_status present() { return unless_outdated(wk_surface_present(get())); }
 

@@ -20,7 +20,9 @@ pub fn write(directory: &Path) -> Result<()> {
     let rain = read("rain")?;
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
-         Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page.\n\n",
+         Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
+         [Rain](rain.md) and\n\
+         [wet ground](ground.md) have pages of what the tests measure.\n\n",
     );
     if let Some(table) = &sky {
         sky_section(&mut out, table);
@@ -215,15 +217,15 @@ fn fog_section(out: &mut String, t: &Table) {
     );
 }
 
-const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: each drop to 1.9 m, cones beyond. `cones` are streaks on four nested cones, at a \
-    cost that no rate changes, without splashes; `drops-N` are at most N drops without a state to 4 m, each where it is on every \
-    channel; `veil` has no drops. The truth is every drop before the camera up to \
-    14.8 m, one by one in f64; `truth-again` are all drops at other places: nothing can be nearer. No two ways put drops in \
-    the same places, so blocks of 20 x 20 pixels are compared over six moments: their mean and their contrast from pixel to \
-    pixel and from patch to patch of 4 x 4, the worst of the three over the mean and a hundredth of white. `source-N` are \
-    drops that get fewer and larger with distance (replicated: six copies of each), after an older system, timed by as many \
-    quads. Costs of drops are those of lists that compute shaders make; one by one, as without compute shaders, 100 000 cost \
-    84 and 400 000 177.\n\n";
+const RAIN_SAYS: &str = "\n`drops-and-cones` is the default: single drops to 1.9 m, cones beyond. `cones` are streaks on four nested cones; \
+    they cost the same at any rate and have no splashes. `drops-N` are at most N drops without a state to 4 m, each in \
+    its own place on every channel. `veil` has no drops. The truth is every drop before the camera up to 14.8 m, one by \
+    one in f64. `truth-again` is all drops in other places: no way to draw can be nearer to the truth. No two ways put \
+    drops in the same places, so blocks of 20 x 20 pixels are compared over six moments: their mean, and their contrast \
+    from pixel to pixel and from patch to patch of 4 x 4. The error is the worst of the three over the mean plus a \
+    hundredth of white. `source-N` are drops that get fewer and larger with distance (replicated: six copies of each), \
+    as in an older system, timed by as many quads. Drops are listed by compute shaders; `cargo bench -- rain` prints \
+    what they cost without.\n\n";
 
 fn rain_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);

@@ -1,10 +1,11 @@
 //! Rain areas
 //!
-//! Regions with rain of their own: a shower that passes, a squall line, a dry hole in steady rain. In a region the weather's
-//! rain and drizzle give way to the area's, smoothly over the rim inside of its border; where areas overlap, a later one of
-//! the list lies over the earlier ones. A camera inside sees the drops of the rate where each of them is; from outside the rain
-//! is a shaft with falling curtains, leaning as the drops fall behind their cloud. All queries of rain and visibility and
-//! the wetness of the ground that follows the weather of the moment know the areas. They are kept by wk_context_save.
+//! Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
+//! weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
+//! later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
+//! From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
+//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas.
+//! wk_context_save keeps them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -22,7 +23,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_area.rs"));
 
-/// What falls in a rain area.
+/// Kind of rain in a rain area.
 pub type wk_area_rain = u32;
 /// Steady rain.
 pub const WK_AREA_RAIN_STEADY: wk_area_rain = 0;
@@ -31,7 +32,7 @@ pub const WK_AREA_RAIN_SHOWERS: wk_area_rain = 1;
 /// Drizzle.
 pub const WK_AREA_RAIN_DRIZZLE: wk_area_rain = 2;
 
-/// What moves a rain area.
+/// Motion of a rain area.
 pub type wk_area_motion = u32;
 /// The wind at 10 m with its gusts, by its displacement.
 pub const WK_AREA_MOTION_WITH_WIND: wk_area_motion = 0;
@@ -48,13 +49,14 @@ pub struct wk_rain_area {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height does not matter. Default
-    /// 0, 0, 0.
+    /// Its centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect.
+    /// Default 0, 0, 0.
     pub center_m: [f64; 3],
     /// Half the extent of an ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
     pub semi_axes_m: [f64; 2],
-    /// Corners of a polygon in place of the ellipse, one after the other either way round, two numbers each: to the right of the
-    /// heading and along it from the centre, m, within 1e6. The region must be convex and larger than 1 m^2. Default 0.
+    /// Corners of a polygon in place of the ellipse, in either direction around it, two numbers each: distance from the
+    /// centre to the right of the heading and along it, m, within 1e6. The region must be convex and larger than 1 m^2.
+    /// Default 0.
     pub corners_m: [f64; 16],
     /// Corners of the polygon, [3, 8], or 0, the default, for the ellipse.
     pub corner_count: u32,
@@ -67,13 +69,13 @@ pub struct wk_rain_area {
     pub rim_m: f64,
     /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude above the sea (not above the ground) of the cloud base that it falls from, m: above it there is neither the
-    /// area's rain nor the weather's. Range [-1000, 20 000], default 1500.
+    /// Altitude of the cloud base above the sea (not above the ground), m: above it falls neither the area's rain nor
+    /// the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
     /// Own velocity to the east and north, m/s, each within [-200, 200]. Default 0, 0. For WK_AREA_MOTION_OWN.
     pub velocity_m_s: [f64; 2],
-    /// Simulation time at which the centre is there, s. Range [-1e10, 1e10], with WK_AREA_MOTION_WITH_WIND not before what the
-    /// timeline knows, but for 0, from which the wind's way is counted. Default 0.
+    /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10]. With WK_AREA_MOTION_WITH_WIND not
+    /// before what the timeline still knows, except 0, from which the wind's displacement counts. Default 0.
     pub at_s: f64,
     /// Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,
@@ -130,8 +132,8 @@ impl wk_rain_area {
     }
 }
 
-/// Sets the regions with rain of their own, in place of those before. They go on moving by themselves: set them again only to
-/// change them. count 0 removes all. At most 16. Unchanged after an error.
+/// Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
+/// removes all. At most 16. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

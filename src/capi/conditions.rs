@@ -1,11 +1,11 @@
 //! Queries: conditions
 //!
-//! What the weather comes to in physical quantities, at any place and any time that the timeline still knows, past or to
-//! come: closed form, no device is asked. Heights are above the station unless they say otherwise. Every number is continuous in
-//! time while the weather changes, and of a layer that comes or goes the geometry too.
+//! The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
+//! answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
+//! is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
 //!
-//! A position, here and in every other function, is a place if it lies within 1e12 m of the world's origin and at an altitude in
-//! [-1e4, 1e9] m above the sea. At other positions nothing is answered.
+//! Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
+//! [-1e4, 1e9] m above the sea. Other positions are refused.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -39,7 +39,7 @@ pub struct wk_conditions {
     pub extinction_per_m: f64,
     /// Meteorological optical range at station height, m.
     pub visibility_m: f64,
-    /// Air at 2 m, degrees Celsius.
+    /// Air temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,
     /// Fraction.
     pub relative_humidity: f64,
@@ -51,21 +51,21 @@ pub struct wk_conditions {
     pub station_altitude_m: f64,
     /// Air density at sea level over that at 15 C and 1013.25 hPa.
     pub rayleigh_density_ratio: f64,
-    /// Height over which air thins out by 1/e, m.
+    /// Scale height of the air: density falls by 1/e over it, m.
     pub rayleigh_scale_height_m: f64,
-    /// Of air, at 550 nm and station height, 1/m.
+    /// Extinction by air, at 550 nm and station height, 1/m.
     pub rayleigh_extinction_per_m: f64,
-    /// Of particles, at 550 nm and station height, 1/m.
+    /// Extinction by particles, at 550 nm and station height, 1/m.
     pub aerosol_extinction_per_m: f64,
-    /// Extinction goes with (wavelength / 550 nm)^-exponent.
+    /// Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent.
     pub aerosol_angstrom_exponent: f64,
     /// At 550 nm.
     pub aerosol_single_scattering_albedo: f64,
     /// Mean cosine of the phase function.
     pub aerosol_asymmetry: f64,
-    /// Height over which particles thin out by 1/e, m.
+    /// Scale height of the particles: density falls by 1/e over it, m.
     pub aerosol_scale_height_m: f64,
-    /// Inside the layer at the ground, at 550 nm, 1/m; 0 where there is none.
+    /// Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none.
     pub fog_extinction_per_m: f64,
     /// Base of the layer, m.
     pub fog_base_m: f64,
@@ -73,9 +73,9 @@ pub struct wk_conditions {
     pub fog_top_m: f64,
     /// Depth of its soft upper edge, m.
     pub fog_softness_m: f64,
-    /// Part of the ground that it covers, fraction.
+    /// Fraction of the ground that the layer covers.
     pub fog_coverage: f64,
-    /// Part of the sky hidden by all layers together, fraction. During a change never less and never more than at both its ends.
+    /// Fraction of the sky hidden by all layers together. During a change it stays between the values at both ends.
     pub cloud_cover: f64,
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -87,13 +87,13 @@ pub struct wk_conditions {
     pub ice_pellets_mm_h: f64,
     /// Hail, mm/h of melted water.
     pub hail_mm_h: f64,
-    /// Part of rain and drizzle that freezes where it lands, fraction.
+    /// Fraction of rain and drizzle that freezes where it lands.
     pub freezing: f64,
     /// How convective it is: 0 steady, 1 showers.
     pub showers: f64,
     /// Whether there is thunder: 0 to 1.
     pub thunder: f64,
-    /// By all that falls, at 550 nm, 1/m.
+    /// Extinction by all precipitation, at 550 nm, 1/m.
     pub precipitation_extinction_per_m: f64,
     /// Velocity at 10 m towards the east, m/s.
     pub wind_east_m_s: f64,
@@ -115,17 +115,17 @@ pub struct wk_conditions {
     pub swell_height_m: f64,
     /// Its peak period, s.
     pub swell_period_s: f64,
-    /// Its direction of travel, unit vector's east.
+    /// Its direction of travel: east component of the unit vector.
     pub swell_east: f64,
-    /// Its direction of travel, unit vector's north.
+    /// Its direction of travel: north component of the unit vector.
     pub swell_north: f64,
     /// Water, degrees Celsius.
     pub sea_temperature_c: f64,
     /// Of the ground: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
-    /// Part of the ground under standing water, fraction.
+    /// Fraction of the ground under standing water.
     pub puddles: f64,
-    /// Part of the ground under ice or frost, fraction.
+    /// Fraction of the ground under ice or frost.
     pub ice: f64,
     /// Lying snow, m.
     pub snow_depth_m: f64,
@@ -247,7 +247,7 @@ impl wk_conditions {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_slab {
-    /// Part of the sky covered, fraction.
+    /// Fraction of the sky covered.
     pub cover: f64,
     /// Base, m.
     pub base_m: f64,
@@ -261,7 +261,7 @@ pub struct wk_cloud_slab {
     pub asymmetry: f64,
     /// Shape: 0 a sheet, 0.5 fair-weather heaps, 1 cumulonimbus.
     pub convection: f64,
-    /// Part of the water that is ice, fraction.
+    /// Fraction of the water that is ice.
     pub ice_fraction: f64,
 }
 
@@ -304,12 +304,11 @@ pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3
     Ok(position)
 }
 
-/// The conditions over a place of the host's world at a simulation time, past or to come. Every field is at the
-/// station's height or says at which; the position chooses the weather, of which this version has one for all the world:
-/// it must be a place, and every place answers alike.
+/// Gets the conditions at a position and a past or future simulation time. Every field is at the station's height
+/// unless it says otherwise. In this version the weather is the same everywhere, so `position` only has to be valid.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place, and for a time before what the timeline still
-/// knows: the end of the last change that was over at the last update.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
+/// the end of the last change that was over at the last update.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,
@@ -329,9 +328,9 @@ pub unsafe extern "C" fn wk_context_get_conditions(
     })
 }
 
-/// The cloud layers at a place and time, low ones first; place and time as in wk_context_get_conditions. `*out_count` gets their number, at most 16, also where
-/// `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `slab_size` is
-/// sizeof(wk_cloud_slab) of your header.
+/// Gets the cloud layers at a position and time, low ones first; position and time as in wk_context_get_conditions.
+/// `*out_count` gets their number, at most 16, even if `capacity` is too small (then nothing else is written and the
+/// call fails) or 0 (then it succeeds). `slab_size` is sizeof(wk_cloud_slab) of your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_cloud_slabs(

@@ -1,7 +1,7 @@
 //! Contexts
 //!
-//! A wk_context is the weather, the time and the place that all views of a simulator share. It is a function of its
-//! description, its timeline and its time: two contexts that were told the same answer the same, on every machine.
+//! A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
+//! description, its timeline and its time: two contexts with the same input answer the same, on every machine.
 //!
 //! The world. FLAT: the ground is a plane, altitude is the up coordinate. TANGENT: east-north-up at the origin's place,
 //! with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat and tangent worlds
@@ -44,24 +44,24 @@ pub struct wk_context {
     _opaque: [u8; 0],
 }
 
-/// How the host's world lies on the planet.
+/// How the host's world is placed on the planet.
 pub type wk_world_kind = u32;
 /// A plane: up is the same everywhere, altitude is the up coordinate plus the origin's.
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing do not matter, the origin only for the sunlight that dries a
-/// simulated ground (WK_GROUND_SIMULATED).
+/// Earth-centred, Earth-fixed (WGS 84); axes and grid bearing have no effect, and the origin only affects the sunlight
+/// that dries a simulated ground (WK_GROUND_SIMULATED).
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
-/// Which of the host's axes point where, in flat and tangent worlds.
+/// Directions of the host's axes in flat and tangent worlds.
 pub type wk_axes = u32;
 /// x east, y north, z up.
 pub const WK_AXES_Z_UP: wk_axes = 0;
 /// x east, y up, z south.
 pub const WK_AXES_Y_UP: wk_axes = 1;
 
-/// How exposure is chosen: one value for all channels of a simulator, never measured per view.
+/// Source of the exposure: one value for all channels of a simulator, never measured from a view.
 pub type wk_exposure_mode = u32;
 /// From the light that falls on level ground; exposure_value is a compensation in stops, [-20, 20].
 pub const WK_EXPOSURE_AUTO: wk_exposure_mode = 0;
@@ -69,10 +69,10 @@ pub const WK_EXPOSURE_AUTO: wk_exposure_mode = 0;
 pub const WK_EXPOSURE_EV100: wk_exposure_mode = 1;
 /// exposure_value is display units per cd/m^2, (0, 1e6].
 pub const WK_EXPOSURE_FACTOR: wk_exposure_mode = 2;
-/// In a wk_frame: as the context says; exposure_value is not used.
+/// In a wk_frame: the context's exposure; exposure_value is not used.
 pub const WK_EXPOSURE_OF_CONTEXT: wk_exposure_mode = 3;
 
-/// How exposed luminance becomes display values.
+/// Curve from exposed luminance to display values.
 pub type wk_tone_curve = u32;
 /// Clamp.
 pub const WK_TONE_LINEAR: wk_tone_curve = 0;
@@ -81,7 +81,7 @@ pub const WK_TONE_EXPONENTIAL: wk_tone_curve = 1;
 /// Hable's filmic curve, white at 11.2.
 pub const WK_TONE_FILMIC: wk_tone_curve = 2;
 
-/// How to make a context.
+/// Settings for a new context.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_context_desc {
@@ -95,19 +95,20 @@ pub struct wk_context_desc {
     pub world_kind: wk_world_kind,
     /// Default WK_AXES_Z_UP.
     pub axes: wk_axes,
-    /// Where the host's (0, 0, 0) lies: degrees north. Range [-90, 90], default 50.
+    /// Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50.
     pub latitude_deg: f64,
-    /// Degrees east. Range [-360, 360], default 10.
+    /// Longitude of the host's (0, 0, 0), degrees east. Range [-360, 360], default 10.
     pub longitude_deg: f64,
-    /// Height above mean sea level, m. Range [-1e4, 1e9], default 0.
+    /// Altitude of the host's (0, 0, 0) above mean sea level, m. Range [-1e4, 1e9], default 0.
     pub altitude_m: f64,
     /// Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0.
     pub grid_bearing_deg: f64,
-    /// Seed of everything that chance decides. Default 0.
+    /// Seed of everything random. Default 0.
     pub seed: u64,
     /// A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth.
     pub planet_toml: *const c_char,
-    /// Exposure of frames that bring none. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused here.
+    /// Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
+    /// here.
     pub exposure_mode: wk_exposure_mode,
     /// Default WK_TONE_EXPONENTIAL.
     pub tone_curve: wk_tone_curve,
@@ -116,10 +117,10 @@ pub struct wk_context_desc {
     /// Universal time at simulation time 0, seconds since 1970-01-01T00:00:00Z without leap seconds (Unix time).
     /// Range: the years -2000 to 6000. Default 2026-06-21 10:00.
     pub utc_at_zero_s: f64,
-    /// A directory, UTF-8, for the sky's finished tables, made if it is not there: a later start with the same planet, sky
-    /// settings and weather reads them in place of building them. The tables of the first weather that is drawn and those
-    /// of wk_context_build_sky are kept, the newest 32 of all programs that name the directory (2 MB each). A file that is
-    /// damaged or cannot be written is said through the log callback, and the tables are built. Read during the call.
+    /// A directory, UTF-8, for the sky's finished tables; Welkin makes it if needed. A later start with the same
+    /// planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
+    /// drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
+    /// each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
     /// Default NULL: no files.
     pub cache_dir: *const c_char,
 }
@@ -229,9 +230,9 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
-/// `wk_context_destroy`. The weather is a clear standard day at noon until the host says otherwise.
+/// `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
 /// Thread: exclusive on the device.
-/// Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT by name.
+/// Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_create(
     device: *mut wk_device,
@@ -258,18 +259,18 @@ pub unsafe extern "C" fn wk_context_create(
     })
 }
 
-/// Told how much of a long operation is done, from 0 to 1, never less than before. Anything but 0 as the answer ends the
-/// operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind; it may draw with the host's own means, an
-/// OpenGL context included.
+/// Receives how much of a long operation is done, from 0 to 1, never less than before. Return 0 to go on; anything else
+/// ends the operation with WK_ERROR_ABORTED. It must not call Welkin and must not unwind. It may draw with the host's
+/// own means, an OpenGL context included.
 pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: f64) -> i32>;
 
-/// Builds the sky's tables for the context's planet under the weather of its present time, now and whole, so that no
-/// frame has to: at load time, behind a progress bar. Takes what another context of the device shows already, or what
-/// lies in the context's cache_dir, and writes it there. Without this call the first frame shows a draft of the sky, a few
-/// steps of 255 from the whole one, which some hundred frames refine without a visible step; WK_FRAME_NO_HISTORY in a frame
-/// builds the whole there and then (docs/first-frames.md).
-/// `progress` may be NULL; else it is told about sixteen times, at last 1. An aborted build leaves the context as it was, and
-/// no file.
+/// Builds the sky's tables for the context's planet and the weather of its present time completely, so that no frame
+/// has to. Call it at load time, behind a progress bar. It takes tables that another context of the device already
+/// shows or that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a
+/// draft of the sky, within 3 of 255 of the whole one, and 120 frames refine it without a visible step.
+/// WK_FRAME_NO_HISTORY in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else
+/// it is called about sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no
+/// file.
 /// Thread: exclusive on the context. For a device round an OpenGL context as wk_view_record; that is the host's own again
 /// while `progress` runs.
 /// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.

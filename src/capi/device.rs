@@ -1,12 +1,12 @@
 //! Devices
 //!
-//! A wk_device is one native queue or OpenGL context and everything on it that contexts share: pipelines, tables,
-//! caches. It comes from one of four places: made here (below), round the host's OpenGL context, round the host's
-//! Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all of them.
+//! A wk_device is one native queue or OpenGL context, with everything that its contexts share: pipelines, tables,
+//! caches. Make one here (below), from the host's OpenGL context, from the host's Vulkan device, or, in Rust, from the
+//! host's wgpu device. All later calls are the same for all four.
 //!
 //! Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
 //! (driver reset, unplugged) every call answers WK_ERROR_DEVICE_LOST: destroy the views, contexts and the device,
-//! create them anew, and load the state that was saved.
+//! create them again, and load the saved state.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -37,7 +37,7 @@ pub struct wk_device {
 
 /// Native graphics interfaces.
 pub type wk_backend_flags = u32;
-/// Draws nothing and needs no GPU: for tests of the host's own code.
+/// Draws nothing and needs no GPU: for tests of your own code.
 pub const WK_BACKEND_NOOP: wk_backend_flags = 1;
 /// Vulkan.
 pub const WK_BACKEND_VULKAN: wk_backend_flags = 2;
@@ -47,17 +47,17 @@ pub const WK_BACKEND_METAL: wk_backend_flags = 4;
 pub const WK_BACKEND_DX12: wk_backend_flags = 8;
 /// OpenGL or OpenGL ES.
 pub const WK_BACKEND_GL: wk_backend_flags = 16;
-/// Whatever serves, the best first.
+/// Any that works, the best first.
 pub const WK_BACKEND_ANY: wk_backend_flags = 30;
 
-/// Choices for an own device.
+/// Flags of an own device.
 pub type wk_device_flags = u32;
-/// Use no compute shaders even where there are any: draws as on an OpenGL 3.3 machine.
+/// Use no compute shaders, even where the device has them: draws as on an OpenGL 3.3 machine.
 pub const WK_DEVICE_FORCE_TIER0: wk_device_flags = 1;
-/// Take the software driver.
+/// Use the software driver.
 pub const WK_DEVICE_FORCE_SOFTWARE: wk_device_flags = 2;
 
-/// How to make an own device.
+/// Settings for an own device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_device_desc {
@@ -67,7 +67,7 @@ pub struct wk_device_desc {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Which native interfaces may serve. Default WK_BACKEND_ANY.
+    /// Native interfaces that may be used. Default WK_BACKEND_ANY.
     pub backends: wk_backend_flags,
     /// Default 0.
     pub flags: wk_device_flags,
@@ -83,7 +83,7 @@ impl wk_device_desc {
     };
 }
 
-/// What a device can do.
+/// Capabilities of a device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_caps {
@@ -93,12 +93,12 @@ pub struct wk_caps {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The one native interface that serves it.
+    /// The native interface that it uses.
     pub backend: wk_backend_flags,
-    /// 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. What needs tier 1 answers WK_ERROR_UNSUPPORTED
-    /// by name on tier 0.
+    /// 0: no compute (OpenGL 3.3 to 4.2, OpenGL on macOS). 1: compute. Features that need tier 1 answer
+    /// WK_ERROR_UNSUPPORTED by name on tier 0.
     pub tier: u32,
-    /// 1 if the driver computes on the CPU, else 0.
+    /// 1 for a software driver, which draws on the CPU, else 0.
     pub software: u32,
     /// Largest edge of a 2-D texture, pixels.
     pub max_texture_size: u32,
@@ -152,10 +152,10 @@ pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
     handles::insert::<_, DeviceObject>(Arc::new(DeviceObject { cell, adapter_name, driver }), None)
 }
 
-/// Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle that
-/// the caller must give to `wk_device_destroy`; else it is not touched.
+/// Makes an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out` is a new handle,
+/// which you destroy with `wk_device_destroy`; else it stays untouched.
 /// Thread: any.
-/// Errors: WK_ERROR_NO_ADAPTER if no driver serves the request; WK_ERROR_INVALID_ARGUMENT by name.
+/// Errors: WK_ERROR_NO_ADAPTER if no driver fits the request; WK_ERROR_INVALID_ARGUMENT by name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_device: *mut *mut wk_device) -> wk_status {
     guard("wk_device_create", |_| {
@@ -189,8 +189,8 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 }
 
 /// Destroys a device. NULL does nothing.
-/// Thread: for a device round an OpenGL context, one on which that is (or can be made) current: elsewhere, or when the
-/// context is gone already, its objects are given up. For others any.
+/// Thread: for a device on an OpenGL context, one where that context is (or can be made) current; elsewhere, or when
+/// the context is already gone, its objects are abandoned. For other devices any.
 /// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {
@@ -215,7 +215,7 @@ pub unsafe extern "C" fn wk_device_get_status(device: *const wk_device) -> wk_st
     })
 }
 
-/// Says what a device can do. The two texts in the answer live as long as the device.
+/// Gets the capabilities of a device. The two texts in the answer live as long as the device.
 /// Thread: any, at any time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_get_caps(device: *const wk_device, out_caps: *mut wk_caps) -> wk_status {

@@ -1,7 +1,7 @@
 //! Fog laws of older simulators
 //!
-//! Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, the laws of older
-//! systems can be drawn in its place: linear, exponential, exponential squared, on range or plane distance.
+//! Fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can draw the
+//! laws of older systems instead: linear, exponential, exponential squared, on range or plane distance.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -22,7 +22,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_fog_law.rs"));
 
-/// The curve: V is what is left of an object's colour at a distance d, 1 clear, 0 all fog.
+/// Curve of the fog: V is the share of an object's colour that is left at distance d, 1 clear, 0 all fog.
 pub type wk_fog_curve = u32;
 /// No fog at all, whatever the weather.
 pub const WK_FOG_CURVE_CLEAR: wk_fog_curve = 0;
@@ -33,11 +33,11 @@ pub const WK_FOG_CURVE_EXPONENTIAL: wk_fog_curve = 2;
 /// V = exp(-(density d)^2).
 pub const WK_FOG_CURVE_EXPONENTIAL_SQUARED: wk_fog_curve = 3;
 
-/// What is taken as distance.
+/// Measure of distance.
 pub type wk_fog_distance = u32;
-/// From the camera's centre: turning on the spot changes nothing.
+/// From the camera's centre: turning the camera changes nothing.
 pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
-/// From the camera's plane, as the oldest systems have it.
+/// From the camera's plane, as in the oldest systems.
 pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
 
 /// Which optional fields of a wk_fog_law are set.
@@ -63,17 +63,17 @@ pub struct wk_fog_law {
     pub has: wk_fog_law_has_flags,
     /// Must be 0.
     pub reserved0: u32,
-    /// Linear: where fog begins, m. Range [0, 1e9], default 0.
+    /// Linear: distance where fog begins, m. Range [0, 1e9], default 0.
     pub start_m: f64,
-    /// Linear: where nothing is left, m. Above start_m, at most 1e9; default 1000.
+    /// Linear: distance where all is fog, m. Above start_m, at most 1e9; default 1000.
     pub end_m: f64,
-    /// Exponential and squared: 1/m. Range [0, 10], default 0.003.
+    /// Exponential and squared: density, 1/m. Range [0, 10], default 0.003.
     pub density_per_m: f64,
-    /// Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else what deep fog under the
-    /// present light would show.
+    /// Optional: radiance that the picture fades into, cd/m^2 a channel. Range [0, 1e12]; else that of deep fog under
+    /// the present light.
     pub color: [f64; 3],
-    /// Sky pixels fade fully at the horizon and not at all this high above it, rad. Range [0, pi], default 0.2: 0 leaves
-    /// the sky as it is, pi covers all of it.
+    /// Elevation above the horizon up to which sky pixels fade, rad: fully at the horizon, not at all here. Range [0,
+    /// pi], default 0.2. 0 leaves the sky as it is, pi covers all of it.
     pub sky_band: f64,
 }
 
@@ -132,7 +132,7 @@ fn in_law(e: Error) -> Error {
     Error::new(e.status, e.message.replace("fog.colour", "fog_law.color").replace("fog.", "fog_law."))
 }
 
-/// Draws a fog law in place of the weather's fog; NULL returns to the weather's.
+/// Draws a fog law in place of the weather's fog; NULL returns to the weather's fog.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_law: *const wk_fog_law) -> wk_status {
@@ -145,8 +145,8 @@ pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_la
     })
 }
 
-/// Distance beyond which a fog law leaves less than 1/255 of an object's colour, m: a host need not draw what is farther.
-/// Measured as the law measures; infinite if it never comes to that.
+/// Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
+/// farther away. It uses the law's measure of distance, and is infinite if the law never reaches that.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, out_distance_m: *mut f64) -> wk_status {
@@ -163,8 +163,8 @@ pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, ou
     })
 }
 
-/// Distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than 1/255 of an
-/// object's contrast, m: about 1.85 times the visibility.
+/// Gets the distance beyond which air of a visibility (meteorological optical range, m, [1, 1e6]) leaves less than
+/// 1/255 of an object's contrast, m: about 1.85 times the visibility.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_visibility_cull_distance(visibility_m: f64, out_distance_m: *mut f64) -> wk_status {

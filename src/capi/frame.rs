@@ -1,15 +1,16 @@
 //! Frames and targets
 //!
-//! A wk_frame says what the host has drawn and from where: the camera, what the numbers in its depth and colour mean,
-//! and the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
+//! A wk_frame describes what the host has drawn: the camera, the meaning of the numbers in its depth and colour, and
+//! the images. All matrices are column-major with column vectors (OpenGL, Vulkan, glm): m[4 * column + row].
 //!
-//! The camera's position is taken from position_m in double precision; the translation of `view` is ignored. Any
-//! projection serves: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
+//! position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
+//! works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far, reversed depth.
 //!
-//! Depth is read as the projection gives it, z / w mapped to the depth buffer's 0 to 1; with WK_DEPTH_LOGARITHMIC the
-//! host's shaders have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+//! Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
+//! the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
 //!
-//! `target` leads to the images, in the struct of the device's kind: wk_own_target, wk_opengl_target, wk_vulkan_target.
+//! `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target,
+//! wk_vulkan_target.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -32,48 +33,49 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_frame.rs"));
 
-/// How depth grows with distance.
+/// Relation of depth to distance.
 pub type wk_depth_kind = u32;
 /// As the projection matrix says: perspective (finite or infinite far) or orthographic.
 pub const WK_DEPTH_PROJECTION: wk_depth_kind = 0;
 /// ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders.
 pub const WK_DEPTH_LOGARITHMIC: wk_depth_kind = 1;
 
-/// What clip-space z runs over.
+/// Range of clip-space z.
 pub type wk_clip_space = u32;
 /// 0 to 1: Vulkan, Direct3D, Metal, OpenGL with GL_ZERO_TO_ONE.
 pub const WK_CLIP_ZERO_TO_ONE: wk_clip_space = 0;
-/// -1 to 1: OpenGL as it comes.
+/// -1 to 1: OpenGL's default.
 pub const WK_CLIP_MINUS_ONE_TO_ONE: wk_clip_space = 1;
 
-/// What the numbers in the host's colour mean.
+/// Meaning of the numbers in the host's colour.
 pub type wk_color_space = u32;
 /// Linear Rec. 709, proportional to luminance (cd_m2_per_unit). The only space in which WK_STAGE_TONE does anything.
 pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
-/// Tone-mapped already, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
+/// Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
-/// Tone-mapped already and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
+/// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
-/// The camera jumped: nothing of earlier frames may show. Where the sky's tables are not those of the weather yet, they are
-/// built in this frame, as with WK_FRAME_NO_HISTORY.
+/// The camera jumped: nothing of earlier frames may show. If the sky's tables do not fit the weather yet, this frame
+/// builds them, as with WK_FRAME_NO_HISTORY.
 pub const WK_FRAME_CUT: wk_frame_flags = 1;
-/// Draw the pure function of (seed, time, view): no history at all. The sky's tables are built whole in this frame if they
-/// are not yet, which takes longer than many frames: for stills and comparisons, not for every frame of a changing weather.
+/// Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
+/// yet, this frame builds them, which takes as long as many frames: use it for stills and comparisons, not for every
+/// frame of a changing weather.
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
 /// The first row of the images lies at clip y = -1: always so in OpenGL (there it need not be set), and in Vulkan with a
 /// viewport of positive height. Without it the first row lies at clip y = +1.
 pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
-/// Measure what each effect costs: wk_report.ms, wk_view_get_costs. Stages are drawn one by one and each is waited for, so
-/// such a frame is slower, and its picture may differ by rounding: for a figure now and then, not for every frame.
+/// Measure what each effect costs: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
+/// so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
 /// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
-/// The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal), not in
-/// those of the host's world.
+/// The target's normals are in the camera's axes (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal),
+/// not in those of the host's world.
 pub const WK_FRAME_NORMALS_IN_EYE_SPACE: wk_frame_flags = 32;
 
 /// One frame of one view.
@@ -88,9 +90,9 @@ pub struct wk_frame {
     pub next: *const c_void,
     /// The host's frame number: the same in all calls of a frame and on all channels of a simulator. Default 0.
     pub frame_id: u64,
-    /// The camera in the host's world, m. Default 0, 0, 0.
+    /// Position of the camera in the host's world, m. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// World to eye: only its rotation is used. Default identity.
+    /// World to eye; only its rotation counts. Default identity.
     pub view: [f64; 16],
     /// Eye to clip, invertible. Default identity.
     pub projection: [f64; 16],
@@ -114,9 +116,11 @@ pub struct wk_frame {
     pub reserved0: u32,
     /// See wk_exposure_mode. Default 0.
     pub exposure_value: f64,
-    /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, as the device is. May be NULL for PREPARE alone.
+    /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
+    /// PREPARE alone.
     pub target: *const c_void,
-    /// Velocity of the camera in the host's world, m/s, at most 2000 in all: streaks of rain lean against it. Default 0, 0, 0.
+    /// Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
+    /// 0, 0, 0.
     pub velocity_m_s: [f64; 3],
 }
 
@@ -154,20 +158,21 @@ pub struct wk_own_target {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// What is drawn into. Default NULL.
+    /// The image to draw into. Default NULL.
     pub color: *const wk_texture,
-    /// Or, where `color` is NULL, the image in hand of a surface. Default NULL.
+    /// If `color` is NULL: the surface whose acquired image is drawn into. Default NULL.
     pub surface: *const wk_surface,
     /// The host's depth, as large as `color`; NULL (the default) shows the sky in every pixel.
     pub depth: *const wk_texture,
-    /// Where 1, the host's pixel stays (cab, HUD); where 0, weather is drawn. As large as `color`. Default NULL.
+    /// A mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
+    /// `color`. Default NULL.
     pub mask: *const wk_texture,
-    /// What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
-    /// it. R8_UNORM or the like, as large as `color`. Default NULL.
+    /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+    /// default. R8_UNORM or the like, as large as `color`. Default NULL.
     pub surface_classes: *const wk_texture,
-    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
-    /// float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`.
-    /// Default NULL.
+    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
+    /// formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
+    /// or depth. As large as `color`. Default NULL.
     pub normals: *const wk_texture,
 }
 
@@ -185,12 +190,12 @@ impl wk_own_target {
     };
 }
 
-/// Light for the host's own shading of a frame, in the numbers of its colour_space: a surface of colour c whose normal is n
+/// Light for the host's own shading of a frame, in the numbers of its color_space. A surface of colour c with normal n
 /// shows c * (ambient + direct * max(dot(n, direction), 0)).
 ///
-/// Scene-linear: exact for matt surfaces. Display spaces: the tone curve at the frame's exposure is in it, so that one pair of
-/// lights cannot be right for every surface; it is for a grey card of 18 %, in shade and facing the sun. For
-/// WK_COLOR_DISPLAY_LINEAR c is linear and the host (or its sRGB framebuffer) encodes what comes out; for
+/// Scene-linear: exact for matt surfaces. Display spaces: the light includes the tone curve at the frame's exposure, so
+/// one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, in shade and facing the
+/// sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer) encodes the result. With
 /// WK_COLOR_DISPLAY_SRGB both are encoded numbers, as fixed-function OpenGL multiplies them.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -207,7 +212,7 @@ pub struct wk_frame_light {
     pub direct: [f64; 3],
     /// Light of sky, clouds and fog on level ground.
     pub ambient: [f64; 3],
-    /// Light that the ground sends up, on a surface that faces down: for hosts with one ambient light above and one below.
+    /// Light from the ground on a surface that faces down, for hosts with one ambient light above and one below.
     pub ambient_below: [f64; 3],
     /// Display units per cd/m^2 with which Welkin draws the frame.
     pub exposure: f64,
@@ -226,10 +231,10 @@ impl wk_frame_light {
     };
 }
 
-/// Says how the host should light its own objects in a frame, before it draws them: of `frame` the camera's position, the
-/// colour_space with cd_m2_per_unit, and the exposure count; its target is not looked at.
+/// Gets the light with which the host should light its own objects in a frame; call it before you draw them. Of `frame`
+/// the camera's position, the color_space with cd_m2_per_unit, and the exposure count; its target is ignored.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT by the field's name.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_frame_light(
     context: *const wk_context,

@@ -1,12 +1,13 @@
 //! Wet ground
 //!
-//! The stage SURFACE draws water onto the host's picture from its depth: what is wet is darker and mirrors the sky,
-//! paved ground has puddles, rain makes rings in them. It is right for WK_COLOR_SCENE_LINEAR; in the display's spaces the shown
-//! colour is taken for the ground's own. What is not marked by a wk_surface_class is natural ground, which hardly mirrors: mark
-//! roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky, and of objects only that what keeps rain off is dark.
+//! The stage SURFACE reads the host's depth and draws water onto its picture. Wet ground is darker and mirrors the sky,
+//! paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in the display
+//! spaces Welkin takes the shown colour for the ground's own. Ground without a wk_surface_class is natural and hardly
+//! mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky; of objects only shelters and occluder
+//! maps appear in them, as dark shapes.
 //!
-//! How wet the ground is follows the weather of the moment (wk_conditions.wetness, .puddles), or, with a wk_simulation_desc
-//! in wk_context_desc.next, a state that fills, drains and dries over time, which wk_context_save keeps.
+//! Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
+//! wk_context_desc.next it is a state that fills, drains and dries over time, and wk_context_save keeps it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -28,22 +29,24 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
 
-/// Where the wetness of the ground comes from.
+/// Source of the ground's wetness.
 pub type wk_ground_model = u32;
-/// The weather of the moment: as reported, or as the rain of the moment keeps it. Rain that ends leaves dry ground.
+/// The weather of the moment: as reported, or as wet as the rain of the moment keeps it. When the rain ends, the ground
+/// is dry.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
-/// A state from simulation time 0 on, when it is as the weather has the ground (wet, if it rains then): rain fills pores, film and hollows; they drain and dry by wind, sun and humidity
-/// (Penman 1948) in steps of 10 s. A leap of more than a day is simulated over its last day, which begins as the weather has the
-/// ground then. See wk_context_update for leaps that take more than one call.
+/// A state that begins at simulation time 0 as wet as the weather has the ground then. Rain fills pores, film and
+/// hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. A leap of more than a day is
+/// simulated over its last day, which begins as wet as the weather has the ground then. See wk_context_update for leaps
+/// that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
-/// What the ground is made of, in a wk_ground_grid, in an image of the target (the byte of red), and where neither says it, for
-/// all of a context. The image counts first, then the grid, then the context's default.
+/// What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid, then the
+/// context's default.
 pub type wk_surface_class = u32;
-/// In a grid or an image: as the context's default. As that default: natural ground, soil where the host's colour is not green and
-/// vegetation where it is.
+/// In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
+/// the host's colour is green and soil elsewhere.
 pub const WK_SURFACE_CLASS_UNSPECIFIED: wk_surface_class = 0;
-/// Earth, sand, gravel: darkens, and mirrors hardly.
+/// Earth, sand, gravel: darkens and hardly mirrors.
 pub const WK_SURFACE_CLASS_SOIL: wk_surface_class = 1;
 /// Bare rock: darkens, and shines in parts.
 pub const WK_SURFACE_CLASS_ROCK: wk_surface_class = 2;
@@ -56,7 +59,7 @@ pub const WK_SURFACE_CLASS_WATER: wk_surface_class = 5;
 /// Roofs and walls: darken and shine, without puddles.
 pub const WK_SURFACE_CLASS_BUILDING: wk_surface_class = 6;
 
-/// What has state, and how. An extension: put it into wk_context_desc.next.
+/// Simulated state of a context. An extension: put it into wk_context_desc.next.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_simulation_desc {
@@ -97,11 +100,11 @@ pub struct wk_ground {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Depth of water there, mm: the film, and what stands in the hollow if there is one. For tyres.
+    /// Depth of water there, mm, as tyres meet it: the film, plus standing water in a hollow.
     pub water_mm: f64,
-    /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
+    /// Film on level ground outside hollows, mm; on the host's terrain the film at the place.
     pub film_mm: f64,
-    /// Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of all the ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
     /// Share of all the ground, or of the host's terrain, under standing water.
     pub puddles: f64,
@@ -143,11 +146,11 @@ impl wk_ground {
     }
 }
 
-/// Water on the ground at a place of the host's world, as of wk_context_get_state_time: on the host's terrain (wk_context_set_ground_grid), up to 3 m above
-/// it, that of its cells; elsewhere that of level, open ground, with the hollows that are drawn, a pattern fixed to the world by
-/// the context's seed.
+/// Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
+/// (wk_context_set_ground_grid) and up to 3 m above it, the answer is that of its cells. Elsewhere it is that of level,
+/// open ground with the hollows that are drawn, a pattern fixed to the world by the context's seed.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a position that is no place.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground(
     context: *const wk_context,
@@ -165,7 +168,7 @@ pub unsafe extern "C" fn wk_context_get_ground(
     })
 }
 
-/// What the ground is made of where neither the target's image nor the host's terrain says it. Default
+/// Sets the class of ground for which neither the target's image nor the host's terrain has one. Default
 /// WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.

@@ -1,10 +1,10 @@
 //! Water on the host's terrain
 //!
-//! A host that gives the heights of its terrain on a grid gets wetness and puddles cell by cell: rain areas and standing
-//! boxes (wk_context_set_shelters) decide what falls where, what runs off fills the terrain's hollows up to where they spill.
-//! wk_context_get_ground answers by the place, the stage SURFACE draws it, and wk_context_get_ground_cells hands it over for
-//! the host's own materials. With WK_GROUND_SIMULATED it is a state, which wk_context_save keeps together with the heights; else
-//! the weather's wetness, spread over the hollows.
+//! Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
+//! standing boxes (wk_context_set_shelters) decide what falls where. Water runs off and fills the terrain's hollows
+//! until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
+//! wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
+//! wk_context_save keeps together with the heights; else it is the weather's wetness, spread over the hollows.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -25,8 +25,9 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
 
-/// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square cell about
-/// it; between nodes water goes linearly. Outside is the world's ground, into which the picture fades over two cells.
+/// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
+/// cell around it; water is linear between nodes. Outside lies the world's ground; the picture blends into it over two
+/// cells.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_grid {
@@ -39,19 +40,19 @@ pub struct wk_ground_grid {
     /// The node farthest to the south-west, in the host's world, m, within 1e12 m of the origin; heights count from its own.
     /// Default 0, 0, 0.
     pub origin_m: [f64; 3],
-    /// From node to node, m. Range [0.01, 10 000], default 1. Puddles smaller than a few cells are not in it.
+    /// Distance between nodes, m. Range [0.01, 10 000], default 1. Puddles need several cells.
     pub cell_m: f64,
-    /// Nodes east and north. Range 2 to 512, default 2, 2.
+    /// Number of nodes east and north. Range 2 to 512, default 2, 2.
     pub nodes: [u32; 2],
-    /// Heights above the origin, m, within 1e5; the node to the east comes next, after a row the next row to the north. Copied by
-    /// the call.
+    /// Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
+    /// call.
     pub heights_m: *const f32,
     /// Numbers in heights_m: the product of `nodes`.
     pub height_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// What each cell is made of, in the order of the heights: numbers of wk_surface_class, 0 where the context's default holds.
-    /// Copied by the call. Default NULL: nothing is said of any cell.
+    /// Class of each cell, in the order of the heights: a wk_surface_class, or 0 to use the context's default. Copied
+    /// by the call. Default NULL: 0 for all cells.
     pub surface_classes: *const u8,
     /// Numbers in surface_classes: 0 (the default), or height_count.
     pub surface_class_count: u32,
@@ -76,17 +77,18 @@ impl wk_ground_grid {
     };
 }
 
-/// Water of a cell of the host's terrain; plain values of a list: packed it is the upload of a texture of four floats.
+/// Water of a cell of the host's terrain; plain values of a list. Packed, the list can be uploaded as a texture of four
+/// floats.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_cell {
-    /// Water between and on the grains, mm; none under standing water.
+    /// Film: water between and on the grains, mm; 0 under standing water.
     pub film_mm: f32,
-    /// In the pores, as a share of what they hold.
+    /// Water in the pores, as a share of what they can hold.
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share under ice, by the weather of the moment; what freezing rain leaves is not where standing boxes keep it off.
+    /// Share under ice, by the weather of the moment; freezing rain leaves none where standing boxes keep it off.
     pub ice: f32,
 }
 
@@ -96,9 +98,9 @@ impl wk_ground_cell {
     }
 }
 
-/// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. The same grid again
-/// keeps its water, whatever it is made of, another one begins as the ground is. Takes some tenths of a second for the largest grids. Unchanged after an
-/// error.
+/// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
+/// same grid again keeps its water, even with other classes; another grid begins as wet as level ground is. May take
+/// some tenths of a second for the largest grids. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -141,9 +143,10 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
     })
 }
 
-/// Water of the terrain's cells as of wk_context_get_state_time, in the order of its heights; `cell_size` is sizeof(wk_ground_cell) of your header.
-/// `out_revision` gets a number that is another whenever they have changed: who asks with capacity 0 gets it alone, and need only
-/// upload anew what has changed, every 10 s of simulation time at most.
+/// Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights; `cell_size` is
+/// sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
+/// once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
+/// nothing has changed.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]

@@ -1,8 +1,8 @@
 //! Water on the host's terrain as a texture
 //!
-//! For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture, uploaded once
-//! for them and for the stage SURFACE. One texel a node, the first one south-west, rows to the north, in every graphics interface.
-//! How it looks is in the published functions, GLSL and WGSL.
+//! For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture,
+//! uploaded once for the host and for the stage SURFACE. One texel for each node, the first one south-west, rows to the
+//! north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -36,21 +36,22 @@ pub struct wk_ground_texture {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm, soaked,
-    /// standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm. Where none stands,
-    /// standing_mm is negative: how far its hollow's level lies below the ground, mm, or -50 where the hollow is dry; so between
-    /// texels a shore is where it crosses 0.
+    /// RGBA half floats, an OpenGL texture name (GL_TEXTURE_2D) or a VkImage (VK_FORMAT_R16G16B16A16_SFLOAT): film_mm,
+    /// soaked, standing_mm and ice of wk_ground_cell, each within 1/2048 of its value, standing water up to 65 504 mm.
+    /// Where none stands, standing_mm is negative: the depth of its hollow's level below the ground, mm, or -50 where
+    /// the hollow is dry. So a shore between texels lies where it crosses 0.
     pub texture: u64,
-    /// Another number whenever `texture` is another object, whatever its name: another grid was set or loaded.
+    /// Changes whenever `texture` becomes another object, whatever its name: after another grid was set or loaded.
     pub generation: u64,
-    /// That of wk_context_get_ground_cells, of what the texture holds.
+    /// Revision of the texture's contents, as in wk_context_get_ground_cells.
     pub revision: u64,
     /// Texels: the grid's nodes east and north.
     pub width: u32,
     /// Texels: the grid's nodes east and north.
     pub height: u32,
-    /// Two rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v; (0, 0) is the south-western corner of
-    /// the first texel. Single precision is enough after the camera's place is taken into the fourth column.
+    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. (0,
+    /// 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
+    /// the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
 }
 
@@ -68,11 +69,12 @@ impl wk_ground_texture {
     };
 }
 
-/// The native texture of the terrain's water, up to date: ask after each wk_context_update. What has not changed costs nothing;
-/// what has is uploaded, every 10 s of simulation time at most, in this call or in a wk_view_record with SURFACE, in order with the
-/// host's work on the device's queue or context. It belongs to the context and stays the same until another grid, or none, is set or
-/// loaded: wait for the GPU's work that samples it before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
-/// calls, and may be copied from. It has no mipmaps; filter and wrap are the host's own.
+/// Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
+/// if nothing has changed. Changes come at most once every 10 s of simulation time; this call, or a wk_view_record with
+/// SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
+/// context and stays the same until another grid, or none, is set or loaded: wait for the GPU's work that samples it
+/// before that. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It
+/// has no mipmaps; choose filter and wrap yourself.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
 #[unsafe(no_mangle)]
@@ -100,8 +102,8 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
     })
 }
 
-/// Gives the text of the functions that say how a place of the texture looks: how dark, how much of it mirrors, how rough;
-/// NUL-terminated UTF-8 that lives as long as the process.
+/// Gets the text of the functions that compute how a place of the texture looks: how dark, how much of it mirrors, how
+/// rough. NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_ground_snippet(

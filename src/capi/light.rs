@@ -1,7 +1,7 @@
 //! Lamps
 //!
-//! Head lights, work lights, search lights: what the host tells of its lamps lights what Welkin draws in their beams, today
-//! drops and splashes of rain. The host goes on lighting its own world itself.
+//! Head lights, work lights, search lights: the host's lamps light what Welkin draws in their beams (rain, hail and
+//! splashes) and shine in wet ground. The host lights its own world itself.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -31,16 +31,16 @@ pub struct wk_light {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Where it is in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
+    /// Position in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// Where it shines to in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
+    /// Direction that it shines in, in the host's world; any length in [1e-6, 1e6]. Default 0, 1, 0.
     pub direction: [f64; 3],
-    /// Luminous intensity in its middle, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000 each. A low beam has
-    /// some 10 000, a work light 2000 to 5000.
+    /// Luminous intensity in the middle of the beam, cd a channel of linear Rec. 709. Range [0, 1e9], default 1000
+    /// each. A low beam has about 10 000, a work light 2000 to 5000.
     pub intensity_cd: [f64; 3],
-    /// Angle from the middle up to which the beam is full, degrees. Range [0, 180], default 10.
+    /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.
     pub inner_deg: f64,
-    /// Angle from the middle at which it has ended, degrees. Range [inner_deg, 180], default 30; 180: no end.
+    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; 180: no end.
     pub outer_deg: f64,
 }
 
@@ -57,8 +57,8 @@ impl wk_light {
     };
 }
 
-/// Sets the host's lamps, in place of those before; a moving one is set anew every frame. count 0 removes all. At most 64.
-/// Unchanged after an error.
+/// Sets the host's lamps, in place of those before; set moving ones again in every frame. count 0 removes all. At most
+/// 64. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

@@ -1,14 +1,15 @@
 //! Maps of what keeps rain off
 //!
-//! What is more than some boxes is told as pictures: up to four depth images that the host takes of its world, standing or
-//! moving things, from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
+//! For everything that boxes cannot describe, give up to four depth images of your world, of standing or moving things,
+//! from any direction. A drop is gone where its own slanted path crosses a surface that a map shows.
 //!
-//! A map knows nothing of what its surfaces hide. Take it along wk_rainfall.fall_velocity_m_s: then nothing that matters is
-//! hidden from half of the rain and little from the rest. Where things stand below others (a pier below a deck) further maps
-//! along slower drops, the same wind with falls of 3.4 and 2.1 m/s, close what is left. What it shows is exact to two texels.
+//! A map knows nothing of what its surfaces hide. Draw it along wk_rainfall.fall_velocity_m_s: then it hides nothing
+//! that matters for half of the rain, and little for the rest. Where things stand below others (a pier below a deck),
+//! add maps along slower drops: the same wind with fall speeds of 3.4 and 2.1 m/s. What a map shows is exact to two
+//! texels.
 //!
-//! What a map shows is taken over during the call: what the host has submitted to the queue before counts as drawn (an OpenGL host has
-//! issued it), and afterwards the image is the host's again.
+//! Welkin copies a map during the call. Work that you submitted to the queue before (or, with OpenGL, issued) is
+//! included. Afterwards the image is yours again.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -40,7 +41,7 @@ pub const WK_OCCLUDER_MAP_DEPTH_REVERSED: wk_occluder_map_flags = 1;
 /// The first row of the image lies at clip y = -1: always so in OpenGL (there it need not be set).
 pub const WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y: wk_occluder_map_flags = 2;
 
-/// A depth image of what keeps rain off: one sample, from 8 to 4096 texels along either side.
+/// A depth image of things that keep rain off: one sample, from 8 to 4096 texels along either side.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_occluder_map {
@@ -50,7 +51,8 @@ pub struct wk_occluder_map {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// From the host's world to clip space, invertible: parallel rays or perspective, column-major. Default identity.
+    /// Matrix from the host's world to clip space, invertible: parallel rays or perspective, column-major. Default
+    /// identity.
     pub clip_from_world: [f64; 16],
     /// Default 0.
     pub flags: wk_occluder_map_flags,
@@ -58,8 +60,8 @@ pub struct wk_occluder_map {
     pub clip_space: wk_clip_space,
     /// Simulation time of what it shows, s. Default 0.
     pub time_s: f64,
-    /// Velocity of what it shows, m/s, at most 2000 in all: a truck's own map need not be taken anew each frame. Default 0, 0,
-    /// 0.
+    /// Velocity of what it shows, m/s, at most 2000 in all, so that a truck's own map need not be drawn in every frame.
+    /// Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
     /// The image on an own device. Default NULL.
     pub texture: *const wk_texture,
@@ -71,7 +73,7 @@ pub struct wk_occluder_map {
     pub width: u32,
     /// Texels of an OpenGL host's image; must be its own. Default 0.
     pub height: u32,
-    /// Of an OpenGL host's image: raise it when an object is made anew under an old name. Default 0.
+    /// For an OpenGL host's image: raise it when you make an object again under an old name. Default 0.
     pub generation: u64,
 }
 
@@ -109,8 +111,8 @@ impl wk_occluder_map {
     }
 }
 
-/// Sets the maps of what keeps rain off, in place of those before. count 0 takes them away. At most 4. The maps before stay
-/// after an error. They are no part of a saved state: each channel may have its own.
+/// Sets the maps of things that keep rain off, in place of those before. count 0 removes them. At most 4. After an
+/// error the maps before stay. They are not part of a saved state, because each channel may have its own.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
 /// WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.

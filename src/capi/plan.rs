@@ -1,22 +1,22 @@
 //! What a picture needs, and no more
 //!
-//! With a tolerance, a view looks at its own pictures: at a grid of 64 x 36 of their pixels, every eighth frame, it
-//! composes with everything and without each part of the weather, and reads the differences back some frames later
-//! without waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
-//! Under a budget of time, parts also fade out as the times that the host reports demand, those first whose loss is least
-//! perceived for the time they save, and come back when there is room to spare.
+//! With a tolerance, a view gauges its own pictures. In every eighth frame it composes a grid of 64 x 36 of its pixels
+//! with everything and without each part of the weather, and reads the differences back some frames later without
+//! waiting. Parts that change the picture by less than the tolerance fade out, and fade in again when they matter.
+//! Under a budget of time, parts also fade out as the reported times demand, starting with those whose loss is
+//! perceived least for the time that they save. They come back when there is time again. After a jump of camera, sun or
+//! weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
-//! Parts have numbers (WK_PART_) and names, and each is drawn at one of its rungs: 0 is all of it, the last is nothing of it or the
-//! cheapest that stands for it. Later versions have more parts, at the end; wk_plan.part_count says how many, and
-//! wk_view_get_part_plan what they are called.
-//! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//! A part has a number (WK_PART_), a name and rungs. Rung 0 is all of it; the last is nothing of it, or the cheapest that
+//! stands for it. Later versions have more parts, at the end: wk_plan.part_count says how many, wk_view_get_part_plan what
+//! they are called.
 //!
 //! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white) of luminances after exposure, its 95th
 //! percentile over the picture's pixels. A tolerance also bounds the worst pixel, by ten times as much.
 //!
-//! What is drawn is never what is simulated: time, weather and state go on alike on all channels of a simulator. Channels
-//! that must also leave out alike pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or one that another view found
-//! (wk_view_save_plan, wk_view_load_plan).
+//! Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
+//! Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
+//! that another view found (wk_view_save_plan, wk_view_load_plan).
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -69,7 +69,7 @@ pub const WK_BUDGET_HAS_MILLISECONDS: wk_budget_has_flags = 2;
 pub type wk_plan_reason = u32;
 /// No tolerance was given: everything is drawn.
 pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
-/// This picture has not been gauged yet, or may not depend on earlier ones: everything is drawn.
+/// This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn.
 pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
 /// The weather has none of it, or the recorded stages do not draw it.
 pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
@@ -82,7 +82,7 @@ pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
 /// The time allows no more.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// What of a budget could not be kept, by the estimates.
+/// Part of a budget that could not be kept, by the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
@@ -106,8 +106,8 @@ pub struct wk_part_wish {
     pub has: wk_part_wish_has_flags,
     /// Of which part.
     pub part: wk_part,
-    /// Optional: the part is drawn at this rung, whatever the tolerance and the time, so that all channels draw alike. Range: below the
-    /// part's wk_part_plan.rung_count. What of a tolerance and a time that does not keep is still said (wk_plan.gave_way).
+    /// Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the same.
+    /// Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says what of a tolerance and a time is not kept.
     pub rung: u32,
     /// 0.
     pub reserved: u32,
@@ -152,7 +152,7 @@ pub struct wk_budget {
     /// Optional: largest error of what is left out. Range (0, 1]; 0.01 is not seen.
     pub tolerance: f64,
     /// Optional: longest time of the weather in a frame, ms; wins over the tolerance. Range (0, 1000]. The plan knows
-    /// times from wk_view_report_time only.
+    /// only the times of wk_view_report_time.
     pub milliseconds: f64,
 }
 
@@ -171,7 +171,7 @@ impl wk_budget {
     };
 }
 
-/// What a view's last frame left out. Errors are estimates from the gauged pixels.
+/// Parts that a view's last frame left out. Errors are estimates from the gauged pixels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_plan {
@@ -185,7 +185,7 @@ pub struct wk_plan {
     pub part_count: u32,
     /// What of the budget could not be kept.
     pub gave_way: wk_gave_way,
-    /// Error of all that is left out together: 95th percentile over the gauged pixels.
+    /// Error of everything left out together: 95th percentile over the gauged pixels.
     pub error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
     pub error_bound: f64,
@@ -193,9 +193,9 @@ pub struct wk_plan {
     pub worst: f64,
     /// Work of the picture as planned, in units of a pixel with none of the parts; 0 before the first gauge.
     pub work: f64,
-    /// Work of the picture with everything, likewise.
+    /// Work of the picture with everything, in the same units.
     pub work_of_everything: f64,
-    /// What the picture should take by the times reported so far, ms; 0 before the first.
+    /// Predicted time of the picture from the times reported so far, ms; 0 before the first.
     pub milliseconds: f64,
 }
 
@@ -298,7 +298,7 @@ impl wk_part_plan {
     }
 }
 
-/// Sets how wrong the view's pictures may be; NULL asks for everything again. Unchanged after an error.
+/// Sets the tolerance and the time of the view's pictures; NULL draws everything again. Unchanged after an error.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -323,8 +323,8 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
     })
 }
 
-/// Says what the weather took in the last frame, ms of whatever the budget counts (the host's GPU timer, or the waited
-/// call). Under a budget of time the plan follows the median of the last five reports.
+/// Reports the time that the weather took in the last frame, ms, measured as for the budget (your GPU timer, or a call
+/// that you wait for). Under a budget of time the plan uses the median of the last five reports.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
 #[unsafe(no_mangle)]
@@ -336,7 +336,7 @@ pub unsafe extern "C" fn wk_view_report_time(view: *mut wk_view, milliseconds: f
     })
 }
 
-/// Says what the view's last frame left out.
+/// Gets what the view's last frame left out.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_plan) -> wk_status {
@@ -385,8 +385,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 }
 
 /// Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
-/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is
-/// written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing
+/// else is written and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: some frames follow each
 /// jump of camera, sun or weather.
@@ -410,8 +410,8 @@ pub unsafe extern "C" fn wk_view_save_plan(
 /// wk_view_set_budget ends it.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_PARSE for bytes that are no such plan or of another version, naming line and column or the field;
-/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. The view's plan stays as it
-/// was then.
+/// WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error the
+/// view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {

@@ -1,13 +1,13 @@
 //! Queries: light and visibility
 //!
-//! At any place of the host's world, now or (the functions that end in _at) at any simulation time that the timeline still
-//! knows, past or to come: closed form, no device is asked. A sun or moon put somewhere by the host stands there at all
-//! times. Only wk_context_get_ambient looks into the sky's tables and answers for now alone. Directions are unit vectors (east, north, up) at the
-//! place asked for. Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum
-//! (0.2126, 0.7152, 0.0722) is the photometric value.
+//! These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
+//! simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
+//! the host has placed stands there at all times. Only wk_context_get_ambient reads the sky's tables, and it answers
+//! for the present alone. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
+//! cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
+//! value.
 //!
-//! Lists go in and out as (pointer, count, size of an element in your header); everything is checked before anything is
-//! written.
+//! Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -39,11 +39,11 @@ pub struct wk_celestial {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Towards it, without refraction: what scattering sees.
+    /// Direction towards it, without refraction, as scattering uses it.
     pub direction: [f64; 3],
-    /// Towards it as it appears, lifted by refraction.
+    /// Direction towards it as it appears, lifted by refraction.
     pub apparent: [f64; 3],
-    /// In the disc's plane, towards the middle of the lit limb (moon).
+    /// Direction in the disc's plane towards the middle of the lit limb (moon).
     pub bright_limb: [f64; 3],
     /// Illuminance above the air on a surface facing it, lux a channel.
     pub illuminance_lux: [f64; 3],
@@ -55,7 +55,7 @@ pub struct wk_celestial {
     pub apparent_elevation_deg: f64,
     /// Angular radius, rad.
     pub angular_radius: f64,
-    /// Lit part of the face, fraction.
+    /// Lit fraction of the face.
     pub lit: f64,
     /// Vertical over horizontal diameter of the disc.
     pub flattening: f64,
@@ -126,9 +126,9 @@ impl wk_ground_light {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_segment {
-    /// Where the eye is.
+    /// Position of the eye.
     pub from_m: [f64; 3],
-    /// Where the object is, at least a millimetre away.
+    /// Position of the object, at least a millimetre away.
     pub to_m: [f64; 3],
 }
 
@@ -138,8 +138,8 @@ pub struct wk_segment {
 pub struct wk_between {
     /// Share of light that gets through, per channel (680, 550, 440 nm of the Earth's planet file).
     pub transmittance: [f64; 3],
-    /// Meteorological optical range along the way, m: where 550 nm light would fall to 5 % if all the way were like this
-    /// part of it. Infinite where nothing stops light.
+    /// Meteorological optical range along the segment, m: the distance at which 550 nm light would fall to 5 % if the
+    /// air were everywhere as on this segment. Infinite if nothing stops light.
     pub visibility_m: f64,
 }
 
@@ -170,7 +170,7 @@ impl wk_ambient {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_AMBIENT, next: null(), sh9: [0.0; 27] };
 }
 
-/// The sun over a place of the host's world, now.
+/// Gets the sun over a place of the host's world, now.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sun(
@@ -182,7 +182,7 @@ pub unsafe extern "C" fn wk_context_get_sun(
     unsafe { celestial("wk_context_get_sun", (context, position_m, None), "out_sun", out_sun, |l| l.sun) }
 }
 
-/// The sun over a place of the host's world at a simulation time.
+/// Gets the sun over a place of the host's world at a simulation time.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn wk_context_get_sun_at(
     unsafe { celestial("wk_context_get_sun_at", (context, position_m, Some(time_s)), "out_sun", out_sun, |l| l.sun) }
 }
 
-/// The moon over a place of the host's world, now.
+/// Gets the moon over a place of the host's world, now.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_moon(
@@ -208,7 +208,7 @@ pub unsafe extern "C" fn wk_context_get_moon(
     unsafe { celestial("wk_context_get_moon", (context, position_m, None), "out_moon", out_moon, |l| l.moon) }
 }
 
-/// The moon over a place of the host's world at a simulation time.
+/// Gets the moon over a place of the host's world at a simulation time.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -253,8 +253,8 @@ fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64> {
     Ok(time_s)
 }
 
-/// Light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size` and
-/// `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. `position_size`
+/// and `light_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_ground_light) of your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
@@ -318,8 +318,9 @@ unsafe fn light(
     })
 }
 
-/// Transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them: air, haze, fog and what
-/// falls, not the host's objects. `segment_size` and `between_size` are the sizes of an element in your header.
+/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog and
+/// precipitation count, the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
+/// your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_between(
@@ -397,8 +398,8 @@ fn of_segment(i: usize, e: Error) -> Error {
     e.within(&format!("segments[{i}]: "))
 }
 
-/// The sky's light on surfaces of any slope at a place. Looks into the sky's tables: builds them if no frame did yet,
-/// and waits for the GPU once after every change of the air.
+/// Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
+/// done so yet, and waits for the GPU once after every change of the air.
 /// Thread: as wk_view_record.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient(

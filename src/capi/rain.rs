@@ -1,13 +1,14 @@
 //! Rain
 //!
-//! Rain is drawn in WK_STAGE_PARTICLES wherever the weather has it: drops as many and as fast as the rate makes them, near ones in
-//! a place each that follows from seed and time alone, farther ones as streaks on cones that do too, so that all channels of a
-//! simulator draw the same rain and any time can be shown again. They are carried by the wind, hidden by the host's depth, lit by sky, ground and sun, and splash on what the
-//! picture shows within ten metres.
+//! WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
+//! drops have places of their own, farther ones are streaks on cones. Both follow from seed and time alone, so all
+//! channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops, the host's
+//! depth hides them, sky, ground, sun and lamps light them, and they splash on what the picture shows within ten
+//! metres.
 //!
-//! What keeps rain off is told as boxes: a roof, a bridge deck, a cab, a truck. Whatever the wind, a drop whose own path
-//! crossed a box is gone, so it is dry behind a box and wet before it, and inside of a box it is dry. Planes cut a box to any
-//! convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
+//! Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is gone,
+//! whatever the wind. So it is wet on the windward side of a box, dry on its lee side and dry inside. Planes cut a box
+//! to any convex shape (wk_shelter_shape): a gable roof, a cab with a slanted front.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -28,29 +29,29 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 
-/// With what a view draws rain; what falls is the same.
+/// How a view draws rain; what falls is the same.
 pub type wk_rain_model = u32;
-/// Welkin chooses: each drop to 1.9 m and cones beyond, to 14.8 m; under a wk_budget less where the picture does not need it or
-/// the time does not allow it (WK_PART_RAIN).
+/// Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
+/// or the time does not allow it (WK_PART_RAIN).
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
-/// Streaks on four nested cones about the camera, at a cost that depends on the picture's size and not on the rate: the cheapest
-/// that moves where there are no compute shaders (wk_caps.tier 0). No splashes.
+/// Streaks on four nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
+/// rain without compute shaders (wk_caps.tier 0). No splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
-/// Drops alone, to 4 m, each where seed and time put it; cones beyond where lamps light the rain.
+/// Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
-/// Drops that are stepped through a wind that varies in space (wk_context_set_wind_grid). Needs compute shaders
+/// Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
 /// (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
-/// wk_rain.shutter_s of an eye: it adds up light over about so long by day. Streaks are long and faint.
+/// wk_rain.shutter_s of an eye, which adds up light over about this time by day. Streaks are long and faint.
 pub const WK_RAIN_SHUTTER_EYE_S: f64 = 0.05;
 /// wk_rain.shutter_s of a video camera whose shutter is open for a whole frame of 60 a second: the default.
 pub const WK_RAIN_SHUTTER_CAMERA_60_S: f64 = 0.016_666_666_666_666_666;
 /// wk_rain.shutter_s of a camera in good light. Streaks are short.
 pub const WK_RAIN_SHUTTER_CAMERA_500_S: f64 = 0.002;
-/// wk_rain.contrast_gain for trainers: rain by day shows on a display of eight bits as it does in a film.
+/// wk_rain.contrast_gain for trainers: on a display of eight bits rain by day is as visible as in a film.
 pub const WK_RAIN_GAIN_TRAINER: f64 = 4.0;
 
 /// How a view draws what falls: rain, hail and splashes. What falls does not depend on it.
@@ -63,18 +64,18 @@ pub struct wk_rain {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Time for which a picture is exposed, s: it makes streaks of drops, the longer and the fainter the longer it is
-    /// (WK_RAIN_SHUTTER_ constants). Range [1e-4, 0.1], default 1/60.
+    /// Exposure time of a picture, s. Longer exposure makes streaks longer and fainter (WK_RAIN_SHUTTER_ constants).
+    /// Range [1e-4, 0.1], default 1/60.
     pub shutter_s: f64,
-    /// Most drops that are drawn; further ones are stood for by those that are. Range [1000, 8 000 000], or 0, the default:
-    /// 400 000, and 100 000 on a software driver.
+    /// Most drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or 0, the
+    /// default: 400 000, and 100 000 on a software driver.
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_rain_model,
-    /// By how much what falls stands out of the picture more than it does in nature. Range [1, 16], or 0, the default: 1, as in
-    /// nature. Beyond 1 streaks, stones and splashes hide as much as so many of them one before the other, a departure from
-    /// physics for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water
-    /// and queries do not depend on it. Set it alike on all channels of a simulator.
+    /// Contrast of rain, over that in nature. Range [1, 16], or 0, the default: 1, as in nature. Beyond 1 a streak,
+    /// stone or splash hides as much as that many of them one before the other. This departs from physics, for displays
+    /// on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility, water and queries do
+    /// not depend on it. Set the same value on all channels of a simulator.
     pub contrast_gain: f64,
 }
 
@@ -90,7 +91,7 @@ impl wk_rain {
     };
 }
 
-/// A box that rain does not pass, in the host's world.
+/// A box that keeps rain off, in the host's world.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_shelter {
@@ -100,9 +101,9 @@ pub struct wk_shelter {
     pub struct_type: wk_struct_type,
     /// NULL (the default), or a wk_shelter_shape.
     pub next: *const c_void,
-    /// Its middle, m, within 1e12 m of the origin. Default 0, 0, 0.
+    /// Its centre, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Its three axes one after the other: unit vectors at right angles. Default the world's.
+    /// Its three axes, one after the other: unit vectors at right angles. Default: the world's axes.
     pub axes: [f64; 9],
     /// Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
     pub half_size_m: [f64; 3],
@@ -122,8 +123,8 @@ impl wk_shelter {
     };
 }
 
-/// Planes that cut a wk_shelter, in whose chain it stands, to another convex shape: what of the box lies beyond any of them
-/// keeps nothing off. So a convex shape is the box about it and its faces.
+/// Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
+/// any plane keeps nothing off. Describe a convex shape by the box around it and the planes of its faces.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_shelter_shape {
@@ -133,12 +134,12 @@ pub struct wk_shelter_shape {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Planes. Range [0, 16], default 0: the box stays whole.
+    /// Number of planes. Range [0, 16], default 0: the box stays whole.
     pub plane_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Four numbers each: a unit vector along the box's axes that points out of the shape, and how far along it from the box's
-    /// middle the plane lies, m, within 1e6. They must leave some of the box. Default 0.
+    /// Four numbers for each plane: a unit normal in the box's axes that points out of the shape, and the plane's
+    /// distance along it from the box's centre, m, within 1e6. The planes must leave some of the box. Default 0.
     pub planes: [f64; 64],
 }
 
@@ -197,8 +198,8 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
     })
 }
 
-/// Sets what keeps rain off, in place of what did before; a moving box is set anew every frame. count 0 removes all. At most
-/// 32. Unchanged after an error.
+/// Sets the boxes that keep rain off, in place of those before; set moving ones again in every frame. count 0 removes
+/// all. At most 32. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

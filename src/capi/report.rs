@@ -1,6 +1,7 @@
 //! Weather reports and presets
 //!
-//! A METAR or SPECI report, as airports send it, becomes a wk_weather. What the report leaves out keeps its default.
+//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Fields that the report leaves out keep their
+//! defaults.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -23,7 +24,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_report.rs"));
 
-/// What kind of report it is.
+/// Flags of a report.
 pub type wk_metar_flags = u32;
 /// A special report (SPECI).
 pub const WK_METAR_SPECIAL: wk_metar_flags = 1;
@@ -34,7 +35,7 @@ pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
 /// The report says only that visibility is at least so much (CAVOK, 9999, 10SM).
 pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
 
-/// Where and when a report was made.
+/// Place and time of a report.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_metar {
@@ -52,7 +53,7 @@ pub struct wk_metar {
     pub hour: u32,
     /// Minute, UTC.
     pub minute: u32,
-    /// What kind of report it is.
+    /// Flags of a report.
     pub flags: wk_metar_flags,
 }
 
@@ -123,7 +124,8 @@ pub unsafe extern "C" fn wk_weather_from_metar(
     })
 }
 
-/// The weather of a named preset into `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the names.
+/// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset lists the
+/// names.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
 #[unsafe(no_mangle)]
@@ -143,8 +145,8 @@ pub unsafe extern "C" fn wk_weather_from_preset(
     })
 }
 
-/// Name and one-line description of the preset `index`, from 0 in the order of a menu; both live as long as the process,
-/// and either place may be NULL.
+/// Gets name and one-line description of the preset `index`, from 0 in the order of a menu. Both texts live as long as
+/// the process. Either pointer may be NULL.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
 #[unsafe(no_mangle)]

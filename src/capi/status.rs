@@ -1,7 +1,7 @@
 //! Status, versions, messages
 //!
-//! Every call answers a wk_status. 0 and positive values are answers; negative ones are failures, after which no
-//! output was written and wk_last_error_message() says which parameter was wrong and what would have been accepted.
+//! Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
+//! output. wk_last_error_message() then says which parameter was wrong and what is accepted.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -11,9 +11,9 @@ use super::{
 };
 use crate::error::Status;
 
-/// What a call answers. The numbers never change and are never reused.
+/// The result of a call. The numbers never change and are never reused.
 pub type wk_status = i32;
-/// The call did what it says.
+/// The call succeeded.
 pub const WK_OK: wk_status = 0;
 /// More steps are due than one update may take; call again. Not a failure.
 pub const WK_PENDING: wk_status = 1;
@@ -21,9 +21,9 @@ pub const WK_PENDING: wk_status = 1;
 pub const WK_ERROR_INVALID_ARGUMENT: wk_status = -1;
 /// A handle is NULL, destroyed, foreign or of another kind.
 pub const WK_ERROR_BAD_HANDLE: wk_status = -2;
-/// A parent was to be destroyed while it has live children, or the handle is in another call at this moment.
+/// The parent still has live children, or another call is using the handle at this moment.
 pub const WK_ERROR_IN_USE: wk_status = -3;
-/// This device, tier or build cannot do what was asked; the message names the feature.
+/// This device, tier or build does not support the request; the message names the feature.
 pub const WK_ERROR_UNSUPPORTED: wk_status = -4;
 /// No adapter or driver serves the request.
 pub const WK_ERROR_NO_ADAPTER: wk_status = -5;
@@ -41,14 +41,14 @@ pub const WK_ERROR_PARSE: wk_status = -10;
 pub const WK_ERROR_IO: wk_status = -11;
 /// The surface must be configured again: it was resized, minimised or lost.
 pub const WK_ERROR_SURFACE_OUTDATED: wk_status = -12;
-/// Calls came in an order that the API forbids: stages of a frame, dates before the last update.
+/// Calls in a wrong order: stages of a frame, or dates before the last update.
 pub const WK_ERROR_WRONG_ORDER: wk_status = -13;
 /// The host aborted a long operation through its callback.
 pub const WK_ERROR_ABORTED: wk_status = -14;
 /// A fault inside Welkin; the message says where.
 pub const WK_ERROR_INTERNAL: wk_status = -15;
 
-/// Which struct a pointer leads to: the second field of every tagged struct. WK_X_INIT sets it.
+/// The type of a tagged struct: its second field. WK_X_INIT sets it.
 pub type wk_struct_type = u32;
 /// wk_device_desc
 pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;
@@ -147,19 +147,19 @@ pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish
 pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
 
-/// How grave a message is.
+/// Severity of a message.
 pub type wk_log_level = u32;
-/// Something failed; the call also answers so.
+/// Something failed; the call's status says so too.
 pub const WK_LOG_LEVEL_ERROR: wk_log_level = 1;
-/// Something works worse than it could: a fallback, a slow path.
+/// Something works less well than it could: a fallback, a slow path.
 pub const WK_LOG_LEVEL_WARNING: wk_log_level = 2;
-/// Once-in-a-while news: which adapter, which plan.
+/// Occasional information: which adapter, which plan.
 pub const WK_LOG_LEVEL_INFO: wk_log_level = 3;
-/// For those who develop Welkin.
+/// For developers of Welkin.
 pub const WK_LOG_LEVEL_DEBUG: wk_log_level = 4;
 
-/// Receives a message, NUL-terminated UTF-8 that is valid during the call. It may come from any thread that is in a
-/// Welkin call; it must not call Welkin and must not unwind.
+/// Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls it from any thread that is in a Welkin
+/// call. It must not call Welkin and must not unwind.
 pub type wk_log_fn = Option<unsafe extern "C" fn(user: *mut c_void, level: wk_log_level, message: *const c_char)>;
 
 /// The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -168,7 +168,7 @@ pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
     NAMES.iter().find(|n| n.0 == status).map_or(c"unknown status", |n| n.1).as_ptr()
 }
 
-/// What the last failed call of the calling thread says: one sentence that begins with the function's name and names
+/// The message of the calling thread's last failed call: one sentence that begins with the function's name and names
 /// the parameter and the accepted range. Empty before the first failure; successful calls leave it alone. Never NULL;
 /// valid until the next failing call of this thread.
 #[unsafe(no_mangle)]
@@ -176,8 +176,8 @@ pub extern "C" fn wk_last_error_message() -> *const c_char {
     boundary::last_error()
 }
 
-/// The library's version, as WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library of the same major version
-/// and at least the header's minor one serves it. Each of the three may be NULL.
+/// The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major
+/// version is equal and its minor version is at least the header's. Each of the three may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
     guard("wk_version", |_| {
@@ -198,8 +198,8 @@ pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mu
 }
 
 /// Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
-/// They are off until a host asks. Nothing is ever printed. One callback a process; `max_level` is the least grave
-/// level that is sent. If `callback` fails it must return normally: Welkin ignores it.
+/// They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
+/// severe level that is sent. If `callback` fails, it must return normally; Welkin ignores the failure.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_set_log_callback(

@@ -1,8 +1,8 @@
 //! Windows
 //!
-//! For hosts without graphics of their own: Welkin presents to a window that the host named by its native handle. The
-//! host makes the window, keeps its event loop, and says when its size changed. Nothing that a window may do is a fault:
-//! resized, hidden, minimised and lost are answers.
+//! For hosts without graphics of their own: Welkin presents to a window that the host names by its native handle. The
+//! host makes the window, keeps its event loop, and tells Welkin when its size changes. Resized, hidden, minimised and
+//! lost windows give a status and never a fault.
 //!
 //!   wk_device_create_for_window, wk_surface_create, wk_surface_configure
 //!   each frame: wk_surface_acquire, wk_view_record (wk_own_target.surface), wk_surface_present
@@ -50,7 +50,8 @@ pub const WK_WINDOW_WIN32: wk_window_kind = 4;
 /// macOS: `handle` is the NSView*; all calls on the main thread.
 pub const WK_WINDOW_APPKIT: wk_window_kind = 5;
 
-/// A native window. What its kind does not use is ignored. The window outlives the surface, its connection the device.
+/// A native window. Welkin ignores fields that its kind does not use. The window must outlive the surface, and its
+/// connection the device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_window {
@@ -85,7 +86,7 @@ impl wk_window {
     };
 }
 
-/// What the values drawn to a surface mean; give the frame the same color_space.
+/// Encoding of the values drawn to a surface; give the frame the matching color_space.
 pub type wk_surface_encoding = u32;
 /// Display-linear: the hardware encodes to sRGB (WK_COLOR_DISPLAY_LINEAR, or TONE from WK_COLOR_SCENE_LINEAR).
 pub const WK_SURFACE_DISPLAY_LINEAR: wk_surface_encoding = 0;
@@ -99,7 +100,7 @@ pub const WK_PACING_REFRESH: wk_pacing = 0;
 /// As soon as possible; may tear.
 pub const WK_PACING_IMMEDIATE: wk_pacing = 1;
 
-/// How a surface is set up.
+/// Settings of a surface.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_surface_config {
@@ -184,9 +185,9 @@ fn in_window(e: Error) -> Error {
     Error::new(e.status, format!("{field} {rest}"))
 }
 
-/// Makes an own device that can present to `window`, and to other windows of the same connection. `desc` NULL means
+/// Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
 /// WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
-/// Thread: any; on macOS the main one. With X11 the host calls XInitThreads first if it uses Xlib from several threads.
+/// Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
 /// Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_for_window(
@@ -249,8 +250,8 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
     })
 }
 
-/// Sets a surface up, or up again after its window changed. An image in hand is given back undrawn. With a width or
-/// height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
+/// Configures a surface, the first time or after its window changed. An acquired image is given back undrawn. With a
+/// width or height of 0 the call succeeds, and acquire answers WK_ERROR_SURFACE_OUTDATED until there is an area.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if it is gone.
 #[unsafe(no_mangle)]
@@ -278,7 +279,7 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
     })
 }
 
-/// Takes the next image to draw into; asked again before `wk_surface_present`, it is the same image.
+/// Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
 /// Thread: exclusive.
 /// Answers WK_PENDING if the window shows nothing now: skip this frame.
 /// Errors: WK_ERROR_SURFACE_OUTDATED: configure again, also while it is minimised.
@@ -290,7 +291,7 @@ pub unsafe extern "C" fn wk_surface_acquire(surface: *mut wk_surface) -> wk_stat
     })
 }
 
-/// Shows the image in hand, after the work that was recorded for it.
+/// Presents the acquired image, after the work that was recorded for it.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER if no image was acquired; WK_ERROR_SURFACE_OUTDATED.
 #[unsafe(no_mangle)]

@@ -1,7 +1,7 @@
 //! Textures of an own device
 //!
-//! For hosts without graphics of their own: a program that wants pictures in memory, or one that draws with Welkin only.
-//! Hosts with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
+//! For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
+//! with OpenGL, Vulkan or wgpu hand over their own images instead and need none of this.
 
 use std::{
     ffi::c_void,
@@ -49,7 +49,7 @@ pub const WK_FORMAT_R32_FLOAT: wk_format = 7;
 /// 8-bit normalised, 1 byte: a mask.
 pub const WK_FORMAT_R8_UNORM: wk_format = 8;
 
-/// How to make a texture.
+/// Settings for a new texture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_texture_desc {
@@ -180,7 +180,7 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
     Ok(texture)
 }
 
-/// Destroys a texture. NULL does nothing. Views that were given it keep it alive for as long as they need it.
+/// Destroys a texture. NULL does nothing. Views that use it keep it alive for as long as they need it.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_status {
@@ -193,8 +193,8 @@ pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_stat
     })
 }
 
-/// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top.
-/// `data_size` is what lies at `data`: at least `bytes_per_row` times the height. Copied during the call.
+/// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
+/// the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_write(
@@ -222,8 +222,9 @@ pub unsafe extern "C" fn wk_texture_write(
     })
 }
 
-/// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the picture's
-/// top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Not for every frame.
+/// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
+/// picture's top. `data_size` is the room at `data`: at least `bytes_per_row` times the height. Slow: do not call it in
+/// every frame.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
 #[unsafe(no_mangle)]

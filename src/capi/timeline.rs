@@ -1,11 +1,12 @@
 //! Weather over time
 //!
-//! Simulation time is the host's: seconds in double precision, moved forward by wk_context_update. Weather is a timeline
-//! of changes, each with its absolute start and duration; between them it stays. A change that begins while another is
-//! under way is laid over it, so neither the weather nor its rate of change jumps. What the host says twice in the same
-//! order gives the same weather on every machine.
+//! The host owns simulation time: seconds in double precision, moved forward by wk_context_update. Weather is a
+//! timeline of changes, each with an absolute start and a duration; between changes it stays. A change that begins
+//! during another one is laid over it, so neither the weather nor its rate of change jumps. The same calls in the same
+//! order give the same weather on every machine.
 //!
-//! Sun and moon follow from place and universal time, which is tied to simulation time, or are put where the host says.
+//! Sun and moon follow from place and universal time, which is tied to simulation time, or stand where the host puts
+//! them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -26,7 +27,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_timeline.rs"));
 
-/// A direction to a light, given by the host in place of the almanac.
+/// A direction to the sun or moon, given by the host in place of the almanac.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_given_direction {
@@ -52,11 +53,11 @@ impl wk_given_direction {
     };
 }
 
-/// Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0 is a cut). `weather` may
-/// have a wk_weather_overrides in its chain. Copied during the call.
+/// Changes the weather, beginning at `start_time_s` ([-1e10, 1e10] s) and lasting `transition_s` ([0, 3.2e7] s; 0
+/// changes at once). `weather` may have a wk_weather_overrides in its chain. Copied during the call.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT by the field's name; WK_ERROR_WRONG_ORDER if it begins before the last update or
-/// before a change that was given earlier. The weather stays as it was then.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER if the change begins before the last update
+/// or before a change that was given earlier. After an error the weather stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_weather(
     context: *mut wk_context,
@@ -74,15 +75,14 @@ pub unsafe extern "C" fn wk_context_set_weather(
 }
 
 /// Moves simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame before
-/// the views record.
-/// Weather and light are functions of time and follow at once. A simulated ground (WK_GROUND_SIMULATED) is stepped, one step for
-/// every 10 s: in one call for 50 ms at most, but one step at least. Where that is not enough, after a leap of hours, the call
-/// answers WK_PENDING: call it again with the same time, in a loop or once a frame, until it answers WK_OK. Until then water on
-/// the ground is drawn and answered as of wk_context_get_state_time, what is set acts only after the steps that remain, and a time
-/// later than the one under way is taken when these are done. So the state is the same however many calls it takes.
-/// A leap of more than a day begins the ground anew a day before its end, as the weather reports the ground then.
-/// Thread: exclusive.
-/// Answers WK_PENDING, which is no error, if steps remain.
+/// the views record. Weather and light are functions of time and follow at once. A simulated ground
+/// (WK_GROUND_SIMULATED) takes one step for every 10 s. One call steps for at most 50 ms, and at least once. If steps
+/// remain, as after a leap of hours, the call answers WK_PENDING: call it again with the same time, in a loop or once a
+/// frame, until it answers WK_OK. Until then water on the ground is drawn and answered as of wk_context_get_state_time,
+/// settings take effect only after the remaining steps, and a later time is taken up when these are done. So the state
+/// is the same however many calls it takes. A leap of more than a day starts the ground a day before its end, as wet as
+/// the weather reports it then.
+/// Thread: exclusive. Answers WK_PENDING, which is no error, while steps remain.
 /// Errors: WK_ERROR_WRONG_ORDER if it lies before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64) -> wk_status {
@@ -91,8 +91,8 @@ pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64
     })
 }
 
-/// Simulation time of all that has state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING; how far
-/// the state lags behind is the difference. It never goes back, but for wk_context_load.
+/// Simulation time of the state, s: that of the last wk_context_update, or earlier while that answers WK_PENDING. The
+/// difference is how far the state lags behind. It never goes back, except by wk_context_load.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_state_time(
@@ -109,8 +109,8 @@ pub unsafe extern "C" fn wk_context_get_state_time(
     })
 }
 
-/// Ties universal time to simulation time: it is `utc_s` (Unix time, seconds without leap seconds) at simulation time
-/// `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at 0.
+/// Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
+/// simulation time `time_s`. Before the first call it is wk_context_desc.utc_at_zero_s at simulation time 0.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f64, time_s: f64) -> wk_status {
@@ -145,7 +145,7 @@ pub unsafe extern "C" fn wk_utc_from_calendar(
     })
 }
 
-/// Puts the sun where the host says; NULL returns it to the almanac.
+/// Puts the sun into a given direction; NULL returns it to the almanac.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sun(
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn wk_context_set_sun(
     })
 }
 
-/// Puts the moon where the host says (its phase follows from the sun's place); NULL returns it to the almanac.
+/// Puts the moon into a given direction (its phase follows from the sun's place); NULL returns it to the almanac.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_moon(
@@ -190,7 +190,8 @@ unsafe fn given_direction(p: *const wk_given_direction) -> Result<Option<GivenDi
     Ok(Some(GivenDirection { azimuth_deg: c.azimuth_deg, elevation_deg: c.elevation_deg }))
 }
 
-/// Sets the exposure of frames that bring none; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
+/// Sets the exposure of frames that have none of their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused
+/// here.
 /// Thread: exclusive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_exposure(
@@ -215,12 +216,12 @@ fn value_name(e: Error) -> Error {
     Error::new(e.status, format!("value {rest}"))
 }
 
-/// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine: weather, time,
-/// clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain with its water, and of which
-/// world, place, planet, seed, tone curve and ground model it is. Not in it: how it is drawn (sky settings, views, plans), and the
-/// images of wk_context_set_occluder_maps, which may be other ones on each channel.
-/// `*out_size` gets the bytes needed, also if `capacity` is too small (then nothing else is written and the call fails)
-/// or `buffer` is NULL with `capacity` 0 (then it succeeds).
+/// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
+/// weather, time, clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain
+/// with its water, and the world, place, planet, seed, tone curve and ground model that it belongs to. Not included:
+/// how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
+/// may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
+/// and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
 #[unsafe(no_mangle)]
@@ -239,13 +240,14 @@ pub unsafe extern "C" fn wk_context_save(
     })
 }
 
-/// Loads a state that wk_context_save wrote, in place of all that it holds, on a context that was created alike: with the same
-/// world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for WK_WORLD_ECEF), seed,
-/// planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
+/// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
+/// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
+/// WK_WORLD_ECEF), seed, planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_PARSE for bytes that are no such state, cut short, changed by as little as a byte, or of another format, which
-/// the message names (this version reads format 2; format 1, which did not say of which place it was, must be saved anew);
-/// WK_ERROR_INVALID_ARGUMENT naming all that was created otherwise. The context stays as it was then.
+/// Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
+/// format, which the message names (this version reads format 2; save states of format 1 again, because they did not
+/// say what place they were of); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
+/// stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {
     guard("wk_context_load", |call| {
@@ -258,7 +260,8 @@ pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const
     })
 }
 
-/// A number that is equal on two channels whose contexts show the same world from now on: a hash of what wk_context_save writes.
+/// Gets a hash of what wk_context_save writes. It is equal on two channels whose contexts show the same world from now
+/// on.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER while wk_context_update answers WK_PENDING.
 #[unsafe(no_mangle)]

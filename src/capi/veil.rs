@@ -1,8 +1,8 @@
 //! Textures for the host's transparent things
 //!
 //! Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
-//! light that air, fog and rain add on the way to a point, and the share of the light behind that gets through. The mapping
-//! from clip coordinates and distance to texels is in the published sampling functions, GLSL and WGSL.
+//! the light that air, fog and rain add on the way to a point, and the share of the light behind it that gets through.
+//! The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -43,7 +43,7 @@ pub struct wk_frame_textures {
     pub width: u32,
     /// Pixels of both.
     pub height: u32,
-    /// Multiply `light` by this to have it in units of the host's colour.
+    /// Multiply `light` by this to get units of the host's colour.
     pub light_scale: f64,
 }
 
@@ -67,9 +67,9 @@ pub const WK_SHADING_GLSL: wk_shading_language = 0;
 /// WGSL.
 pub const WK_SHADING_WGSL: wk_shading_language = 1;
 
-/// The native textures of the veil. From the first call on, each frame's MEDIUM stage fills them; they stay the same
-/// until the view is destroyed and belong to it. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
-/// wk_view_record calls with MEDIUM. Ask after each frame for its light_scale.
+/// Gets the native textures of the veil. From the first call on, each frame's MEDIUM stage fills them. They belong to
+/// the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+/// between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
 #[unsafe(no_mangle)]
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn wk_view_get_frame_textures(
     })
 }
 
-/// Gives the text of the sampling functions, NUL-terminated UTF-8 that lives as long as the process.
+/// Gets the text of the sampling functions: NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_veil_snippet(language: wk_shading_language, out_text: *mut *const c_char) -> wk_status {

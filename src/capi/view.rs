@@ -1,7 +1,7 @@
 //! Views
 //!
-//! A wk_view is one camera or projector channel with what it keeps between frames. A host draws opaque things, then
-//! glass and lamps, then the cab, then the HUD; wk_view_record puts Welkin's stages between them:
+//! A wk_view is one camera or projector channel, with the data that it keeps between frames. A host draws opaque
+//! things, then glass and lamps, then the cab, then the HUD. wk_view_record draws Welkin's stages between them:
 //!
 //!   PREPARE     tables and simulation textures; needs no target
 //!   BACKGROUND  the sky behind everything; before or after the opaque things
@@ -11,9 +11,9 @@
 //!   LENS        water on the windscreen
 //!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
 //!
-//! The calls of one frame share frame_id and come in this order, each stage at most once; WK_STAGE_ALL does everything
-//! in one call and lets neighbouring stages share one pass. Stages that have nothing to draw cost nothing. On return the
-//! work is submitted to the device's queue, not finished.
+//! The calls of one frame share frame_id and record stages in this order, each at most once. WK_STAGE_ALL does
+//! everything in one call and lets neighbouring stages share one pass. Stages with nothing to draw cost nothing. When
+//! the call returns, the work is submitted to the device's queue but not finished.
 
 use std::{
     ffi::{c_char, c_void},
@@ -48,28 +48,28 @@ pub struct wk_view {
     _opaque: [u8; 0],
 }
 
-/// Which stages a call records.
+/// Stages that a call records.
 pub type wk_stage_flags = u32;
 /// Tables and simulation textures; needs no target.
 pub const WK_STAGE_PREPARE: wk_stage_flags = 1;
-/// Sky behind everything: pixels at the far depth, or all of them where there is no depth.
+/// Sky behind everything: pixels at the far depth, or all pixels without depth.
 pub const WK_STAGE_BACKGROUND: wk_stage_flags = 2;
-/// What weather does to surfaces; after the host's opaque objects.
+/// Water on surfaces; after the host's opaque objects.
 pub const WK_STAGE_SURFACE: wk_stage_flags = 4;
-/// Fog and aerial perspective on all that the host drew.
+/// Fog and aerial perspective on everything that the host has drawn.
 pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
 /// What falls and flies.
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 /// Water on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
-/// Exposure, tone curve, encoding and dither of a scene-linear picture: targets of floats and sRGB formats get display-linear
-/// values, the others are encoded as sRGB here. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB the host has done all
-/// that: TONE does nothing then, alone or among other stages.
+/// Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
+/// display-linear values, other formats get sRGB-encoded ones. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB
+/// the host has done all that, and TONE does nothing, alone or with other stages.
 pub const WK_STAGE_TONE: wk_stage_flags = 64;
 /// Everything in one call.
 pub const WK_STAGE_ALL: wk_stage_flags = 127;
 
-/// How to make a view.
+/// Settings for a new view.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_view_desc {
@@ -90,7 +90,7 @@ impl wk_view_desc {
 pub type wk_report_flags = u32;
 /// wk_report.ms.
 pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
-/// wk_report.predicted_ms: the view has a budget, its picture was gauged and a time reported.
+/// wk_report.predicted_ms: the view has a budget, its picture was gauged and a time was reported.
 pub const WK_REPORT_HAS_PREDICTED_MS: wk_report_flags = 2;
 /// wk_report.reported_ms: wk_view_report_time was called since the frame.
 pub const WK_REPORT_HAS_REPORTED_MS: wk_report_flags = 4;
@@ -99,7 +99,7 @@ pub const WK_REPORT_HAS_PREDICTED_ERROR: wk_report_flags = 8;
 /// wk_report.checked_error_bound and checked_error: it was gauged again since.
 pub const WK_REPORT_HAS_CHECKED_ERROR: wk_report_flags = 16;
 
-/// What the last frame of a view took and showed.
+/// Costs and contents of a view's last frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_report {
@@ -123,31 +123,33 @@ pub struct wk_report {
     pub has: wk_report_flags,
     /// 0.
     pub reserved0: u32,
-    /// What the frame's calls took so far, waited for, milliseconds. Set if the frame was measured (WK_FRAME_MEASURE).
+    /// Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
+    /// (WK_FRAME_MEASURE).
     pub ms: f64,
-    /// What the plan expected the weather to take in this frame, ms, by the times reported before it.
+    /// Predicted time of the weather in this frame, ms, from the times reported before it.
     pub predicted_ms: f64,
-    /// What the host said that it took, ms.
+    /// Time that the host reported for it, ms.
     pub reported_ms: f64,
-    /// Estimated error of what this frame left out, parts that still fade not counted: 95th percentile over the gauged pixels.
+    /// Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
+    /// pixels.
     pub predicted_error: f64,
     /// Upper end of the 95 % confidence interval of that percentile over all pixels.
     pub predicted_error_bound: f64,
-    /// Of the newest gauge's picture: the bound that had been predicted for what it left out ..
+    /// For the newest gauge's picture: the bound predicted for what it left out ...
     pub checked_error_bound: f64,
-    /// .. and the error that was found.
+    /// ... and the error that was found.
     pub checked_error: f64,
-    /// Drops and stones round the camera, of which those in the picture were drawn.
+    /// Drops and stones around the camera; those in the picture were drawn.
     pub drops: u32,
     /// 0.
     pub reserved1: u32,
-    /// Drops that each drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
+    /// Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
     pub drop_weight: f64,
-    /// Splashes of the smallest drops that a second and m^2 of level ground had no room for.
+    /// Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops.
     pub splashes_left_out_per_m2_s: f64,
-    /// Likewise the smallest stones that did not hop.
+    /// Stones, 1/(m^2 s), that did not bounce for lack of room: the smallest ones.
     pub stones_left_out_per_m2_s: f64,
-    /// The contrast gain of what fell (wk_rain.contrast_gain): 1 is as in nature; 0 where nothing was drawn.
+    /// The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
     pub contrast_gain: f64,
 }
 
@@ -179,7 +181,7 @@ impl wk_report {
     };
 }
 
-/// What a frame spends time on.
+/// Effect whose cost is measured.
 pub type wk_effect = u32;
 /// Tables over the planet: built when the air changes.
 pub const WK_EFFECT_SKY_TABLES: wk_effect = 0;
@@ -191,11 +193,11 @@ pub const WK_EFFECT_BACKGROUND: wk_effect = 2;
 pub const WK_EFFECT_MEDIUM: wk_effect = 3;
 /// Exposure, tone curve, encoding.
 pub const WK_EFFECT_TONE: wk_effect = 4;
-/// Stages in one draw that the target's format does not let be drawn one by one.
+/// Stages in one draw, where the target's format does not allow separate draws.
 pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
 /// Textures for the host's own transparent shaders.
 pub const WK_EFFECT_VEIL: wk_effect = 6;
-/// Taking over the host's context and images, and giving them back.
+/// Taking the host's context and images, and giving them back.
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
 /// Rain.
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
@@ -204,7 +206,7 @@ pub const WK_EFFECT_SURFACE: wk_effect = 9;
 /// Water on the windscreen: its steps (after the sky's tables) and the lens.
 pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 
-/// What one effect of a frame cost; plain values of a list.
+/// Cost of one effect in a frame; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_effect_cost {
@@ -212,9 +214,9 @@ pub struct wk_effect_cost {
     pub effect: wk_effect,
     /// 0.
     pub reserved0: u32,
-    /// Its name for people, English; lives as long as the library.
+    /// Its name in English; lives as long as the library.
     pub name: *const c_char,
-    /// Milliseconds: wall time round a submission that is waited for, the CPU's part included. 0 if it did not run.
+    /// Wall time around a submission that is waited for, the CPU's part included, ms. 0 if it did not run.
     pub ms: f64,
 }
 
@@ -292,11 +294,11 @@ pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
     })
 }
 
-/// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty.
-/// What is wrong with a frame is found before any work: nothing is drawn, built or changed then.
+/// Records the stages of a frame and submits them. `stages` is a union of WK_STAGE_ constants, not empty. Welkin checks
+/// the frame before any work: after an error nothing is drawn, built or changed.
 /// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
-/// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT by
-/// the field's name; WK_ERROR_DEVICE_LOST.
+/// Errors: WK_ERROR_WRONG_ORDER if a stage comes twice or late; WK_ERROR_UNSUPPORTED and WK_ERROR_INVALID_ARGUMENT
+/// naming the field; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_record(
     view: *mut wk_view,
@@ -323,7 +325,7 @@ pub unsafe extern "C" fn wk_view_record(
     })
 }
 
-/// Says what the view's last frame took and showed.
+/// Gets costs and contents of the view's last frame.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut wk_report) -> wk_status {
@@ -367,10 +369,10 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
     })
 }
 
-/// Says what each effect of the view's last frame cost, in the order in which they happen. `*out_count` gets their number,
-/// 0 if the frame was not measured (WK_FRAME_MEASURE), also where `capacity` is too small (then nothing else is written
-/// and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later versions may
-/// know more effects.
+/// Gets the cost of each effect of the view's last frame, in the order in which they happen. `*out_count` gets their
+/// number, 0 if the frame was not measured (WK_FRAME_MEASURE), even if `capacity` is too small (then nothing else is
+/// written and the call fails) or 0 (then it succeeds). `cost_size` is sizeof(wk_effect_cost) of your header. Later
+/// versions may know more effects.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_costs(

@@ -1,18 +1,18 @@
 //! Vulkan hosts
 //!
-//! Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits itself: when wk_view_record
-//! returns, its work is on the queue. Vulkan wants a queue used by one thread at a time, so the host stays away from the
-//! queue during Welkin's calls on this device, or passes lock_queue and unlock_queue, which Welkin calls round every
-//! submission; no Welkin function may be called inside them.
+//! Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
+//! wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. So either keep other
+//! threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
+//! calls around every submission. Call no Welkin function inside them.
 //!
-//! An image is taken over in the layout the host left it in and comes back in the one it asks for. What the host
-//! submitted to the same queue before is waited for without a semaphore, and so is Welkin's work by what the host
-//! submits there afterwards. Semaphores order work with other queues.
+//! Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
+//! On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
+//! submits afterwards waits for Welkin's. Semaphores order work with other queues.
 //!
-//! Handles are passed as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
+//! Pass handles as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
 //!
 //! Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
-//! computes. Besides, enabled on the device and listed here:
+//! computes. For these features, enable on the device and list here:
 //!
 //! ```text
 //!     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions
@@ -22,11 +22,11 @@
 //!     ATTACHMENT and READ_ONLY layouts              synchronization2 in enabled_features
 //! ```
 //!
-//! Everything else is used if the host says that it enabled it, and else not.
+//! Welkin uses other extensions and features only if the host lists them.
 //!
-//! Views, contexts and textures go first, then the wk_device, then the VkDevice, then the VkInstance. While anything of
-//! a wk_device is alive, wk_device_destroy answers WK_ERROR_IN_USE: the VkDevice must then stay too. Vulkan cannot be
-//! asked whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
+//! Destroy views, contexts and textures first, then the wk_device, then the VkDevice, then the VkInstance. While a
+//! wk_device has children, wk_device_destroy answers WK_ERROR_IN_USE, and the VkDevice must stay too. Vulkan cannot
+//! tell whether a VkDevice still lives, so destroying it earlier crashes, as with objects of your own.
 
 use std::{
     ffi::{c_char, c_void},
@@ -45,7 +45,7 @@ use crate::error::Status;
 
 include!(concat!(env!("OUT_DIR"), "/init_vulkan.rs"));
 
-/// The host's vkGetInstanceProcAddr. Cast yours to this type: it answers a function pointer, or NULL.
+/// The host's vkGetInstanceProcAddr, cast to this type: it returns a function pointer, or NULL.
 pub type wk_vulkan_get_proc_fn =
     Option<unsafe extern "system" fn(instance: *mut c_void, name: *const c_char) -> *mut c_void>;
 
@@ -74,26 +74,26 @@ pub struct wk_vulkan_host_desc {
     pub instance_api_version: u32,
     /// Family of the queue; it must draw and compute. Default 0.
     pub queue_family_index: u32,
-    /// Which queue of the family. Default 0.
+    /// Index of the queue in the family. Default 0.
     pub queue_index: u32,
     /// Number of enabled_instance_extensions. Default 0.
     pub instance_extension_count: u32,
     /// Names of the instance extensions that the host enabled. Default NULL.
     pub enabled_instance_extensions: *const *const c_char,
-    /// Names of the device extensions that the host enabled; among them VK_KHR_swapchain where it presents. Default NULL.
+    /// Names of the device extensions that the host enabled, VK_KHR_swapchain among them if it presents. Default NULL.
     pub enabled_device_extensions: *const *const c_char,
     /// Number of enabled_device_extensions. Default 0.
     pub device_extension_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// What the host enabled: the VkDeviceCreateInfo it gave to vkCreateDevice, or a chain of VkPhysicalDevice..Features
-    /// structs. Read during the call. NULL (the default): no feature is enabled.
+    /// The features that the host enabled: the VkDeviceCreateInfo that it gave to vkCreateDevice, or a chain of
+    /// VkPhysicalDevice..Features structs. Read during the call. NULL (the default): no feature is enabled.
     pub enabled_features: *const c_void,
-    /// Takes the host's queue lock; with unlock_queue, or both NULL (the default).
+    /// Takes the host's queue lock. Give it together with unlock_queue, or leave both NULL (the default).
     pub lock_queue: wk_vulkan_queue_fn,
     /// Releases it.
     pub unlock_queue: wk_vulkan_queue_fn,
-    /// Handed to both. Default NULL.
+    /// Passed to both. Default NULL.
     pub user: *mut c_void,
 }
 
@@ -139,19 +139,19 @@ pub struct wk_vulkan_image {
     pub width: u32,
     /// Pixels. Default 0; must be given.
     pub height: u32,
-    /// Samples a pixel. Default 1. Colour of several needs sampleRateShading in enabled_features of the wk_vulkan_host_desc.
+    /// Samples of a pixel. Default 1. Colour with several needs sampleRateShading in enabled_features of the
+    /// wk_vulkan_host_desc.
     pub samples: u32,
     /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
     pub usage: u32,
-    /// Array layers that it was created with. Default 1. Of an occluder map, 1.
+    /// Array layers that it was created with. Default 1. For an occluder map it must be 1.
     pub array_layers: u32,
-    /// Layer that is handed over, as one eye of a stereo or multiview host; the others stay untouched. Default 0.
+    /// The layer handed over, such as one eye of a stereo or multiview host; the others stay untouched. Default 0.
     pub layer: u32,
-    /// VkImageLayout that the host left it in, of the layer that is handed over. Default 0 (UNDEFINED: its content may be
-    /// dropped; colour only).
+    /// VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be dropped; colour only).
     pub layout: u32,
-    /// VkImageLayout that the host wants it back in. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`, needs
-    /// VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
+    /// VkImageLayout in which the host wants it back. Default 0; must be given. PRESENT_SRC_KHR, here and in `layout`,
+    /// needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
     pub final_layout: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -225,16 +225,17 @@ pub struct wk_vulkan_target {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// What is drawn into. Default NULL.
+    /// The image to draw into. Default NULL.
     pub color: *const wk_vulkan_image,
-    /// The host's depth, as large as `color` and with as many samples. Where `color` has one sample (a resolved picture)
-    /// depth may have more: the first of each pixel counts. NULL (the default) shows the sky in every pixel.
+    /// The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
+    /// depth may have more; the first of each pixel then counts. NULL (the default) shows the sky in every pixel.
     pub depth: *const wk_vulkan_image,
-    /// Where 1, the host's pixel stays; where 0, weather is drawn. As large as `color`, one sample, another image. Default NULL.
+    /// A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
+    /// sample, another image. Default NULL.
     pub mask: *const wk_vulkan_image,
-    /// Waited for before anything is drawn; a binary one must have its signal submitted. At most 16.
+    /// Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16.
     pub waits: *const wk_vulkan_semaphore,
-    /// Signalled when all is drawn and the images are in their final layouts. At most 16.
+    /// Semaphores to signal when all is drawn and the images are in their final layouts. At most 16.
     pub signals: *const wk_vulkan_semaphore,
     /// Number of waits. Default 0.
     pub wait_count: u32,
@@ -244,12 +245,12 @@ pub struct wk_vulkan_target {
     pub signal_count: u32,
     /// Bytes from one signal to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
     pub signal_stride: u32,
-    /// What each pixel shows is made of: the byte of red is a wk_surface_class, 0 where wk_ground_grid or the context's default says
-    /// it. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+    /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
+    /// default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
     pub surface_classes: *const wk_vulkan_image,
-    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised formats, n in
-    /// float formats. What is no unit vector, as a cleared pixel, leaves it to the host's terrain and depth. As large as `color`, one
-    /// sample. Default NULL.
+    /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
+    /// formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
+    /// or depth. As large as `color`, one sample. Default NULL.
     pub normals: *const wk_vulkan_image,
 }
 
@@ -272,11 +273,11 @@ impl wk_vulkan_target {
     };
 }
 
-/// Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`, to be called before
-/// the host destroys its device; nothing of the host's is ever destroyed.
+/// Wraps the host's Vulkan device. On success `*out_device` is a new handle for `wk_device_destroy`; call that before
+/// you destroy your device. Welkin never destroys the host's objects.
 /// Thread: any that may use the queue.
-/// Errors: WK_ERROR_INVALID_ARGUMENT names a handle that is NULL or does not belong, or all extensions, features and fields
-/// that are missing; WK_ERROR_UNSUPPORTED what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+/// Errors: WK_ERROR_INVALID_ARGUMENT names a NULL or foreign handle, or all missing extensions, features and fields;
+/// WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_vulkan(
     desc: *const wk_vulkan_host_desc,
@@ -296,11 +297,11 @@ pub unsafe extern "C" fn wk_device_create_vulkan(
     })
 }
 
-/// Waits until the GPU no longer uses a VkImage and forgets it. An image that was handed over is forgotten before or after
-/// it is destroyed (an engine may rebuild its swapchain inside a call), but before a new one is handed over: Vulkan may give
-/// that the old one's number, and Welkin would draw into the dead image. Destroyed it is only when the GPU has done with it, as ever:
-/// after the signals of its last wk_view_record, or vkDeviceWaitIdle. A number that Welkin does not know is no error. Not
-/// for every frame.
+/// Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
+/// after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
+/// may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
+/// when the GPU has finished with it: after the signals of its last wk_view_record, or after vkDeviceWaitIdle. An
+/// unknown image is no error. Slow: do not call it in every frame.
 /// Thread: exclusive on the device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_forget_vulkan_image(device: *mut wk_device, image: u64) -> wk_status {

@@ -1,9 +1,9 @@
 //! Weather
 //!
-//! A wk_weather is what the host says the weather is: plain data in SI units, copied by every call that takes it. Start
-//! from WK_WEATHER_INIT (a clear standard day), a METAR report or a preset, and change what you know better. Zero is a
-//! value everywhere (0 degrees, north, calm, 0 %); what may be unknown has a bit in `has`, and where the bit is clear
-//! Welkin derives the value by a named physical law and ignores the field. All reals are doubles.
+//! A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
+//! clear standard day), a METAR report or a preset, and change what you know better. Zero is a value everywhere (0
+//! degrees, north, calm, 0 %). What may be unknown has a bit in `has`: where the bit is clear, Welkin ignores the field
+//! and derives the value by a named physical law. All reals are doubles.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -67,13 +67,13 @@ pub const WK_CLOUD_LAYER_HAS_WATER: wk_cloud_layer_has_flags = 2;
 /// droplet_radius_um
 pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
 
-/// How it falls.
+/// How precipitation falls.
 pub type wk_precipitation_flags = u32;
-/// From convective cloud (SH): fewer and larger drops, onset and end are sharp.
+/// From convective cloud (SH): fewer and larger drops, sharp onset and end.
 pub const WK_PRECIPITATION_SHOWERS: wk_precipitation_flags = 1;
 /// With thunder (TS).
 pub const WK_PRECIPITATION_THUNDERSTORM: wk_precipitation_flags = 2;
-/// With hail beside what the kind says (GR, GS).
+/// With hail besides the kind (GR, GS).
 pub const WK_PRECIPITATION_WITH_HAIL: wk_precipitation_flags = 4;
 
 /// One layer of cloud.
@@ -88,9 +88,9 @@ pub struct wk_cloud_layer {
     pub next: *const c_void,
     /// Which optional fields are set. Default 0.
     pub has: wk_cloud_layer_has_flags,
-    /// Which cloud. Default WK_CLOUD_UNKNOWN.
+    /// Kind of cloud. Default WK_CLOUD_UNKNOWN.
     pub kind: wk_cloud_kind,
-    /// Part of the sky it covers, fraction (eighths / 8). Range [0, 1], default 0.
+    /// Fraction of the sky that it covers (eighths / 8). Range [0, 1], default 0.
     pub cover: f64,
     /// Base above the station, m. Range [0, 20000], default 0.
     pub base_m: f64,
@@ -117,7 +117,7 @@ impl wk_cloud_layer {
     };
 }
 
-/// The weather at a station and moment. Heights are above the station unless they say otherwise.
+/// The weather at a station and moment. Heights are above the station unless stated otherwise.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_weather {
@@ -136,9 +136,9 @@ pub struct wk_weather {
     /// Optional: vertical visibility into an obscured sky, m. Range [0, 10000]; else the sky is not obscured. With fog
     /// it sets the fog's depth.
     pub vertical_visibility_m: f64,
-    /// Optional: runway visual range, m. Range [1, 10000]. For information; extinction follows visibility_m.
+    /// Optional: runway visual range, m. Range [1, 10000]. Information only; extinction follows visibility_m.
     pub runway_visual_range_m: f64,
-    /// Air at 2 m, degrees Celsius. Range [-90, 60], default 15.
+    /// Air temperature at 2 m, degrees Celsius. Range [-90, 60], default 15.
     pub temperature_c: f64,
     /// Relative humidity over water, fraction. Range [0, 1], default 0.5.
     pub relative_humidity: f64,
@@ -149,71 +149,73 @@ pub struct wk_weather {
     /// Ozone column, Dobson units. Range [0, 700], default 300.
     pub ozone_du: f64,
 
-    /// What the dry particles are. Default WK_AEROSOL_CONTINENTAL.
+    /// Kind of dry particles. Default WK_AEROSOL_CONTINENTAL.
     pub aerosol_kind: wk_aerosol_kind,
     /// Fog or mist. Default WK_FOG_NONE.
     pub fog_kind: wk_fog_kind,
-    /// Optional: extinction goes with wavelength^-exponent. Range [-1, 4]; else by kind.
+    /// Optional: exponent with which extinction falls, wavelength^-exponent. Range [-1, 4]; else by kind.
     pub aerosol_angstrom_exponent: f64,
     /// Optional: single scattering albedo at 550 nm. Range [0, 1]; else by kind and humidity.
     pub aerosol_single_scattering_albedo: f64,
     /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
     pub aerosol_asymmetry: f64,
-    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. Held to the station's altitude over
-    /// 4.6 at least (435 m at 2000 m): the sky counts densities from the sea.
+    /// Optional: height over which particles thin out by 1/e, m. Range [10, 20000]; else by kind. At least the
+    /// station's altitude over 4.6 is used (435 m at 2000 m), because the sky counts densities from the sea.
     pub aerosol_scale_height_m: f64,
     /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
     pub fog_top_m: f64,
-    /// Optional: part of the ground under fog, fraction. Range [0, 1]; else by kind.
+    /// Optional: fraction of the ground under fog. Range [0, 1]; else by kind.
     pub fog_coverage: f64,
     /// Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog
     /// that the reported visibility looks over or past.
     pub fog_visibility_inside_m: f64,
 
-    /// What falls. Default WK_PRECIPITATION_NONE.
+    /// Kind of precipitation. Default WK_PRECIPITATION_NONE.
     pub precipitation_kind: wk_precipitation_kind,
-    /// How it falls. Default 0.
+    /// How precipitation falls. Default 0.
     pub precipitation_flags: wk_precipitation_flags,
-    /// How much, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls.
+    /// Precipitation rate, mm/h of liquid water. Range [0, 500], default 0; must be 0 if nothing falls.
     pub precipitation_rate_mm_h: f64,
-    /// Optional: part of it that is liquid, fraction. Range [0, 1]; else by kind.
+    /// Optional: liquid fraction of it. Range [0, 1]; else by kind.
     pub precipitation_liquid_fraction: f64,
 
     /// Mean wind at 10 m above ground, m/s. Range [0, 120], default 0.
     pub wind_speed_m_s: f64,
-    /// Where it comes from, degrees clockwise from true north. Range [0, 360], default 0.
+    /// Direction that the wind comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub wind_from_deg: f64,
     /// Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence.
     pub wind_gust_m_s: f64,
-    /// Optional, with the next: the direction varies clockwise from here, degrees. Range [0, 360].
+    /// Optional, together with the next field: start of the range of varying direction, degrees; the range runs
+    /// clockwise. Range [0, 360].
     pub wind_variable_from_deg: f64,
-    /// To here, degrees. Range [0, 360]. 0 to 360 says that it varies all round (VRB).
+    /// End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB).
     pub wind_variable_to_deg: f64,
-    /// Optional: standard deviation of speed over its mean. Range [0, 1]; else from the roughness.
+    /// Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
+    /// roughness.
     pub wind_turbulence_intensity: f64,
 
     /// Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind.
     pub sea_significant_wave_height_m: f64,
-    /// Optional: water, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8.
+    /// Optional: water temperature, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8.
     pub sea_temperature_c: f64,
-    /// Optional, with the next two: significant height of the swell, m. Range [0, 20].
+    /// Optional, together with the next two fields: significant height of the swell, m. Range [0, 20].
     pub swell_height_m: f64,
-    /// Peak period of the swell, s. Range [1, 30] where the swell is set.
+    /// Peak period of the swell, s. Range [1, 30] if the swell is set.
     pub swell_period_s: f64,
-    /// Where the swell comes from, degrees clockwise from true north. Range [0, 360].
+    /// Direction that the swell comes from, degrees clockwise from true north. Range [0, 360].
     pub swell_from_deg: f64,
     /// Optional: WMO sea state, code table 3700. Range 0 to 9.
     pub sea_state: u32,
-    /// Optional: the ground as observed; else from precipitation, temperature and snow depth.
+    /// Optional: observed state of the ground; else from precipitation, temperature and snow depth.
     pub surface_state: wk_surface_state,
     /// Depth of lying snow, m. Range [0, 20], default 0.
     pub surface_snow_depth_m: f64,
     /// Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03.
     pub surface_roughness_length_m: f64,
 
-    /// Optional: depth of what the wind lifts, m. Range [0.1, 5000]; else by kind.
+    /// Optional: depth of the layer that the wind lifts, m. Range [0.1, 5000]; else by kind.
     pub lofted_top_m: f64,
-    /// What the wind lifts. Default WK_LOFTED_NONE.
+    /// Kind of matter that the wind lifts. Default WK_LOFTED_NONE.
     pub lofted_kind: wk_lofted_kind,
     /// Number of cloud layers, at most wk_caps.max_cloud_layers (16). Default 0.
     pub cloud_count: u32,
@@ -292,7 +294,7 @@ pub const WK_OVERRIDE_HUMIDITY_GROWTH: wk_override_flags = 0x10;
 pub const WK_OVERRIDE_RAYLEIGH_DENSITY: wk_override_flags = 0x20;
 /// rayleigh_scale_height_m
 pub const WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT: wk_override_flags = 0x40;
-/// Rain does not bring a cloud that the report has not.
+/// Rain adds no cloud that the report lacks.
 pub const WK_OVERRIDE_RAIN_WITHOUT_CLOUD: wk_override_flags = 0x80;
 /// cloud_direct and cloud_diffuse
 pub const WK_OVERRIDE_CLOUD_LIGHT: wk_override_flags = 0x100;
@@ -301,7 +303,7 @@ pub const WK_OVERRIDE_WAVE_HEIGHT: wk_override_flags = 0x200;
 /// wetness
 pub const WK_OVERRIDE_WETNESS: wk_override_flags = 0x400;
 
-/// The host's own figures in place of the laws that tie the parts of the weather together. An extension: put it into
+/// Your own values in place of the laws that couple the parts of the weather. An extension: put it into
 /// wk_weather.next.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -312,7 +314,7 @@ pub struct wk_weather_overrides {
     pub struct_type: wk_struct_type,
     /// The next extension. Default NULL.
     pub next: *const c_void,
-    /// Which fields are set; the laws give the others. Default 0.
+    /// Which fields are set; laws give the others. Default 0.
     pub set: wk_override_flags,
     /// Must be 0.
     pub reserved0: u32,
@@ -320,23 +322,24 @@ pub struct wk_weather_overrides {
     pub aerosol_extinction_per_m: f64,
     /// Extinction inside the ground layer, 1/m, in place of the rest of the visibility. Range [0, 10].
     pub fog_extinction_per_m: f64,
-    /// Extinction of what falls, 1/m, in place of the drop and flake spectra's. Range [0, 10].
+    /// Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10].
     pub precipitation_extinction_per_m: f64,
-    /// Visibility that the air above a mist or fog keeps, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
+    /// Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
     pub visibility_above_fog_m: f64,
-    /// Growth of particles by humidity over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches it off.
+    /// Growth factor of particles by humidity, over their size at 80 %. Range [0.1, 20]; law: Haenel's; 1 switches
+    /// growth off.
     pub humidity_growth: f64,
     /// Air density at sea level over the standard's. Range [0, 10].
     pub rayleigh_density_ratio: f64,
     /// Scale height of the air, m. Range [100, 50000].
     pub rayleigh_scale_height_m: f64,
-    /// Part of the sun's beam below the clouds. Range [0, 1].
+    /// Fraction of the sun's direct beam that passes the clouds. Range [0, 1].
     pub cloud_direct: f64,
-    /// Diffuse light below the clouds as part of the light above. Range [0, 1].
+    /// Diffuse light below the clouds as a fraction of the light above. Range [0, 1].
     pub cloud_diffuse: f64,
-    /// Significant wave height, m, in place of what wind or state say. Range [0, 30].
+    /// Significant wave height, m, in place of what wind or sea state give. Range [0, 30].
     pub wave_height_m: f64,
-    /// Wetness of the ground, in place of what falls on it. Range [0, 1].
+    /// Wetness of the ground, in place of what precipitation gives. Range [0, 1].
     pub wetness: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Kinds of weather
 //!
-//! What a report names by words. The numbers are stable for ever.
+//! Kinds that a report names by words. The numbers never change.
 
-/// What the dry particles of the air are.
+/// Kind of the air's dry particles.
 pub type wk_aerosol_kind = u32;
 /// Average continental air: soil, soot-poor industry, sulphates.
 pub const WK_AEROSOL_CONTINENTAL: wk_aerosol_kind = 0;
@@ -27,7 +27,7 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 
 /// Fog and mist: suspended droplets at the ground.
 pub type wk_fog_kind = u32;
-/// No fog; what visibility lacks is the aerosol's.
+/// No fog: the aerosol takes what visibility lacks.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
 /// Mist (METAR BR): droplets, 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;
@@ -44,7 +44,7 @@ pub const WK_FOG_FREEZING: wk_fog_kind = 6;
 
 /// Cloud genera, and the two that METAR names.
 pub type wk_cloud_kind = u32;
-/// Not known: chosen from height, cover and precipitation by derive.
+/// Not known: Welkin chooses by height, cover and precipitation.
 pub const WK_CLOUD_UNKNOWN: wk_cloud_kind = 0;
 /// Low grey sheet.
 pub const WK_CLOUD_STRATUS: wk_cloud_kind = 1;
@@ -69,9 +69,9 @@ pub const WK_CLOUD_CIRROSTRATUS: wk_cloud_kind = 10;
 /// High ripples of ice.
 pub const WK_CLOUD_CIRROCUMULUS: wk_cloud_kind = 11;
 
-/// What falls. The types of rain: frontal (stratiform) is RAIN, usually 1 to 10 mm/h; convective is RAIN with
-/// WK_PRECIPITATION_SHOWERS, 10 to 100; relief (orographic) rain, many small drops, is DRIZZLE of 0.5 to 3; drizzle itself 0.1 to
-/// 1. docs/rain.md has the drop sizes of each.
+/// Kind of precipitation. For the types of rain choose: frontal (stratiform): RAIN, usually 1 to 10 mm/h; convective:
+/// RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic), with many small drops: DRIZZLE, 0.5 to 3
+/// mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
 pub type wk_precipitation_kind = u32;
 /// Nothing falls; the rate must be 0.
 pub const WK_PRECIPITATION_NONE: wk_precipitation_kind = 0;
@@ -98,7 +98,7 @@ pub const WK_PRECIPITATION_FREEZING_DRIZZLE: wk_precipitation_kind = 10;
 /// Freezing rain (FZRA).
 pub const WK_PRECIPITATION_FREEZING_RAIN: wk_precipitation_kind = 11;
 
-/// What the wind lifts from the ground.
+/// Kind of matter that the wind lifts from the ground.
 pub type wk_lofted_kind = u32;
 /// Nothing.
 pub const WK_LOFTED_NONE: wk_lofted_kind = 0;
@@ -115,7 +115,7 @@ pub const WK_LOFTED_BLOWING_SAND: wk_lofted_kind = 5;
 /// Blowing spray (BLPY).
 pub const WK_LOFTED_BLOWING_SPRAY: wk_lofted_kind = 6;
 
-/// The ground's state as an observer names it.
+/// State of the ground as an observer names it.
 pub type wk_surface_state = u32;
 /// Dry.
 pub const WK_SURFACE_DRY: wk_surface_state = 0;
@@ -129,7 +129,7 @@ pub const WK_SURFACE_STANDING_WATER: wk_surface_state = 3;
 pub const WK_SURFACE_FROST: wk_surface_state = 4;
 /// Ice.
 pub const WK_SURFACE_ICE: wk_surface_state = 5;
-/// Snow lies; see snow_depth_m.
+/// Lying snow; see snow_depth_m.
 pub const WK_SURFACE_SNOW: wk_surface_state = 6;
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Queries: wind and rain
 //!
-//! How the air moves and how far it has come, what falls through it, and what lands on a surface, at any place and any
-//! simulation time that the timeline still knows: closed form, no device is asked. Vectors are (east, north, up) at the
-//! place. What is said of a surface is without shelter: it knows no roofs.
+//! How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
+//! simulation time that the timeline still knows. The answers are in closed form and need no device. Vectors are (east,
+//! north, up) at the place. Only wk_context_get_rain_on_at knows shelters.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -34,12 +34,12 @@ pub struct wk_wind {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Where the air goes at this moment, gusts included, m/s.
+    /// Velocity of the air at this moment, gusts included, m/s.
     pub velocity_m_s: [f64; 3],
-    /// The mean about which gusts go, m/s.
+    /// Mean velocity, without gusts, m/s.
     pub mean_m_s: [f64; 3],
-    /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m; the same at every place. What
-    /// goes with the air is moved by its differences, never by velocity times time: it is continuous whatever the weather
+    /// Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move what
+    /// the air carries by differences of this, never by velocity times time: it is continuous whatever the weather
     /// does, and the same to the last bit on every channel.
     pub displacement_m: [f64; 3],
     /// Standard deviation of gusts along the mean wind, m/s.
@@ -58,7 +58,7 @@ impl wk_wind {
     };
 }
 
-/// What falls at a place and time: rain and drizzle, hail and ice pellets; all 0 where none does.
+/// Precipitation at a place and time: rain and drizzle, hail and ice pellets; all 0 if nothing falls.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rainfall {
@@ -68,10 +68,10 @@ pub struct wk_rainfall {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// On level ground, mm/h.
+    /// Rate of rain and drizzle on level ground, mm/h.
     pub rate_mm_h: f64,
-    /// Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; their number
-    /// such that they make the rate).
+    /// Drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al. 1968; scaled
+    /// so that they give the rate).
     pub number_per_m3: f64,
     /// Water in the air, g/m^3.
     pub liquid_g_m3: f64,
@@ -79,13 +79,13 @@ pub struct wk_rainfall {
     pub extinction_per_m: f64,
     /// Mean diameter of the drops in the air, mm.
     pub mean_diameter_mm: f64,
-    /// Diameter below which half of the water in the air is, mm.
+    /// Median volume diameter, mm: half of the water in the air is in smaller drops.
     pub median_volume_diameter_mm: f64,
     /// Drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
-    /// Velocity of the drop that divides the water that falls into halves, m/s: one half comes steeper, the other flatter. Its
-    /// direction is the one along which to take a picture of what keeps rain off. It falls at Gunn and Kinzer's (1949) speed
-    /// and goes with the wind at 10 m.
+    /// Velocity of the median drop of the falling water, m/s: half of the water falls steeper, the other half flatter.
+    /// Draw occluder maps along its direction. It falls at Gunn and Kinzer's (1949) speed and moves with the wind at 10
+    /// m.
     pub fall_velocity_m_s: [f64; 3],
     /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
@@ -139,27 +139,27 @@ impl wk_rainfall {
     }
 }
 
-/// A surface that rain lands on, or an opening that it comes through; plain values of a list.
+/// A surface that rain lands on, or an opening that it falls through; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_surface {
-    /// Where, in the host's world.
+    /// Position in the host's world, m.
     pub position_m: [f64; 3],
-    /// The way its wet side faces, (east, north, up) of the place; of any length but 0.
+    /// Normal of its wet side, (east, north, up) of the place; of any length but 0.
     pub normal: [f64; 3],
-    /// How it moves, m/s (east, north, up). Range [-1000, 1000] each.
+    /// Its velocity, m/s (east, north, up). Range [-1000, 1000] each.
     pub velocity_m_s: [f64; 3],
-    /// Its size, m^2. Range [0, 1e6].
+    /// Its area, m^2. Range [0, 1e6].
     pub area_m2: f64,
 }
 
-/// What lands on a surface; plain values of a list.
+/// Rain on a surface; plain values of a list.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_on {
-    /// Water, mm/h: litres a square metre and hour.
+    /// Water, mm/h, which is litres for each square metre and hour.
     pub rate_mm_h: f64,
-    /// Drops of 0.1 to 6 mm on all of it, 1/s.
+    /// Drops of 0.1 to 6 mm on the whole surface, 1/s.
     pub drops_per_s: f64,
 }
 
@@ -169,10 +169,11 @@ impl wk_rain_on {
     }
 }
 
-/// The wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over the ground's
-/// roughness up to 100 m and stays as it is there above, gusts have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same over all the world. Heights count
-/// from the station's altitude, above which 10 m is where reports hold: a host with terrain asks at the station's altitude
-/// plus the height above its own ground. At and below the roughness length nothing blows.
+/// Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
+/// the ground's roughness up to 100 m and stays constant above. Gusts have Kaimal's spectrum (1972, as in IEC 61400-1)
+/// and are the same all over the world. Heights count from the station's altitude, and reported wind holds 10 m above
+/// it. A host with terrain asks at the station's altitude plus the height above its own ground. At and below the
+/// roughness length there is no wind.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -200,8 +201,8 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// What falls at a place of the host's world and a simulation time. Above the clouds that it falls from there is none: above
-/// their bases, on the mean over what covers the sky.
+/// Gets what falls at a place of the host's world and a simulation time. Above the clouds nothing falls: above their
+/// bases, averaged over what covers the sky.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -223,10 +224,11 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
     })
 }
 
-/// What lands on surfaces at a simulation time, at most wk_caps.max_batch of them: every size of drop along its own slant, in
-/// the wind at 10 m with its gusts and in that which the surface makes by moving. A windscreen at 25 m/s meets far more than
-/// the ground. What boxes (wk_context_set_shelters) keep off a point 5 cm before the surface does not land; maps are not asked. `surface_size` and `on_size` are sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. One wrong
-/// surface, and nothing is written.
+/// Gets what lands on surfaces at a simulation time, at most wk_caps.max_batch of them. Every size of drop comes along
+/// its own slant, in the wind at 10 m with its gusts and in the wind that the surface makes by moving. A windscreen at
+/// 25 m/s meets far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm
+/// before the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+/// sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; the field of a surface by name and range.
 #[unsafe(no_mangle)]

@@ -1,7 +1,8 @@
 //! Wind that varies in space
 //!
-//! A host that knows how air flows round its buildings, over its deck or under its rotor gives the velocities on a grid. They
-//! blow in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. All else goes with the weather's wind.
+//! If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
+//! They act in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. Everything else follows the weather's
+//! wind.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -21,15 +22,16 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_wind_grid.rs"));
 
-/// What the velocities of a grid are.
+/// Meaning of a grid's velocities.
 pub type wk_wind_grid_kind = u32;
-/// The whole wind: it replaces the weather's within the grid.
+/// The whole wind: replaces the weather's wind inside the grid.
 pub const WK_WIND_GRID_WHOLE: wk_wind_grid_kind = 0;
-/// What is to be added to the weather's wind.
+/// A difference: added to the weather's wind.
 pub const WK_WIND_GRID_ADDED: wk_wind_grid_kind = 1;
 
-/// Velocities of the air at the nodes of a grid that is level and aligned to true north; between the nodes they go linearly
-/// along each axis. Outside blows the weather's wind: give the grid room until the flow has become it again.
+/// Velocities of the air at the nodes of a grid that is level and aligned to true north, linear between nodes along
+/// each axis. Outside the grid the weather's wind blows: make the grid large enough for the flow to have become that
+/// wind at its border.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_wind_grid {
@@ -41,16 +43,16 @@ pub struct wk_wind_grid {
     pub next: *const c_void,
     /// The lowest node farthest to the south-west, in the host's world, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub origin_m: [f64; 3],
-    /// From node to node east, north and up, m. Range [0.01, 10 000], default 1, 1, 1.
+    /// Distance between nodes east, north and up, m. Range [0.01, 10 000], default 1, 1, 1.
     pub cell_m: [f64; 3],
-    /// Nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2.
+    /// Number of nodes east, north and up. Range 2 to 64, 64 and 32, default 2, 2, 2.
     pub nodes: [u32; 3],
     /// A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE.
     pub kind: wk_wind_grid_kind,
-    /// Three numbers a node (east, north, up), m/s, of at most 300 m/s together; the node to the east comes next, after a row
-    /// the next row to the north, after a layer the next layer up. Copied by the call.
+    /// Three numbers for each node (east, north, up), m/s, of at most 300 m/s together. Nodes run from west to east,
+    /// rows from south to north, layers upwards. Copied by the call.
     pub velocities_m_s: *const f32,
-    /// Nodes in velocities_m_s: the product of `nodes`.
+    /// Number of nodes in velocities_m_s: the product of `nodes`.
     pub velocity_count: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -71,7 +73,7 @@ impl wk_wind_grid {
     };
 }
 
-/// Sets a wind that varies in space, in place of that before; NULL leaves the weather's alone. Unchanged after an error.
+/// Sets a wind that varies in space, in place of the one before; NULL removes it. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -1,15 +1,16 @@
 //! Water on the windscreen
 //!
-//! A view may look through a window: rain lands on it at the rate and speed at which the window meets it, beads merge, run
-//! down by gravity or up by the air, are wiped, and bend the picture behind them; mist on the inside blurs it. The stage
-//! LENS draws that over all that was drawn so far, within the window only; pixels of the mask stay. In a call with TONE the
-//! glass lies before the tone curve where the target is a float one, else after it.
+//! A view may look through a window. Rain lands on it at the rate and speed at which the window meets it. Beads merge,
+//! run down by gravity or up by the air, are wiped, and bend the picture behind them. Mist on the inside blurs the
+//! picture. The stage LENS draws this over everything drawn so far, inside the window only; pixels of the mask stay. In
+//! a call with TONE the glass lies before the tone curve if the target is a float one, else after it.
 //!
-//! The water is part of the view and moves on a grid of 1/60 s from simulation time 0, with the frame that records
-//! WK_STAGE_PREPARE or first comes after: the frame rate changes nothing, views of one seed and history agree bit for bit.
-//! At the first frame, after WK_FRAME_CUT, and where a frame comes more than half a second after the one before, it takes the
-//! declared state of that moment, a pure function of (seed, time, rain); with WK_FRAME_NO_HISTORY it always has that state.
-//! Without a windscreen, or where it is dry and clear, LENS costs nothing.
+//! The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
+//! WK_STAGE_PREPARE or the first stage after it. The frame rate changes nothing, and views of one seed and history
+//! agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second after the
+//! one before, the water takes the declared state of that moment: a function of seed, time and rain. With
+//! WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
+//! nothing.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -29,7 +30,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_windscreen.rs"));
 
-/// Where the glass is.
+/// Shape of the glass.
 pub type wk_windscreen_pane = u32;
 /// A flat window of four corners.
 pub const WK_WINDSCREEN_PANE_QUAD: wk_windscreen_pane = 0;
@@ -49,16 +50,16 @@ pub struct wk_wiper_arm {
     /// Pivot, m right of and above the pane's lower left corner (that of its bounds), along the glass. Range [-4, 12] each.
     /// Default 0, 0.
     pub pivot_m: [f64; 2],
-    /// From the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
+    /// Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
     pub length_m: f64,
-    /// From the pivot to the blade's inner end, m. Range [0, length_m), default 0.1.
+    /// Distance from the pivot to the blade's inner end, m. Range [0, length_m), default 0.1.
     pub inner_radius_m: f64,
     /// Angle of the parked blade, degrees anticlockwise from the glass's right as seen from the camera. Range [-360, 360],
     /// default 0.
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
     pub far_deg: f64,
-    /// Where the blade is in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
+    /// Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves evenly. Default 0.
     pub position: f64,
     /// Width of the rubber on the glass, m. Range [0, 0.1], default 0.006.
     pub blade_width_m: f64,
@@ -100,15 +101,15 @@ pub struct wk_windscreen {
     pub corners_m: [f64; 12],
     /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
     pub distance_m: f64,
-    /// Velocity of the glass against the air (the vehicle's less the wind's) in the camera's axes, m/s: decides how many
-    /// drops it meets. Range [-400, 400] each, default 0, 0, 0.
+    /// Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s: decides
+    /// how many drops it meets. Range [-400, 400] each, default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
     /// Speed of the air along the glass at the drops' height, upwards, m/s: drives the beads; about 0.7 of the vehicle's speed
     /// on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass: 0 in a tunnel that Welkin is not told of. What wk_context_set_shelters
-    /// and wk_context_set_occluder_maps tell of keeps rain off each part of the pane by itself, but for the vehicle's own box: one
-    /// that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
+    /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as
+    /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
+    /// not count: one that holds the camera and ends within 3 m before the glass. Range [0, 1], default 1.
     pub exposed: f64,
     /// Mist on the inside. Range [0, 1], default 0.
     pub fogging: f64,
@@ -154,7 +155,7 @@ pub struct wk_windscreen_report {
     pub next: *const c_void,
     /// Drops that hit the pane in a second (rain from 0.1 mm of diameter).
     pub drops_per_s: f64,
-    /// Water that hits it, mm/h of its area.
+    /// Water that hits it, mm/h on its area.
     pub water_mm_h: f64,
     /// Share of the pane under water, 0 to 1.
     pub covered: f64,
@@ -218,9 +219,9 @@ unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     Ok(screen)
 }
 
-/// Sets the window that the view looks through; NULL takes it away. A host that drives, wipes or turns its head sets it anew
-/// before each frame: the water stays on the glass as long as its size does. Unchanged after an error.
-/// The stage LENS then answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
+/// Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
+/// before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
+/// a window the stage LENS answers WK_ERROR_UNSUPPORTED for multisampled colour and for projections of parallel rays.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -235,8 +236,9 @@ pub unsafe extern "C" fn wk_view_set_windscreen(view: *mut wk_view, windscreen: 
     })
 }
 
-/// Says how much water is on the view's windscreen as of its last frame, and what it meets. Reads the state back and waits
-/// for the GPU: for a figure now and then, not for every frame. All 0 without a windscreen or before its first frame.
+/// Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
+/// and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before its first
+/// frame.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

@@ -240,7 +240,7 @@ impl Context {
     /// [`Timeline::change`].
     ///
     /// # Errors
-    /// As [`derive`] and [`Timeline::change`]; the weather stays as it was.
+    /// As [`derive()`] and [`Timeline::change`]; the weather stays as it was.
     pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
         self.timeline.change(derive(weather)?, start_s, transition_s)?;
         self.show_terrain()

@@ -15,10 +15,10 @@
 //!   along the pixel's ray in closed form. So fog conserves energy: it neither glows nor blackens, is bright at noon,
 //!   brighter toward a low sun, dark at night, and everything far away converges to the same radiance, ground or sky.
 //! * The compatibility laws of older simulators (linear, exponential, exponential squared, on range or plane
-//!   distance) are [`Law::Linear`] and its siblings.
+//!   distance) are [`CompatibilityLaw`].
 //!
 //! # Error
-//! The shader follows [`reference`] to f32. The light of [`reference`] itself, against adding and doubling over optical depths
+//! The shader follows [`mod@reference`] to f32. The light of [`mod@reference`] itself, against adding and doubling over optical depths
 //! from 0.3 to 16 and three heights of the sun, more than 8 degrees from the sun: median 4.5 %, 95th percentile 19 %, the mean
 //! over directions within 12 %, in haze and in droplets (`cargo test --test fog adding_and_doubling`). A layer's transmittance
 //! is exact.

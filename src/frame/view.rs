@@ -74,7 +74,7 @@ impl View {
     /// Makes a view of `context`.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`], or a GPU fault.
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
@@ -126,7 +126,7 @@ impl View {
     /// Sets how rain is drawn. Default: [`RainSettings::default`].
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
     pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
         settings.validate_on(&self.device)?;
         self.rain.settings = settings;
@@ -137,7 +137,7 @@ impl View {
     /// the first call of this function on.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`], or a GPU fault.
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn frame_textures(&mut self) -> Result<FrameTextures> {
         let device = self.device.clone();
         let _entered = device.enter()?;
@@ -152,8 +152,8 @@ impl View {
     /// The calls of one frame share `frame.frame_id` and come in the order of the stages; a new id begins a new frame.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] and [`Status::Unsupported`] naming the field, [`Status::WrongOrder`] if a stage comes
-    /// twice or late, [`Status::DeviceLost`]. After an error nothing was drawn by this call.
+    /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`] naming the field, [`crate::Status::WrongOrder`] if
+    /// a stage comes twice or late, [`crate::Status::DeviceLost`]. After an error nothing was drawn by this call.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let device = self.device.clone();
         self.check_call(frame, stages)?;
@@ -188,7 +188,7 @@ impl View {
     /// As [`View::record`], into a Rust host's own encoder; the host submits.
     ///
     /// # Errors
-    /// As [`View::record`]; [`Status::Unsupported`] for a frame that is to be measured, which only who submits can.
+    /// As [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission, which the host makes here.
     pub fn record_into(
         &mut self,
         context: &Context,

@@ -4,7 +4,7 @@
 //! **State.** The glass is a lattice of cells of 4 mm, at most one bead of water in each: its volume, its place inside
 //! the cell, whether it runs; beside it how many drops have hit the cell since it was last cleared (the fine beads are
 //! drawn from that number) and a thin film. Everything is an integer, and a step uses integer arithmetic only
-//! (`shaders/glass/cells.wgsl`; the twin is [`reference`]): the same seed and times give the same bits on every driver.
+//! (`shaders/glass/cells.wgsl`; the twin is [`mod@reference`]): the same seed and times give the same bits on every driver.
 //! What needs physics in floating point, speeds, rates, retention, becomes tables of integers on the CPU once a step
 //! ([`step`], from the laws in [`laws`]).
 //!

@@ -9,7 +9,7 @@
 //! paved. Costs one sky lookup a pixel and nothing where it is dry.
 //!
 //! Right for a host that hands over scene-linear luminance: the ground's albedo then follows from its luminance and the
-//! light on it (a surface in shadow is taken for a darker one and loses up to a sixth too much). In the display's spaces the
+//! light on it (a surface in shadow is taken for a darker one and darkens too much). In the display's spaces the
 //! shown colour is taken for the albedo, darkened, and the mirrored light added through the tone curve. Mirrors see the sky
 //! and level ground, no objects.
 

@@ -4,7 +4,7 @@
 //! A state moves on by steps of [`STEP_S`] that begin at whole multiples of it, so that it does not depend on how often it is
 //! asked. In a step rain wets (minus what freezes), pores fill, the film runs off into the hollows and away, hollows leak and
 //! overflow, and all of it dries by Penman's law. Each part is solved over the whole step, so that no step can overshoot.
-//! Not in it: freezing and thawing, dew. On the host's terrain ([`super::terrain`]) each cell has film and pores by these laws,
+//! Not in it: freezing and thawing, dew. On the host's terrain (`terrain.rs`) each cell has film and pores by these laws,
 //! and what runs off stands in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};

@@ -8,7 +8,7 @@
 //!
 //! The innermost shell holds every drop of its volume. Each further one is wider by the cube root of 2 and holds as many
 //! drops, each of which stands for twice as many as one of the last: so streaks make together the contrast that all drops
-//! would, those included that are too far to be drawn (`docs/rain.md`, `docs/lab`).
+//! would, those included that are too far to be drawn (`docs/lab/README.md`, the chart of rain).
 
 use glam::DVec3;
 

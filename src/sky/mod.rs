@@ -23,7 +23,7 @@
 //! up, x and y any two level axes, the same for directions and lamps.
 //!
 //! # Errors of the default
-//! Against [`reference`] solved finely, at altitudes from 1 m to 200 km, with the sun down to 95 degrees from the zenith, in
+//! Against [`mod@reference`] solved finely, at altitudes from 1 m to 200 km, with the sun down to 95 degrees from the zenith, in
 //! all directions and at distances from 700 m. `cargo test --test sky_gpu default_model` prints these figures and fails where
 //! they are exceeded:
 //!

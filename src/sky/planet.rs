@@ -1,7 +1,7 @@
 //! What the sky needs to know of a planet: its air, its ground and its sun, with units and accepted ranges.
 //!
 //! A [`Planet`] is plain data. Everything that walks over its fields (range checks, the planet file, the hash that
-//! names cached tables) reads one list, [`FIELDS`], so that a new field cannot be forgotten in one of them.
+//! names cached tables) reads one list, `FIELDS`, so that a new field cannot be forgotten in one of them.
 
 use std::fmt::Write as _;
 

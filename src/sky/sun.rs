@@ -108,7 +108,7 @@ pub struct SunPosition {
 /// The sun over `place` at `utc`: NREL's solar position algorithm (Reda & Andreas 2004), topocentric, +-0.0005 degrees.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] for a place or time out of range.
+/// [`crate::Status::InvalidArgument`] for a place or time out of range.
 pub fn sun_position(utc: Utc, place: &Place) -> Result<SunPosition> {
     place.validate()?;
     Ok(Turned::new(&Geocentric::at(utc)?, utc, place).sun())

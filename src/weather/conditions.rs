@@ -345,7 +345,7 @@ impl Conditions {
     }
 
     /// Part of the sky hidden by cloud: 1 - product of (1 - cover), layers placed independently (random overlap), or more while one
-    /// overcast comes for another ([`Conditions::clear_sky`]).
+    /// overcast comes for another.
     pub fn cloud_cover(&self) -> f64 {
         1.0 - self.clear_sky()
     }

@@ -63,7 +63,7 @@ pub fn derive(weather: &Weather) -> Result<Conditions> {
     derive_with(weather, &Overrides::default())
 }
 
-/// As [`derive`], with the host's figures in place of some laws.
+/// As [`derive()`], with the host's figures in place of some laws.
 ///
 /// The reported visibility V is total, so everything in it is counted once: extinction ln 20 / V is shared by air
 /// (Bodhaine et al. 1999), what falls (drop and flake spectra, held to what V leaves) and particles, which take the rest.

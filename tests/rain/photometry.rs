@@ -1,7 +1,7 @@
 //! How much rain shows: streaks against the photometric model of Garg and Nayar (2007), the rain's motion against drops that are
 //! drawn one by one ([`crate::brute`]), and what trainees see by day.
 //!
-//! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/rain-contrast.md.
+//! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
 
 use std::f64::consts::PI;
 

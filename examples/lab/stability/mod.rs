@@ -350,7 +350,7 @@ fn outline(canvas: &mut Canvas, panel: &Panel, nx: usize, ny: usize, at: &dyn Fn
 const SAYS: [(&str, &str); 14] = [
     (
         "quadrature",
-        "The rule with an offset of 0.3 leaves the last step out: it errs by per cents everywhere and by tens of per cent near the horizon. The closed form does not.",
+        "The rule with an offset of 0.3 leaves out the last step: it errs by some per cent everywhere and by tens of per cent near the horizon. The closed form does not.",
     ),
     (
         "horizon-distance",
@@ -366,11 +366,11 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "media",
-        "Air from none to ten thousand times the Earth's, and scale heights from 0 to 1000 km. The usual step (S - S T)/sigma gives 0/0 where the density underflows, and its series 1/(1 - f) diverges. Welkin stays finite and never below nothing; errors grow with optical depth, and beyond a depth of about ten the reference, cut at 40 orders, is no truth either: there only finiteness is shown.",
+        "Air from none to ten thousand times the Earth's, and scale heights from 0 to 1000 km. The usual step (S - S T)/sigma gives 0/0 where the density underflows, and its series 1/(1 - f) diverges. Welkin stays finite and never negative. Errors grow with optical depth. Beyond a depth of about ten the reference, cut at 40 orders, is no truth either, so the map shows only finiteness there.",
     ),
     (
         "half-floats",
-        "What storing the radiance itself loses: fp16 plain, the square root in fp16 as Welkin's tables do, and fp32, which no table needs.",
+        "Error of storing radiance: plain fp16, the square root in fp16 as in Welkin's tables, and fp32, which no table needs.",
     ),
     ("phase", "The forward peak in f32. The usual denominator 1 + g^2 - 2 g cos subtracts equal numbers."),
     (
@@ -379,7 +379,7 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "origin",
-        "How far a point is misplaced, over its distance, when the world's origin is far away: world coordinates in f32 against Welkin's camera-relative ones.",
+        "Misplacement of a point over its distance when the world's origin is far away: world coordinates in f32 against Welkin's camera-relative ones.",
     ),
     (
         "fog-distance",
@@ -387,11 +387,11 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "drag",
-        "Rain from 0.1 to 6 mm that a gust of 20 m/s meets. Explicit Euler blows drops faster than the wind that blows them (jumps), then explodes: below .38 mm at 1/60 s, below 1 mm at .1 s, every drop at 1 s. Both of Welkin's steps are solved exactly while they last and stay finite at any length: the first is the law of linear drag itself, the second what integrated drops are stepped by; its error is that of a rate held during each step, and held between a quarter and 8 times that at rest.",
+        "A gust of 20 m/s meets drops of 0.1 to 6 mm. Explicit Euler makes drops faster than the wind that blows them (jumps), then explodes: below 0.38 mm at 1/60 s, below 1 mm at 0.1 s, every drop at 1 s. Welkin solves both of its steps exactly, so they stay finite at any length. The first is the law of linear drag itself. The second steps the integrated drops; its error comes from a drag rate that is constant during each step and limited to between a quarter and 8 times the rate at rest.",
     ),
     (
         "gust",
-        "What is placed at velocity times time is thrown by a gust, the farther the later it comes: at 1e6 s by kilometres. The displacement moves it as far as the wind blows.",
+        "A gust throws anything that is placed at velocity times time, and the later the gust, the farther: at 1e6 s by kilometres. The displacement moves it as far as the wind blows.",
     ),
     (
         "over-relaxation",
@@ -399,7 +399,7 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "time-steps",
-        "A change of weather followed by steps of dt, against one step: relaxing towards the new weather depends on the step; Welkin's timeline is a function of time.",
+        "A change of weather in steps of dt, against one step. Relaxing towards the new weather depends on the step; Welkin's timeline is a function of time.",
     ),
 ];
 

@@ -4,7 +4,7 @@
 //! [`Reference::radiance`], [`Reference::aerial`] and [`Reference::irradiance`] answer for any place and direction,
 //! from below the ground's level to space. Order 1 (light scattered once) is integrated along the asked ray with
 //! quadrature towards the sun at every point and cut at the edges of the planet's shadow; the orders above come from
-//! the source function on a grid ([`source`], [`solve`]), whose resolution can be doubled to see what it leaves.
+//! the source function on a grid ([`source`], `solve`), whose resolution can be doubled to see what it leaves.
 //!
 //! Conventions: altitude 0 is the ground's sphere; below it the density stays at its ground value and the ground lies
 //! at the point's own level. Angles in radians: zenith angles from the vertical at the observer, azimuth of the view

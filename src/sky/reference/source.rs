@@ -16,16 +16,16 @@ pub type Moments = [f64; 12];
 /// One order's source, or a sum of orders, at the nodes.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Moments [altitude][sun].
+    /// Moments by altitude and sun.
     pub gas: Vec<Moments>,
-    /// Haze source [altitude][sun][zenith][azimuth]; empty where haze does not scatter.
+    /// Haze source by altitude, sun, zenith and azimuth; empty where haze does not scatter.
     pub haze: Vec<[f64; 3]>,
-    /// Radiance that the ground reflects, [sun].
+    /// Radiance that the ground reflects, by sun.
     pub ground: Vec<[f64; 3]>,
 }
 
 impl Nodes {
-    /// Adds `other` times a factor that depends on the place [altitude][sun] and the wavelength.
+    /// Adds `other` times a factor that depends on the altitude, the sun and the wavelength.
     pub fn add(&mut self, other: &Self, factor: impl Fn(usize) -> [f64; 3]) {
         let directions = if self.gas.is_empty() { 0 } else { self.haze.len() / self.gas.len() };
         for (node, (a, b)) in self.gas.iter_mut().zip(&other.gas).enumerate() {
@@ -65,7 +65,7 @@ pub struct Source {
     /// Moments on a grid `REFINE` times finer, linear between nodes.
     gas: Vec<Moments>,
     gas_size: (usize, usize),
-    /// [altitude][sun][zenith][azimuth], `REFINE_HAZE` times finer in the first two; single precision, for it is large.
+    /// Haze source, laid out alike, `REFINE_HAZE` times finer in altitude and sun; single precision, because it is large.
     haze: Vec<[f32; 3]>,
     haze_size: (usize, usize),
     haze_directions: (usize, usize),
