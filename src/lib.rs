@@ -5,18 +5,23 @@
 //! nouns and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
+pub mod candidates;
 pub mod capi;
 pub mod context;
 pub mod error;
+mod falling;
 pub mod fog;
 pub mod frame;
 pub mod glass;
 pub mod gpu;
 pub mod ground;
+pub mod light;
+mod moment;
 pub mod plan;
 pub mod rain;
 pub mod scene;
 pub mod sky;
+mod surroundings;
 pub mod weather;
 pub mod wind;
 

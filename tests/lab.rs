@@ -46,7 +46,7 @@ use std::path::{Path, PathBuf};
 use picture::Picture;
 use stability::{Axis, Cell, Map, Panel, borders, numbers, particles, sky_maps};
 use store::{Journal, Table};
-use welkin::plan::{Effect, candidates};
+use welkin::candidates::{Effect, candidates};
 use welkin::rain::{drops::relax, integrated::step};
 
 /// A directory of its own, removed afterwards.
@@ -371,8 +371,8 @@ fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
     let steady = scenes::rain()[1];
     let mut host = rain::Host::new(&device, &steady, (80, 40)).unwrap();
-    let one = |name| welkin::plan::candidate(Effect::Rain, name).unwrap().method;
-    let welkin::plan::Method::Rain(veil) = one("veil") else { panic!("no rain") };
+    let one = |name| welkin::candidates::candidate(Effect::Rain, name).unwrap().method;
+    let welkin::candidates::Method::Rain(veil) = one("veil") else { panic!("no rain") };
     let (a, b) = (host.drawn_by(&veil).unwrap(), host.drawn_by(&veil).unwrap());
     // The same twice: nothing is brighter.
     assert!(a.brighter(&b, 1.0).iter().all(|d| d.abs() < 1e-9) && a.last == b.last);
@@ -449,7 +449,7 @@ fn the_committed_sky_chart_says_what_is_drawn_today() {
     let scene = scenes::SKY.into_iter().find(|s| s.name == "noon").unwrap();
     let truth = sky::truth(&[scene], scene.air, sky::SIZE, true).unwrap().remove(0);
     for name in ["directional-eighth", "isotropic-eighth"] {
-        let mut drawn = sky::make(&device, &welkin::plan::candidate(Effect::Sky, name).unwrap()).unwrap();
+        let mut drawn = sky::make(&device, &welkin::candidates::candidate(Effect::Sky, name).unwrap()).unwrap();
         drawn.rebuild(&scene.air.planet()).unwrap();
         let pixels = sky::pixels(&scene, sky::SIZE);
         let veils = drawn.veils(&scene, &pixels).unwrap();
@@ -509,7 +509,9 @@ fn the_committed_rain_chart_says_what_is_drawn_today() {
     let truth = host.truth(1).unwrap();
     println!("truth in {:?}", start.elapsed());
     for name in ["veil", "cones"] {
-        let welkin::plan::Method::Rain(method) = welkin::plan::candidate(Effect::Rain, name).unwrap().method else {
+        let welkin::candidates::Method::Rain(method) =
+            welkin::candidates::candidate(Effect::Rain, name).unwrap().method
+        else {
             panic!("no rain")
         };
         let mut errors = host.drawn_by(&method).unwrap().errors(&truth.0, truth.1);

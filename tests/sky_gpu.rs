@@ -1,9 +1,10 @@
 //! The drawn sky against published numbers and against the reference in f64.
 
 use welkin::gpu::{Device, DeviceOptions};
+use welkin::light::luminance;
 use welkin::sky::probe::{Probe, Question, Ray};
 use welkin::sky::reference::{Options, Reference, Resolution, View};
-use welkin::sky::spectral::{Conversion, SpectralSet, luminance};
+use welkin::sky::spectral::{Conversion, SpectralSet};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 
 fn golden_planet() -> Planet {

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use welkin::Result;
+use welkin::candidates::{Candidate, Effect, Method, candidates};
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::plan::front::pareto;
-use welkin::plan::{Candidate, Difference, Effect, Method, Price, candidates, difference, difference::percentile};
+use welkin::plan::{Difference, Price, difference, difference::percentile};
 use welkin::rain::{RainModel, RainSettings, candidates::RainMethod};
 
 use crate::command::Options;
@@ -135,9 +136,7 @@ fn over_scenes(pairs: &[(Picture, &Picture)]) -> Result<(Figures, Vec<f64>)> {
     let (mut perceptual, mut each) = (0.0, Vec::new());
     for (drawn, truth) in pairs {
         let white = truth.white();
-        let y = |p: &Picture| -> Vec<f64> {
-            p.texels.iter().map(|t| welkin::sky::spectral::luminance(t) / white).collect()
-        };
+        let y = |p: &Picture| -> Vec<f64> { p.texels.iter().map(|t| welkin::light::luminance(t) / white).collect() };
         a.extend(y(drawn));
         b.extend(y(truth));
         let figures = drawn.figures(truth)?;

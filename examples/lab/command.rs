@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use welkin::plan::{Candidate, Effect, candidate};
+use welkin::candidates::{Candidate, Effect, candidate};
 use welkin::{Error, Result, Status};
 
 use crate::{chart, compare, growth, report, stability};

@@ -1,7 +1,8 @@
 //! `lab compare A B`: two candidates' pictures side by side, their difference amplified, the figures under them.
 
 use image::RgbImage;
-use welkin::plan::{Candidate, Difference, Effect, Method, candidates, difference::percentile};
+use welkin::candidates::{Candidate, Effect, Method, candidates};
+use welkin::plan::{Difference, difference::percentile};
 use welkin::{Error, Result};
 
 use crate::canvas::{Anchor, Canvas, INK};
@@ -163,7 +164,7 @@ fn draw(heading: &str, panels: &[Panel; 4]) -> Canvas {
 
 /// The relative difference in luminance: red where A is brighter, blue where it is darker.
 fn amplified(a: &Picture, b: &Picture, gain: f64, white: f64) -> Vec<[f64; 3]> {
-    let y = welkin::sky::spectral::luminance;
+    let y = welkin::light::luminance;
     let one = |(a, b): (&[f64; 3], &[f64; 3])| two_colours(gain * (y(a) - y(b)) / (y(b).max(0.0) + 0.01 * white));
     a.texels.iter().zip(&b.texels).map(one).collect()
 }

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use welkin::candidates::{Candidate, Method};
 use welkin::fog::candidates::FogMethod;
 use welkin::fog::reference::fog_along;
 use welkin::fog::{FogModel, Law, Viewpoint};
 use welkin::gpu::{Device, pass, readback, shader};
-use welkin::plan::{Candidate, Method};
 use welkin::scene::depth::RANGE_SKY_M;
 use welkin::scene::{Camera, DepthMapping, ViewRays};
 use welkin::{Error, Result};

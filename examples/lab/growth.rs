@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use welkin::candidates::{Effect, Method, candidate};
 use welkin::context::{Context, ContextDesc, GivenDirection};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::Device;
 use welkin::plan::front::growth;
-use welkin::plan::{Effect, Method, candidate};
 use welkin::rain::{RainModel, RainSettings};
 use welkin::scene::Camera;
 use welkin::sky::{SkySettings, SkyTables, SkyVolume};

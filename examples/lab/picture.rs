@@ -1,8 +1,8 @@
 //! Pictures in linear colour: exposure, display, and how far apart two are.
 
 use image::RgbImage;
+use welkin::light::luminance;
 use welkin::plan::{Difference, difference};
-use welkin::sky::spectral::luminance;
 use welkin::{Error, Result, Status};
 
 /// A picture in linear Rec. 709, row by row from above.

@@ -11,13 +11,13 @@ use welkin::context::{Context, ContextDesc, GivenDirection, Scene};
 use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
+use welkin::light::luminance;
 use welkin::rain::{
     Classes, DropLight, Planes, RainModel, RainSettings, Shelter, candidates::RainMethod, cones, drops, lattice, light,
     sizes::DropSizes, source::SourceLod,
 };
 use welkin::scene::{Camera, HostLight};
 use welkin::sky::SkySettings;
-use welkin::sky::spectral::luminance;
 use welkin::weather::{Precipitation, PrecipitationKind, Weather};
 
 use crate::brute::Film;

@@ -1,7 +1,7 @@
 //! The scenes over which errors are measured.
 
+use welkin::candidates::Effect;
 use welkin::fog::{FogLayer, FogLight, Patches, Phase, Profile, koschmieder_extinction_per_m};
-use welkin::plan::Effect;
 use welkin::sky::Planet;
 use welkin::{Error, Result};
 

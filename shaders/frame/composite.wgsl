@@ -1,7 +1,7 @@
 // One pixel of the frame: sky behind, water on surfaces, air and fog between, tone on top. Host colour x T + L throughout.
 //!include "common/fullscreen.wgsl"
-//!include "frame/tone.wgsl"
-//!include "frame/veil.wgsl"
+//!include "common/tone.wgsl"
+//!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
 //!include "ground/surface.wgsl"
 

@@ -1,8 +1,8 @@
 // Where a texel of the veil's textures lies, and what it holds: light and transmittance over (picture, distance), tiled in two
 // textures. The host samples them with the published snippets (shaders/snippets); the mapping is theirs too.
 //!include "common/fullscreen.wgsl"
-//!include "frame/tone.wgsl"
-//!include "frame/veil.wgsl"
+//!include "common/tone.wgsl"
+//!include "between/veil.wgsl"
 
 const FROXEL_TILE: vec2f = vec2f(32.0, 18.0);
 const FROXEL_TILES: vec2f = vec2f(8.0, 4.0);

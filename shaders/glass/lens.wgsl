@@ -2,7 +2,7 @@
 // with a dark rim where light is thrown back; a film of water shakes the picture, mist on the inside blurs and whitens it.
 // Axes: right and up along the glass, outwards from it; metres, the eye behind the glass.
 //!include "common/fullscreen.wgsl"
-//!include "frame/tone.wgsl"
+//!include "common/tone.wgsl"
 
 struct Lens {
     // Ray direction in the picture's middle and its change per unit of clip x and y.

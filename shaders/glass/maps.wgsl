@@ -1,6 +1,6 @@
 // Which share of the rain the host's maps let through to each node of a net over the pane (src/glass/reach.rs).
 //!include "common/fullscreen.wgsl"
-//!include "rain/occluders.wgsl"
+//!include "surroundings/occluders.wgsl"
 
 const SIZES: u32 = 6u;
 // What a node has that all rain gets to.

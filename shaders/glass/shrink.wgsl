@@ -1,6 +1,6 @@
 // A picture's means over squares of texels, display values made linear: what a drop shows is that much smaller.
 //!include "common/fullscreen.wgsl"
-//!include "frame/tone.wgsl"
+//!include "common/tone.wgsl"
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 

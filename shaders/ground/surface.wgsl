@@ -1,11 +1,11 @@
 // A wet surface seen by the camera: the host's colour x through + light, before air and fog.
-//!include "frame/veil.wgsl"
-//!include "frame/ground_binding.wgsl"
+//!include "between/veil.wgsl"
+//!include "ground/binding.wgsl"
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
 //!include "ground/class.wgsl"
-//!include "rain/lights_binding.wgsl"
-//!include "rain/shelter.wgsl"
+//!include "surroundings/lights_binding.wgsl"
+//!include "surroundings/shelter.wgsl"
 
 // Whether the clear sky above the horizon is drawn at all.
 override CLEAR_SKY: bool = true;

@@ -1,5 +1,5 @@
 // The host's terrain at a point of a surface: the water on it, how it lies and what it is made of.
-//!include "frame/ground_binding.wgsl"
+//!include "ground/binding.wgsl"
 //!include "snippets/welkin_ground.wgsl"
 
 // Whether the host has given its terrain.

@@ -1,9 +1,9 @@
 // Drops without a state: where each is follows from (seed, id, time) alone, and one quad draws its streak.
 // The f64 twin and the derivation are in src/rain/lattice.rs and src/rain/reference.rs.
 //!include "common/depth.wgsl"
-//!include "rain/lights_binding.wgsl"
+//!include "surroundings/lights_binding.wgsl"
 //!include "rain/hash.wgsl"
-//!include "rain/shelter.wgsl"
+//!include "surroundings/shelter.wgsl"
 //!include "rain/phase.wgsl"
 //!include "rain/local.wgsl"
 

@@ -1,6 +1,6 @@
 // Columns of rain seen from afar: one quad over each, blended as a veil before the picture. The f64 twin of what a ray meets is
 // in src/rain/shaft.rs; the entry points read the depth: shaft_single.wgsl and shaft_multi.wgsl.
-//!include "frame/veil.wgsl"
+//!include "between/veil.wgsl"
 //!include "rain/area.wgsl"
 //!include "rain/phase.wgsl"
 

@@ -12,8 +12,7 @@ use std::{
 use super::host::Host;
 use crate::{
     error::{Error, Result, Status},
-    frame::Shared,
-    gpu::{Device, Entered},
+    gpu::{Device, Entered, Shared},
 };
 
 /// A device as the boundary sees it; every child of the device holds one.

@@ -119,8 +119,8 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     let dust = lifting::DUST_ABSORPTION_EXPONENT;
     let absorbing = c.aerosol.absorption_angstrom_exponent;
     let exponent = f.angstrom_exponent - (absorbing + f.lifted * (dust - absorbing));
-    let albedo = crate::sky::planet::EARTH_WAVELENGTHS_NM
-        .map(|nm| 1.0 - (absorbed * (nm / crate::sky::planet::EARTH_WAVELENGTHS_NM[1]).powf(exponent)).min(1.0));
+    let albedo = crate::light::EARTH_WAVELENGTHS_NM
+        .map(|nm| 1.0 - (absorbed * (nm / crate::light::EARTH_WAVELENGTHS_NM[1]).powf(exponent)).min(1.0));
     Some(FogLayer {
         extinction_per_m: (f.extinction_per_m / inside).min(crate::fog::MAX_EXTINCTION_PER_M),
         angstrom: f.angstrom_exponent.clamp(-1.0, 4.0),

@@ -2,44 +2,19 @@
 
 use glam::DVec3;
 
-use super::Context;
+use super::{Context, Light};
 use crate::{
     error::{Error, Result},
+    light::luminance,
     scene::Place,
     sky::{
         Planet,
         moon::{self, MoonPosition},
-        spectral::{Conversion, luminance, sun_rec709},
+        spectral::{Conversion, sun_rec709},
         sun::{self, SunPosition, Turned},
     },
     weather::{CloudLight, Conditions},
 };
-
-/// The sun or the moon as it stands over a place. Vectors are (east, north, up) there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
-    /// Unit vector towards it, without refraction: what scattering sees.
-    pub direction: DVec3,
-    /// Unit vector towards it as it appears, lifted by refraction.
-    pub apparent: DVec3,
-    /// Unit vector in the disc's plane towards the middle of the lit limb (moon).
-    pub bright_limb: DVec3,
-    /// Angular radius, rad.
-    pub angular_radius: f64,
-    /// Lit part of the face, 0 to 1.
-    pub lit: f64,
-    /// Strength above the air at the planet's three wavelengths, relative to the sun at 1 au.
-    pub spectrum: [f64; 3],
-    /// Illuminance above the air on a surface facing it, lux in linear Rec. 709: their luminance-weighted sum is the
-    /// illuminance.
-    pub illuminance_lux: [f64; 3],
-    /// Vertical over horizontal diameter of the disc, flattened by refraction.
-    pub flattening: f64,
-    /// Share of the direct light that clouds let through.
-    pub direct_share: f64,
-    /// Whether it adds to the picture.
-    pub matters: bool,
-}
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
 const SUN_LUX: f64 = 133_334.0;

@@ -28,12 +28,11 @@ use std::{
 
 use glam::DVec3;
 
+pub use crate::moment::{GroundLight, Light, Scene};
 pub use ground::{GroundAt, GroundModel};
-pub use lights::Light;
 pub use queries::{Between, LightAt};
 pub(crate) use rain::PaneAt;
 pub use rain::{RainAt, RainOn, RainSurface};
-pub use scene::{GroundLight, Scene};
 use sky::FollowedSky;
 pub use terrain::GroundCell;
 pub(crate) use update::UPDATE_TIME;
@@ -41,16 +40,16 @@ pub(crate) use update::UPDATE_TIME;
 use crate::{
     error::{Error, Result, check_range},
     fog::Law,
-    frame::{Exposure, Shared, ToneCurve},
-    gpu::Device,
+    gpu::{Device, Shared},
     ground::{Hollows, SurfaceClass, texture::TerrainTextures},
-    rain::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
+    light::{Exposure, ToneCurve},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
         Planet, SkySettings,
         ephemeris::Ephemeris,
         sun::{Utc, direction},
     },
+    surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid},
 };
@@ -166,7 +165,12 @@ impl Context {
         desc.exposure.validate()?;
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
-        let sky = Mutex::new(FollowedSky::new(&device, &shared.sky, &desc.sky, desc.cache_dir.clone())?);
+        let sky = Mutex::new(FollowedSky::new(
+            &device,
+            &*shared.get(|| Ok(crate::sky::SkyLibrary::default()))?,
+            &desc.sky,
+            desc.cache_dir.clone(),
+        )?);
         let color = lights::color_columns(&desc.planet);
         let hollows = Hollows::new(desc.seed);
         Ok(Self {

@@ -9,7 +9,7 @@ use super::terrain_saved::{values, words};
 use crate::{
     error::{Error, Result},
     fog::Law,
-    frame::Exposure,
+    light::Exposure,
     rain::{MAX_SHELTERS, Planes, Shelter},
     scene::{HostLight, MAX_LIGHTS},
     wind::{MAX_NODES, WindGrid, WindGridKind},

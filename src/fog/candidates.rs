@@ -3,7 +3,7 @@
 use super::laws::{CompatibilityLaw, Curve, DistanceKind};
 use super::{CONTRAST_THRESHOLD, FogLayer, Law};
 use crate::plan::parts::{Part, Worth};
-use crate::plan::{Candidate, Effect, Method, StepWork, Units, Work};
+use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Fog, mist, dust and what falls, as a layer. How much it matters: as the air (`sky::candidates::AIR`).
 pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
@@ -84,7 +84,7 @@ impl FogMethod {
 }
 
 /// All candidates.
-pub fn candidates() -> Vec<Candidate> {
+pub fn candidates() -> Vec<Listed<FogMethod>> {
     let froxels = |x, y, z| FogMethod::Froxels { cells: [x, y, z] };
     let named = [
         ("exact", FogMethod::Exact, true),
@@ -97,10 +97,9 @@ pub fn candidates() -> Vec<Candidate> {
         ("exponential", FogMethod::Curve(FogCurve::Exponential), true),
         ("exponential-squared", FogMethod::Curve(FogCurve::ExponentialSquared), true),
     ];
-    let candidate = |(name, method, offered): (&'static str, FogMethod, bool)| Candidate {
-        effect: Effect::Fog,
+    let candidate = |(name, method, offered): (&'static str, FogMethod, bool)| Listed {
         name,
-        method: Method::Fog(method),
+        method,
         work: method.work(),
         offered,
     };

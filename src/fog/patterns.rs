@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::reference::FogModel;
+use crate::light::sinc;
 
 /// Half of a path on which a wave of a pattern fades to a half, in its length / 2 pi: `PATCH_ROW` of
 /// `shaders/fog/patterns.wgsl`.
@@ -51,11 +52,6 @@ impl Curtains {
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
     }
-}
-
-/// sin x / x: mean over x to either side of a wave's middle of what it has there.
-pub(crate) fn sinc(x: f64) -> f64 {
-    if x.abs() < 1e-2 { 1.0 - x * x / 6.0 } else { x.sin() / x }
 }
 
 /// Mean of a wave's cosine along a ray, and how large it may be there.

@@ -11,7 +11,7 @@ use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
 use crate::error::Result;
 
 /// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
-const WAVELENGTHS_NM: [f64; 3] = crate::sky::planet::EARTH_WAVELENGTHS_NM;
+const WAVELENGTHS_NM: [f64; 3] = crate::light::EARTH_WAVELENGTHS_NM;
 
 /// The sun's zenith cosine is not taken smaller: a plane-parallel layer would let no light in, the curved one of the
 /// real planet lets a low sun pass sqrt(2 thickness/radius), some thousandths.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{Shared, target::Sampling};
+use super::{pipelines::Pipelines, target::Sampling};
 use crate::{
     context::Scene,
     error::Result,
@@ -229,7 +229,7 @@ impl AreaPass {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        (device, shared): (&Arc<Device>, &Shared),
+        (device, shared): (&Arc<Device>, &Pipelines),
         encoder: &mut wgpu::CommandEncoder,
         columns: &Columns<'_>,
         [frame, fog]: [&wgpu::Buffer; 2],
@@ -303,7 +303,7 @@ impl AreaPass {
     fn pipeline(
         &mut self,
         device: &Arc<Device>,
-        shared: &Shared,
+        shared: &Pipelines,
         kind: Kind,
         constants: &[Constant],
     ) -> Result<wgpu::RenderPipeline> {

@@ -16,8 +16,8 @@ use crate::{
         recent::Recent,
     },
     ground::GroundUniform,
-    rain::{Present, around_layout},
     sky::SkyVolume,
+    surroundings::{Present, layout as around_layout},
 };
 
 /// What distinguishes one compiled variant from another.

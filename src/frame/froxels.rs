@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::{
-    Shared,
+    pipelines::Pipelines,
     target::{Sampling, Stages},
 };
 use crate::{
@@ -77,7 +77,7 @@ impl Froxels {
     pub fn draw(
         &mut self,
         device: &Arc<Device>,
-        shared: &Shared,
+        shared: &Pipelines,
         encoder: &mut wgpu::CommandEncoder,
         (sampling, fog, march): (Sampling, bool, bool),
         (areas, groups): (Option<&wgpu::BindGroupLayout>, &[&wgpu::BindGroup]),

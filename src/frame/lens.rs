@@ -15,11 +15,12 @@ use super::{
 use crate::{
     context::{Context, PaneAt, Scene},
     error::{Error, Result},
+    falling::{drops::factor_in, sizes::DropSizes},
     glass::{
         Glass, GlassReport, LensFrame, Mapped, Moment, PaneUniform, Plane, Reach, SIZES, Windscreen, reference::Cells,
     },
-    rain::{Told, drops::factor_in, sizes::DropSizes},
     scene::Camera,
+    surroundings::Told,
 };
 
 /// Where a pane of the camera's is in the host's world.

@@ -15,8 +15,12 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{ColorSpace, Frame, ToneCurve, tone::srgb_encode};
-use crate::{context::Context, error::Result, sky::spectral::luminance};
+use super::{ColorSpace, Frame, ToneCurve};
+use crate::{
+    context::Context,
+    error::Result,
+    light::{luminance, tone::srgb_encode},
+};
 
 /// Albedo of the photographer's grey card.
 const GREY: f64 = 0.18;

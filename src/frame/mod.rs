@@ -10,24 +10,23 @@ mod froxels;
 mod lens;
 mod light;
 mod measure;
+mod pipelines;
 mod planned;
 mod rain;
-mod shared;
 mod stones;
 mod surface;
 mod target;
-pub mod tone;
 mod uniform;
 mod unit;
 mod view;
 
+pub use crate::gpu::Shared;
+pub use crate::light::tone::{self, Exposure, ToneCurve};
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;
 pub use measure::{Costs, Effect, RainReport, Report};
 pub use planned::PARTS;
-pub use shared::Shared;
 pub use target::{ColorSpace, Stages};
-pub use tone::{Exposure, ToneCurve};
 pub use view::View;
 
 use glam::DVec3;

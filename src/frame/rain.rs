@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    ColorSpace, Frame, FrameFlags, RainReport, Shared, ToneCurve,
+    ColorSpace, Frame, FrameFlags, RainReport, ToneCurve,
     areas::{AreaPass, Columns},
+    pipelines::Pipelines,
     stones::Ice,
     surface::rounding,
 };
@@ -15,7 +16,7 @@ use crate::{
     error::Result,
     gpu::Device,
     rain::{
-        Air, AreaField, Around, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
+        Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
         RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw, Streaks,
         cones::{BANDS_M, CONES},
         curtain, drops,
@@ -24,6 +25,7 @@ use crate::{
     },
     scene::ViewRays,
     sky::SkyVolume,
+    surroundings::Around,
     weather::Falling,
 };
 
@@ -258,7 +260,7 @@ impl Rain {
     /// Draws the columns of rain areas into the layer; whether there are any.
     pub fn draw_areas(
         &mut self,
-        (device, shared): (&Arc<Device>, &Shared),
+        (device, shared): (&Arc<Device>, &Pipelines),
         (encoder, frame, color): To<'_, '_>,
         (context, scene): (&Context, &Scene),
         (blocks, sky): ([&wgpu::Buffer; 2], &SkyVolume),

@@ -8,8 +8,8 @@ use crate::{
     error::Result,
     fog::{FogKind, FogModel, reference::layer_depth_above},
     ground::{GroundUniform, Seen},
-    rain::Told,
     scene::WorldKind,
+    surroundings::Told,
 };
 
 /// Largest number of a half float, with room for what follows.

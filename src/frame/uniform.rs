@@ -1,4 +1,4 @@
-//! The frame's uniform block, as `shaders/frame/uniform.wgsl` reads it.
+//! The frame's uniform block, as `shaders/common/frame.wgsl` reads it.
 
 use super::{ColorSpace, Frame};
 use crate::{
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn offsets_agree_with_the_shader() {
         shader::assert_layout!(
-            "frame/uniform.wgsl",
+            "common/frame.wgsl",
             "FrameUniform",
             FrameUniform,
             [

@@ -11,9 +11,9 @@ use super::{
     composite::Variant,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
+    pipelines::Pipelines,
     planned::{self, AIR, FOG, RAIN, SKY, situation},
     rain::Rain,
-    shared::Shared,
     surface,
     target::{ColorSpace, Sampling, Stages, can_be_apart, can_copy, color_copy, is_copy_of},
     uniform::{FrameUniform, uniform},
@@ -27,9 +27,10 @@ use crate::{
     gpu::{Device, KeptLayer, Layer, is_kept},
     ground::GroundUniform,
     plan::Planner,
-    rain::{Around, RainSettings, Streaks},
+    rain::{RainSettings, Streaks},
     scene::ViewRays,
     sky::SkyVolume,
+    surroundings::Around,
 };
 
 /// The textures of one bind group: it is made anew only when the host hands over others.
@@ -49,7 +50,7 @@ type OwnViews = [Option<wgpu::TextureView>; 3];
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
     pub(super) device: Arc<Device>,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<Pipelines>,
     uniform: wgpu::Buffer,
     fog: wgpu::Buffer,
     ground: wgpu::Buffer,
@@ -88,7 +89,7 @@ impl View {
         };
         let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
         let ground = buffer("ground", size_of::<GroundUniform>());
-        let shared = context.shared().clone();
+        let shared = context.shared().get(|| Pipelines::new(&device))?;
         let sky = SkyVolume::new(&*context.sky()?)?;
         let planner = Planner::new(planned::PARTS, planned::rebuild_work(sky.settings()));
         let rain = Rain::new(&device, RainSettings::default());

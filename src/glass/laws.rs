@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::rain::sizes::{DropSizes, LARGEST_MM, SMALLEST_MM};
+use crate::falling::sizes::{DropSizes, LARGEST_MM, SMALLEST_MM};
 
 /// Surface tension of water against air at 20 C, N/m (IAPWS 2014).
 pub const SURFACE_TENSION: f64 = 0.0728;

@@ -11,7 +11,7 @@ use crate::{
         Device,
         pass::{self, FullscreenDesc},
     },
-    rain::{Around, Told, around_layout},
+    surroundings::{Around, Told, layout as around_layout},
 };
 
 /// `PaneUniform` of `shaders/glass/maps.wgsl`, which explains the fields.

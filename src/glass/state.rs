@@ -14,8 +14,8 @@ use super::{
 };
 use crate::{
     error::Result,
+    falling::{drops::factor_in, sizes::DropSizes},
     gpu::{Device, readback},
-    rain::{drops::factor_in, sizes::DropSizes},
     scene::Camera,
     weather::Conditions,
 };

@@ -9,7 +9,7 @@ use super::{
     Reach, STEPS_PER_S, WiperArm,
     laws::{self, Arrivals},
 };
-use crate::rain::sizes::DropSizes;
+use crate::falling::sizes::DropSizes;
 
 /// Volume of water that a cell counts as 1, m^3.
 pub const VOLUME_UNIT_M3: f64 = 1e-13;

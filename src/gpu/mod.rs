@@ -18,7 +18,9 @@ pub mod vulkan;
 
 mod device;
 mod layer;
+mod shared;
 mod stand_in;
 mod x11;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};
 pub(crate) use layer::{KeptLayer, Layer, is_kept};
+pub use shared::Shared;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::rain::sizes::DropSizes;
+use crate::falling::sizes::DropSizes;
 
 /// Refractive index of water over that of air, visible light at 20 C (Hale & Querry 1973, rounded).
 pub const WATER_INDEX: f64 = 1.333;

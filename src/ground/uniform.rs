@@ -11,11 +11,11 @@ use super::{
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
 };
 use crate::{
-    context::Scene,
-    rain::{
+    falling::{
         drops::factor_in,
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
+    moment::Scene,
     weather::{Falling, SurfaceCover},
 };
 

@@ -14,8 +14,6 @@ use crate::{
     weather::{Falling, hydrometeors},
 };
 
-/// Most areas at a time.
-pub const MAX_AREAS: usize = 16;
 /// Most corners of a polygon.
 pub const MAX_CORNERS: usize = 8;
 /// Farthest that an area's centre may lie from what it is asked for, beside its own size, m: beyond, it is another part of

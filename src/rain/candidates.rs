@@ -2,7 +2,7 @@
 
 use super::{RainModel, RainSettings, STATE_BYTES, source::SourceLod};
 use crate::plan::parts::{Part, Worth};
-use crate::plan::{Candidate, Effect, Method, StepWork, Units, Work};
+use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Streaks and splashes of rain: each drop near the camera by itself, or cones that stand for them, or all rain as a veil that is the
 /// fog's. How much it matters: particles, of the weights in the machinery trainer's thesis.
@@ -70,7 +70,7 @@ impl RainMethod {
 }
 
 /// All candidates.
-pub fn candidates() -> Vec<Candidate> {
+pub fn candidates() -> Vec<Listed<RainMethod>> {
     let offered =
         |model, most_drops| RainMethod::Offered(RainSettings { model, most_drops, ..RainSettings::default() });
     let drops = |n| offered(RainModel::Drops, Some(n));
@@ -90,10 +90,9 @@ pub fn candidates() -> Vec<Candidate> {
         ("source-140k", source(140_000, 0)),
         ("source-replicated-140k", source(20_000, 6)),
     ];
-    let candidate = |(name, method): (&'static str, RainMethod)| Candidate {
-        effect: Effect::Rain,
+    let candidate = |(name, method): (&'static str, RainMethod)| Listed {
         name,
-        method: Method::Rain(method),
+        method,
         work: method.work(),
         offered: matches!(method, RainMethod::Offered(_)),
     };
@@ -116,7 +115,7 @@ mod tests {
         assert!(cost("drops-12k") < cost("drops-50k") && cost("drops-50k") < cost("drops-400k"));
         assert_eq!(cost("source-140k"), cost("source-replicated-140k"));
         for c in &all {
-            if let Method::Rain(RainMethod::Offered(s)) = c.method {
+            if let RainMethod::Offered(s) = c.method {
                 s.validate().unwrap();
             }
         }

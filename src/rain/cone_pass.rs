@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::{
-    around::Around,
     cones::{CONES, ConeUniform, SIDE, texture},
     open_pass::{self, OpenPass},
 };
@@ -13,6 +12,7 @@ use crate::{
         Device,
         pass::{FullscreenDesc, fullscreen},
     },
+    surroundings::Around,
 };
 
 /// What a view holds for rain on cones, made when it first draws them.

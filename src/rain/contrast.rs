@@ -12,9 +12,9 @@ use glam::{DVec2, DVec3};
 
 use super::{DropLight, Shot, uniforms::Classes};
 use crate::{
+    light::luminance,
     plan::{Unseen, parts::MOST_RUNGS},
     scene::ViewRays,
-    sky::spectral::luminance,
 };
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::context::Scene;
+use crate::moment::Scene;
 
 /// What lights the drops about a camera, cd/m^2 and lux or these times an exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]

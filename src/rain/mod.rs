@@ -9,7 +9,6 @@
 //! drops fall thinned by the area's rim near the camera and as a veil beyond.
 
 mod area;
-mod around;
 pub mod candidates;
 mod cone_pass;
 pub mod cones;
@@ -17,21 +16,15 @@ pub mod contrast;
 mod crown_pass;
 mod cull_pass;
 pub(crate) mod curtain;
-pub mod drops;
-pub mod ice;
 pub mod integrated;
 pub mod lattice;
 pub mod light;
 mod local;
-mod occluder;
-mod occluder_maps;
 mod open_pass;
 mod passes;
 pub mod probe;
 mod settings;
 mod shaft;
-pub mod shelter;
-pub mod sizes;
 pub mod source;
 pub mod splash;
 mod step_pass;
@@ -39,19 +32,19 @@ mod stone_pass;
 mod stones;
 mod uniforms;
 
-pub use area::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea};
+pub use crate::falling::{MAX_AREAS, drops, ice, sizes};
+pub use crate::surroundings::{
+    MAX_OCCLUDER_MAPS, MAX_PLANES, MAX_SHELTERS, OccluderMap, Planes, Shelter, Taken, shelter,
+};
+pub use area::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea};
 pub use light::DropLight;
-pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use settings::{RainModel, RainSettings};
-pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 
 pub(crate) use area::Shaft;
-pub(crate) use around::{Around, Present, Told, layout as around_layout};
 pub(crate) use cones::ConeUniform;
 pub(crate) use contrast::Streaks;
 pub(crate) use curtain::WAVES;
 pub(crate) use local::{Local, LocalUniform};
-pub(crate) use occluder_maps::OccluderMaps;
 pub(crate) use passes::{Drawn, RainLayer};
 pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform, OwnRain};
 pub(crate) use splash::Splashes;

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::{
     LocalUniform, StoneDraw,
-    around::{self, Around},
     cone_pass::{ConeKind, ConePass},
     cones::ConeUniform,
     crown_pass::CrownPass,
@@ -20,6 +19,7 @@ use crate::{
         Device, KeptLayer, Layer, is_kept,
         pass::{self, QuadsDesc},
     },
+    surroundings::{self, Around},
 };
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
@@ -122,7 +122,7 @@ impl RainLayer {
             }),
             staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            around: around::layout(&device.device),
+            around: surroundings::layout(&device.device),
             pipelines: [const { [None, None] }; 16],
             listed: None,
             cones: None,

@@ -9,11 +9,12 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    area::{MAX_AREAS, MAX_CORNERS, Outline, Shaft},
+    MAX_AREAS,
+    area::{MAX_CORNERS, Outline, Shaft},
     curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
     lattice::{HIDDEN_M, smoothstep},
 };
-use crate::{fog::patterns::sinc, scene::depth::RANGE_SKY_M};
+use crate::{light::sinc, scene::depth::RANGE_SKY_M};
 
 /// How far below the station's altitude columns reach, m: into the valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;

@@ -3,7 +3,7 @@
 use super::recipe::{Kind, Name, passes};
 use super::settings::{SkyModel, SkySettings};
 use crate::plan::parts::{Part, Worth};
-use crate::plan::{Candidate, Effect, Method, StepWork, Units, Work};
+use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Air and haze between the camera and what the host drew. How much it matters: atmosphere on objects, of the importance weights in
 /// the experiment of the machinery trainer's thesis.
@@ -67,12 +67,9 @@ impl ElekTable {
 }
 
 /// All candidates, each model from coarse to fine.
-pub fn candidates() -> Vec<Candidate> {
+pub fn candidates() -> Vec<Listed<SkySettings>> {
     let mut out = Vec::new();
-    let mut add = |name, settings| {
-        let method = Method::Sky(settings);
-        out.push(Candidate { effect: Effect::Sky, name, method, work: work(&settings), offered: true });
-    };
+    let mut add = |name, method| out.push(Listed { name, method, work: work(&method), offered: true });
     use SkyModel::{BruteForce, Directional, IsotropicTables, Table3d};
     add("directional-eighth", coarsest(Directional));
     add("directional-quarter", coarse(Directional));
@@ -94,12 +91,16 @@ pub fn candidates() -> Vec<Candidate> {
     for (name, march_cells) in [("march-16", 16), ("march-32", 32), ("march-64", 64), ("march-128", 128)] {
         add(name, SkySettings { march_cells, ..SkySettings::with_model(BruteForce) });
     }
-    for (name, samples) in [("elek-15", 15), ("elek-50", 50)] {
-        let table = ElekTable { side: 128, samples };
-        let method = Method::SkyElek(table);
-        out.push(Candidate { effect: Effect::Sky, name, method, work: table.work(), offered: false });
-    }
     out
+}
+
+/// Tables as of 2008.
+pub fn elek() -> Vec<Listed<ElekTable>> {
+    let one = |(name, samples)| {
+        let method = ElekTable { side: 128, samples };
+        Listed { name, method, work: method.work(), offered: false }
+    };
+    [("elek-15", 15), ("elek-50", 50)].map(one).into()
 }
 
 fn coarsest(model: SkyModel) -> SkySettings {
@@ -297,15 +298,15 @@ mod tests {
             (SkyModel::BruteForce, 4),
             (SkyModel::Table3d, 4),
         ] {
-            let of = |c: &&Candidate| matches!(c.method, Method::Sky(s) if s.model == model);
+            let of = |c: &&Listed<SkySettings>| c.method.model == model;
             let ladder: Vec<_> = all.iter().filter(of).filter(|c| !c.name.contains("fine")).collect();
             assert!(ladder.len() >= least, "{model:?}");
             for pair in ladder.windows(2) {
-                let cost = |c: &Candidate| c.work.frame(640 * 360, true).at(&Default::default());
+                let cost = |c: &Listed<SkySettings>| c.work.frame(640 * 360, true).at(&Default::default());
                 assert!(cost(pair[1]) > cost(pair[0]), "{} {}", pair[0].name, pair[1].name);
             }
         }
-        assert!(all.iter().any(|c| matches!(c.method, Method::SkyElek(ElekTable { samples: 15, .. }))));
+        assert!(elek().iter().any(|c| c.method.samples == 15));
     }
 
     #[test]

@@ -8,7 +8,10 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 
 use super::{planet_file, spectral};
-use crate::error::{Error, Result, Status};
+use crate::{
+    error::{Error, Result, Status},
+    light::EARTH_WAVELENGTHS_NM,
+};
 
 /// Gas: scatters without absorbing, density falling exponentially with altitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -287,15 +290,6 @@ impl Planet {
         h
     }
 }
-
-/// The wavelengths that stand for red, green and blue by default, nm.
-///
-/// With a channel's light scaled by the sun's Rec. 709 component (`sky::spectral::Conversion::per_channel`), these leave the
-/// least colour error against 42 wavelengths over skies and suns from noon to 6 degrees below the horizon, clear and hazy,
-/// among all triples in steps of 5 nm that hold 550 nm, where visibility is defined: 1 % in luminance, 13 % of the luminance
-/// in the worst channel. The often used 680, 550, 440 leave 15 % and 71 % (35 % and 156 % in haze): at 680 nm hardly
-/// anything dims a low sun, while the eye's red lies at 600 to 620.
-pub const EARTH_WAVELENGTHS_NM: [f64; 3] = [620.0, 550.0, 450.0];
 
 /// Molecules in a vertical column of 1 Dobson unit, 1/m^2 (Loschmidt's number times 10 um).
 pub const DOBSON_UNIT_PER_M2: f64 = 2.687e20;

@@ -9,7 +9,10 @@
 use std::sync::LazyLock;
 
 use super::planet::{DOBSON_UNIT_PER_M2, Planet, rayleigh_optical_depth};
-use crate::error::{Error, Result, check_range};
+use crate::{
+    error::{Error, Result, check_range},
+    light::luminance,
+};
 
 /// Mean extraterrestrial solar irradiance in bins of 10 nm from 360 nm, W m^-2 nm^-1: ASTM G173-03, ETR column.
 #[rustfmt::skip]
@@ -120,11 +123,6 @@ const REC709_FROM_XYZ: [[f64; 3]; 3] = [
     [-0.969_243_636,  1.875_967_502,  0.041_555_057],
     [ 0.055_630_080, -0.203_976_959,  1.056_971_514],
 ];
-
-/// Luminance, cd/m^2, of a linear Rec. 709 colour.
-pub fn luminance(rec709: &[f64; 3]) -> f64 {
-    0.212_639_006 * rec709[0] + 0.715_168_679 * rec709[1] + 0.072_192_315 * rec709[2]
-}
 
 /// Colour per spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
 pub fn rec709_of_wavelength(wavelength_nm: f64) -> [f64; 3] {

@@ -5,8 +5,8 @@ use welkin::{
     context::GivenDirection,
     frame::{Exposure, Frame, Stages},
     gpu::{Device, DeviceOptions},
+    light::luminance,
     scene::Camera,
-    sky::spectral::luminance,
     weather::{Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
 

@@ -1,8 +1,9 @@
 //! What three wavelengths leave of the colours that forty show.
 
-use welkin::sky::planet::{EARTH_WAVELENGTHS_NM, Planet};
+use welkin::light::{EARTH_WAVELENGTHS_NM, luminance};
+use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
-use welkin::sky::spectral::{Conversion, SpectralSet, luminance};
+use welkin::sky::spectral::{Conversion, SpectralSet};
 
 use super::accept;
 

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use welkin::candidates::{Candidate, Method};
 use welkin::gpu::Device;
 use welkin::gpu::pass::{FullscreenDesc, draw, fullscreen};
-use welkin::plan::{Candidate, Method};
 use welkin::sky::probe::{Probe, Question, Ray};
 use welkin::sky::reference::{Options as Truth, Reference, Resolution, View};
 use welkin::sky::spectral::Conversion;

@@ -84,9 +84,9 @@ fn solve(planet: &Planet) -> Result<Reference> {
 
 fn settings(model: SkyModel, quick: bool) -> SkySettings {
     let name = if quick { format!("{}-quarter", model.name()) } else { model.name().to_owned() };
-    let found = welkin::plan::candidate(welkin::plan::Effect::Sky, &name).map(|c| c.method);
+    let found = welkin::candidates::candidate(welkin::candidates::Effect::Sky, &name).map(|c| c.method);
     match found {
-        Ok(welkin::plan::Method::Sky(s)) => s,
+        Ok(welkin::candidates::Method::Sky(s)) => s,
         _ => SkySettings::with_model(model),
     }
 }

@@ -8,11 +8,12 @@ use super::*;
 use crate::{
     gpu::DeviceOptions,
     rain::{
-        DropLight, around,
+        DropLight,
         lattice::{self, Drop, SPEED_UNIT},
         uniforms::{Air, Classes, Shot},
     },
     scene::{Camera, DepthMapping, ViewRays},
+    surroundings,
     weather::{Precipitation, PrecipitationKind, Weather, derive},
 };
 
@@ -26,7 +27,7 @@ struct Bench {
     device: Arc<Device>,
     blocks: wgpu::Buffer,
     pass: CullPass,
-    around: around::Around,
+    around: surroundings::Around,
     classes: Classes,
     clip: DMat4,
     /// Of the camera.
@@ -45,7 +46,7 @@ impl Bench {
             mapped_at_creation: false,
         });
         let pass = CullPass::new(&device.device, &blocks);
-        let around = around::Around::new(&device.device);
+        let around = surroundings::Around::new(&device.device);
         let classes = Classes::new(&falling, 1.0, u32::MAX);
         Self { device, blocks, pass, around, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
     }
@@ -70,7 +71,7 @@ impl Bench {
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
         self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        let layout = around::layout(&self.device.device);
+        let layout = surroundings::layout(&self.device.device);
         let lattice = Lattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.pass.find(&self.device, &mut pass, (&layout, self.around.bind_group()), lattice).unwrap();

@@ -1,10 +1,26 @@
-//! Candidates: the ways to draw an effect, each with its cost in work units.
+//! The ways to draw each effect that are charted against each other, of all rooms.
+//!
+//! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and bytes. The lab
+//! (`examples/lab`) draws every candidate, measures its cost and its [`Difference`](crate::plan::Difference) from the f64 reference, and
+//! charts them; of what is [`Candidate::offered`], only those on the front ([`crate::plan::front::pareto`]) are worth a choice.
+//!
+//! ```
+//! use welkin::candidates::{Effect, Method, candidate, candidates};
+//!
+//! let half = candidate(Effect::Sky, "directional-half").unwrap();
+//! let Method::Sky(settings) = half.method else { panic!() };
+//! let default = candidates(Effect::Sky).into_iter().find(|c| c.is_default()).unwrap();
+//! assert!(half.work.view.samples < default.work.view.samples);
+//! settings.check().unwrap(); // ready for `SkyTables::new`
+//! ```
 
-use crate::error::{Error, Result};
-use crate::fog::candidates::FogMethod;
-use crate::rain::{RainSettings, candidates::RainMethod};
-use crate::sky::candidates::ElekTable;
-use crate::sky::{SkyModel, SkySettings};
+use crate::{
+    error::{Error, Result},
+    fog::candidates::FogMethod,
+    plan::{Listed, Work},
+    rain::{RainSettings, candidates::RainMethod},
+    sky::{SkyModel, SkySettings, candidates::ElekTable},
+};
 
 /// What can be drawn. Grows with the rooms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,10 +95,21 @@ impl Candidate {
 
 /// All candidates of an effect.
 pub fn candidates(effect: Effect) -> Vec<Candidate> {
+    fn all<M>(effect: Effect, listed: Vec<Listed<M>>, method: impl Fn(M) -> Method) -> Vec<Candidate> {
+        let one = |l: Listed<M>| {
+            let Listed { name, work, offered, .. } = l;
+            Candidate { effect, name, method: method(l.method), work, offered }
+        };
+        listed.into_iter().map(one).collect()
+    }
     match effect {
-        Effect::Sky => crate::sky::candidates::candidates(),
-        Effect::Fog => crate::fog::candidates::candidates(),
-        Effect::Rain => crate::rain::candidates::candidates(),
+        Effect::Sky => {
+            let mut sky = all(effect, crate::sky::candidates::candidates(), Method::Sky);
+            sky.extend(all(effect, crate::sky::candidates::elek(), Method::SkyElek));
+            sky
+        }
+        Effect::Fog => all(effect, crate::fog::candidates::candidates(), Method::Fog),
+        Effect::Rain => all(effect, crate::rain::candidates::candidates(), Method::Rain),
     }
 }
 
@@ -97,75 +124,10 @@ pub fn candidate(effect: Effect, name: &str) -> Result<Candidate> {
     all.into_iter().find(|c| c.name == name).ok_or(fault)
 }
 
-/// Amounts of work. A sample is one point of a march or one closed-form column: densities, exponentials, a sum.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Units {
-    /// Points at which the medium is evaluated.
-    pub samples: f64,
-    /// Filtered look-ups.
-    pub texels: f64,
-    /// Bytes written.
-    pub bytes: f64,
-}
-
-impl Units {
-    /// This and `times` times another.
-    pub fn plus(self, other: Self, times: f64) -> Self {
-        Self {
-            samples: self.samples + times * other.samples,
-            texels: self.texels + times * other.texels,
-            bytes: self.bytes + times * other.bytes,
-        }
-    }
-
-    /// The amounts as one number, in samples.
-    pub fn at(self, price: &Price) -> f64 {
-        self.samples + price.texel * self.texels + price.byte * self.bytes
-    }
-}
-
-/// What a look-up and a byte cost, in samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Price {
-    /// Samples that take as long as a filtered look-up.
-    pub texel: f64,
-    /// Samples that take as long as a byte written.
-    pub byte: f64,
-}
-
-impl Default for Price {
-    /// Fitted by `lab chart` to a software driver, where look-ups are dear (docs/lab).
-    fn default() -> Self {
-        Self { texel: 6.4, byte: 0.8 }
-    }
-}
-
-/// The cost of a candidate by what causes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Whenever the air changes, once for all views.
-    pub rebuild: Units,
-    /// Whenever a view's altitude, its sun or the air changes, per view and lamp.
-    pub view: Units,
-    /// Every pixel of every frame, per lamp.
-    pub pixel: Units,
-    /// Bytes held once for all views.
-    pub shared_bytes: u64,
-    /// Bytes held by each view.
-    pub view_bytes: u64,
-}
-
-impl Work {
-    /// The work of one view's frame under one lamp. `follows`: whether its altitude, sun or air changed.
-    pub fn frame(&self, pixels: u64, follows: bool) -> Units {
-        let view = if follows { self.view } else { Units::default() };
-        view.plus(self.pixel, pixels as f64)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Price;
 
     #[test]
     fn names_are_unique_and_every_effect_has_one_default() {
@@ -184,17 +146,5 @@ mod tests {
         }
         assert!(Effect::from_name("sea").unwrap_err().message.contains("sky, fog, rain"));
         assert!(candidate(Effect::Fog, "best").unwrap_err().message.contains("exact"));
-    }
-
-    #[test]
-    fn a_frame_pays_for_what_changed() {
-        let work = Work {
-            view: Units { samples: 100.0, ..Default::default() },
-            pixel: Units { texels: 2.0, ..Default::default() },
-            ..Default::default()
-        };
-        let price = Price { texel: 0.5, byte: 1.0 };
-        assert_eq!(work.frame(10, false).at(&price), 10.0);
-        assert_eq!(work.frame(10, true).at(&price), 110.0);
     }
 }

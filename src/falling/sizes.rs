@@ -315,7 +315,7 @@ pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rain::drops::altitude_factor;
+    use crate::falling::drops::altitude_factor;
     use crate::weather::hydrometeors::{drizzle_extinction_per_m, rain_extinction_per_m, shower_extinction_per_m};
 
     const RATES: [f64; 12] = [0.01, 0.1, 0.3, 1.0, 2.5, 5.0, 10.0, 25.0, 50.0, 100.0, 150.0, 500.0];

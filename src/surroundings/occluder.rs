@@ -1,6 +1,6 @@
 //! What keeps rain off, as the host's own pictures of it: up to four depth textures, from any direction.
 //!
-//! A drop is gone where its own slanted path back crosses a surface that a map shows: `shaders/rain/occluders.wgsl`. A map
+//! A drop is gone where its own slanted path back crosses a surface that a map shows: `shaders/surroundings/occluders.wgsl`. A map
 //! knows nothing of what its surfaces hide; taken along the drops' own direction ([`crate::context::RainAt`]) it hides nothing
 //! that matters, whatever the wind.
 
@@ -58,7 +58,7 @@ pub(crate) struct Occluder {
     velocity_m_s: DVec3,
 }
 
-/// `Occluder` of `shaders/rain/occluders.wgsl`.
+/// `Occluder` of `shaders/surroundings/occluders.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct OccluderUniform {
@@ -172,7 +172,12 @@ mod tests {
 
     #[test]
     fn offsets_are_those_of_the_shader() {
-        shader::assert_layout!("rain/occluders.wgsl", "Occluder", OccluderUniform, [x, y, w, distance, velocity, part]);
+        shader::assert_layout!(
+            "surroundings/occluders.wgsl",
+            "Occluder",
+            OccluderUniform,
+            [x, y, w, distance, velocity, part]
+        );
     }
 
     #[test]

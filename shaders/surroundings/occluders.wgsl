@@ -1,6 +1,6 @@
 // Surfaces that a host has taken pictures of, from any direction: whether a path crosses one of them. Each texel holds the
 // range of distances that the surface in it spans, each cell of 8 and of 64 texels the range of all in it
-// (rain/occluder_map.wgsl). A path is led from cell to cell and only looks into those whose range it meets: what lies
+// (surroundings/occluder_map.wgsl). A path is led from cell to cell and only looks into those whose range it meets: what lies
 // before or behind all of a cell's surfaces crosses none of them. What a surface hides from the picture is not known, so a
 // path may pass behind an edge; the drops' own direction, along which nothing is hidden that matters, is the best to take it from.
 

@@ -1,5 +1,5 @@
 // What rain does not pass: boxes (the f64 twin is in src/rain/shelter.rs) and what the host has taken maps of.
-//!include "rain/occluders.wgsl"
+//!include "surroundings/occluders.wgsl"
 
 const MAX_SHELTERS: u32 = 32u;
 const MAX_CUTS: u32 = 512u;

@@ -17,7 +17,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Of a texel of nothing, which no path meets: those of 1e12 and of -1e12.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
-/// `MapUniform` of `shaders/rain/occluder_map.wgsl`.
+/// `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MapUniform {
@@ -197,8 +197,8 @@ impl OccluderMaps {
     pub fn new(device: &Device) -> Result<Self> {
         let layouts = layouts(&device.device);
         let pipelines = [
-            pipeline(device, &layouts[0], ["rain/occluder_map.wgsl", "occluder_map"])?,
-            pipeline(device, &layouts[1], ["rain/occluder_cells.wgsl", "occluder_cells"])?,
+            pipeline(device, &layouts[0], ["surroundings/occluder_map.wgsl", "occluder_map"])?,
+            pipeline(device, &layouts[1], ["surroundings/occluder_cells.wgsl", "occluder_cells"])?,
         ];
         let blocks = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("occluder maps"),

@@ -1,6 +1,6 @@
 // What lies between the eye and a point: the light that the air and the fog send, and what they let through.
-//!include "frame/uniform.wgsl"
-//!include "frame/fog_binding.wgsl"
+//!include "common/frame.wgsl"
+//!include "between/fog_binding.wgsl"
 //!include "sky/lookup.wgsl"
 
 // Whether there is any fog.

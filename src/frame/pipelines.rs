@@ -1,4 +1,4 @@
-//! What the contexts and views of a device share: the composition's pipelines, the sky's pipelines and tables.
+//! What the views of a device share: the pipelines of the composition and of windscreens.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -7,26 +7,23 @@ use crate::{
     error::{Error, Result, Status},
     glass::GlassKit,
     gpu::Device,
-    sky::SkyLibrary,
 };
 
-/// Pipelines and tables of one device, made once and used by all its contexts and views. Any thread.
-pub struct Shared {
+/// Pipelines of one device. Any thread.
+pub(super) struct Pipelines {
     composite: Mutex<Composite>,
     glass: Mutex<Option<GlassKit>>,
-    pub(crate) sky: SkyLibrary,
 }
 
-impl Shared {
+impl Pipelines {
     /// Makes what every view needs.
     ///
     /// # Errors
     /// A GPU fault.
     pub fn new(device: &Device) -> Result<Self> {
-        let shared =
-            Self { composite: Mutex::new(Composite::new(device)), glass: Mutex::new(None), sky: SkyLibrary::default() };
+        let made = Self { composite: Mutex::new(Composite::new(device)), glass: Mutex::new(None) };
         device.check()?;
-        Ok(shared)
+        Ok(made)
     }
 
     pub(super) fn composite(&self) -> Result<MutexGuard<'_, Composite>> {

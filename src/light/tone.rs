@@ -1,4 +1,4 @@
-//! From luminance to the display, in f64: the truth of `shaders/frame/tone.wgsl`, and the exposure that all channels
+//! From luminance to the display, in f64: the truth of `shaders/common/tone.wgsl`, and the exposure that all channels
 //! of a simulator share.
 
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ pub enum ToneCurve {
 }
 
 impl ToneCurve {
-    pub(super) fn shader_value(self) -> u32 {
+    pub(crate) fn shader_value(self) -> u32 {
         match self {
             Self::Linear => 0,
             Self::Exponential => 1,

@@ -1,0 +1,97 @@
+//! What a way to draw an effect costs, in units of work that do not hang on a machine.
+
+/// A way to draw an effect, as its room lists it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listed<M> {
+    /// Unique within the effect, lower case with hyphens.
+    pub name: &'static str,
+    /// With what it is built.
+    pub method: M,
+    /// What it costs.
+    pub work: Work,
+    /// Whether the library itself draws it. Others are compared with only.
+    pub offered: bool,
+}
+
+/// Amounts of work. A sample is one point of a march or one closed-form column: densities, exponentials, a sum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Units {
+    /// Points at which the medium is evaluated.
+    pub samples: f64,
+    /// Filtered look-ups.
+    pub texels: f64,
+    /// Bytes written.
+    pub bytes: f64,
+}
+
+impl Units {
+    /// This and `times` times another.
+    pub fn plus(self, other: Self, times: f64) -> Self {
+        Self {
+            samples: self.samples + times * other.samples,
+            texels: self.texels + times * other.texels,
+            bytes: self.bytes + times * other.bytes,
+        }
+    }
+
+    /// The amounts as one number, in samples.
+    pub fn at(self, price: &Price) -> f64 {
+        self.samples + price.texel * self.texels + price.byte * self.bytes
+    }
+}
+
+/// What a look-up and a byte cost, in samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Price {
+    /// Samples that take as long as a filtered look-up.
+    pub texel: f64,
+    /// Samples that take as long as a byte written.
+    pub byte: f64,
+}
+
+impl Default for Price {
+    /// Fitted by `lab chart` to a software driver, where look-ups are dear (docs/lab).
+    fn default() -> Self {
+        Self { texel: 6.4, byte: 0.8 }
+    }
+}
+
+/// The cost of a candidate by what causes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Whenever the air changes, once for all views.
+    pub rebuild: Units,
+    /// Whenever a view's altitude, its sun or the air changes, per view and lamp.
+    pub view: Units,
+    /// Every pixel of every frame, per lamp.
+    pub pixel: Units,
+    /// Bytes held once for all views.
+    pub shared_bytes: u64,
+    /// Bytes held by each view.
+    pub view_bytes: u64,
+}
+
+impl Work {
+    /// The work of one view's frame under one lamp. `follows`: whether its altitude, sun or air changed.
+    pub fn frame(&self, pixels: u64, follows: bool) -> Units {
+        let view = if follows { self.view } else { Units::default() };
+        view.plus(self.pixel, pixels as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_pays_for_what_changed() {
+        let work = Work {
+            view: Units { samples: 100.0, ..Default::default() },
+            pixel: Units { texels: 2.0, ..Default::default() },
+            ..Default::default()
+        };
+        let price = Price { texel: 0.5, byte: 1.0 };
+        assert_eq!(work.frame(10, false).at(&price), 10.0);
+        assert_eq!(work.frame(10, true).at(&price), 110.0);
+    }
+}

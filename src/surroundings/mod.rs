@@ -1,0 +1,12 @@
+//! What the host tells of the world round a camera, for all effects alike: boxes and occluder maps that keep rain off, and lamps.
+
+mod around;
+mod occluder;
+mod occluder_maps;
+pub mod shelter;
+
+pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
+pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
+
+pub(crate) use around::{Around, Present, Told, layout};
+pub(crate) use occluder_maps::OccluderMaps;
