@@ -254,6 +254,14 @@ impl Device {
         if self.is_lost() {
             return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
         }
+        self.enter_to_release()
+    }
+
+    /// The same also when the device is lost: what it made in the host's context is still there and must be deleted in it.
+    ///
+    /// # Errors
+    /// Whatever keeps the host's context from being entered.
+    pub(crate) fn enter_to_release(&self) -> Result<Entered<'_>> {
         if let Some(binding) = &self.binding {
             binding.enter()?;
         }
@@ -294,6 +302,7 @@ impl Device {
     /// Destroys the native device as a driver crash would; for tests of the lost path.
     pub fn simulate_loss(&self) {
         self.faults.lost.store(true, Ordering::Release);
+        let _entered = self.enter_to_release();
         self.device.destroy();
     }
 

@@ -12,6 +12,7 @@ mod host;
 mod images;
 mod kinds;
 mod life;
+mod loss;
 mod matrix;
 mod own;
 mod painter;

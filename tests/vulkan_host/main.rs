@@ -9,6 +9,7 @@ mod draw;
 mod ground;
 mod host;
 mod images;
+mod loss;
 mod refusals;
 mod reuse;
 mod sharing;
