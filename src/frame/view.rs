@@ -159,9 +159,31 @@ impl View {
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
         let _entered = device.enter()?;
+        let recorded = self.recorded_of(frame.frame_id);
+        self.record_and_submit(context, frame, stages, &device).inspect_err(|_| self.take_back(recorded))
+    }
+
+    /// The stages that were recorded of a frame so far, for [`View::take_back`].
+    pub(crate) fn recorded_of(&self, frame_id: u64) -> Stages {
+        if frame_id == self.report.frame_id { self.recorded } else { Stages(0) }
+    }
+
+    /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may record
+    /// it again.
+    pub(crate) fn take_back(&mut self, recorded: Stages) {
+        self.recorded = recorded;
+    }
+
+    fn record_and_submit(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        stages: Stages,
+        device: &Arc<Device>,
+    ) -> Result<()> {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
-        let mut to = Recording::new(&device, &mut encoder);
+        let mut to = Recording::new(device, &mut encoder);
         if frame.flags.has(FrameFlags::MEASURE) {
             let so_far = if frame.frame_id == self.report.frame_id { self.report.costs } else { None };
             to.measure(so_far.unwrap_or_default())?;
@@ -210,7 +232,9 @@ impl View {
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
         let device = self.device.clone();
+        let recorded = self.recorded_of(frame.frame_id);
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
+            .inspect_err(|_| self.take_back(recorded))
     }
 
     fn record_stages(

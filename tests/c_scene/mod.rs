@@ -2,6 +2,7 @@
 
 pub mod ground;
 pub mod loss;
+pub mod marks;
 pub mod own;
 
 use std::ffi::{CStr, c_void};

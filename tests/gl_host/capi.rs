@@ -31,7 +31,7 @@ pub fn device(host: &Host) -> *mut wk_device {
     device
 }
 
-fn image(image: GlImage) -> wk_opengl_image {
+pub fn image(image: GlImage) -> wk_opengl_image {
     let none = wk_opengl_image { kind: WK_OPENGL_NONE, name: 0, target: glow::TEXTURE_2D, reserved0: 0 };
     match image {
         GlImage::Texture { name, target } => wk_opengl_image { kind: WK_OPENGL_TEXTURE, name, target, ..none },

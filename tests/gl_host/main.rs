@@ -4,6 +4,7 @@
 
 #[path = "../c_scene/mod.rs"]
 mod c_scene;
+mod canvas;
 mod capi;
 mod egl;
 mod exercise;
@@ -13,10 +14,12 @@ mod images;
 mod kinds;
 mod life;
 mod loss;
+mod marks;
 mod matrix;
 mod own;
 mod painter;
 mod pictures;
+mod resized;
 mod sky;
 mod snapshot;
 mod state;
