@@ -1,8 +1,11 @@
 //! What a host may say of each pixel: what it is made of, and its normal.
 
-use welkin::capi::{device::*, frame::*, ground::*, texture::*};
+use welkin::capi::{device::*, frame::*, ground::*, texture::*, view::*};
 
 use super::own::{Own, Size, different, wet_scene};
+
+/// The wet scene without rain in the air, which needs neither.
+pub const STAGES: wk_stage_flags = WK_STAGE_ALL & !WK_STAGE_PARTICLES;
 
 /// From the left: soil, paving, a building, nothing said.
 pub fn classes(size: Size) -> Vec<u8> {
@@ -46,7 +49,7 @@ pub fn own_pictures(size: Size) -> [Vec<[u8; 4]>; 4] {
     let mut id = 0;
     let pictures = [[false, false], [true, false], [false, true], [true, true]].map(|[with_classes, with_normals]| {
         id += 1;
-        own.wet_picture(scene.view, id, size, |own, target: &mut wk_own_target| {
+        own.wet_picture(scene.view, id, size, STAGES, |own, target: &mut wk_own_target| {
             if with_classes {
                 target.surface_classes = own.image(WK_FORMAT_R8_UNORM, size, &classes(size));
             }

@@ -4,6 +4,7 @@ pub mod ground;
 pub mod loss;
 pub mod marks;
 pub mod own;
+pub mod veil;
 
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};

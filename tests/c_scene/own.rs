@@ -55,6 +55,7 @@ impl Own {
         view: *mut wk_view,
         frame_id: u64,
         size: Size,
+        stages: wk_stage_flags,
         change: impl FnOnce(&mut Self, &mut wk_own_target),
     ) -> Vec<[u8; 4]> {
         let color = self.image(WK_FORMAT_RGBA8_UNORM, size, &grey_ground(size));
@@ -63,7 +64,7 @@ impl Own {
         change(self, &mut target);
         let frame = wk_frame { target: (&raw const target).cast(), ..still_frame(frame_id, size) };
         // SAFETY: live handles.
-        ok(unsafe { wk_view_record(view, &frame, WK_STAGE_ALL) });
+        ok(unsafe { wk_view_record(view, &frame, stages) });
         self.read(color, size)
     }
 

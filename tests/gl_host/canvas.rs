@@ -89,6 +89,7 @@ pub fn wet_picture(
     scene: &Scene,
     frame_id: u64,
     size: Size,
+    stages: wk_stage_flags,
     change: impl FnOnce(&mut wk_opengl_target),
 ) -> Vec<[u8; 4]> {
     let canvas = Canvas::new(&host.gl, size);
@@ -98,7 +99,7 @@ pub fn wet_picture(
     change(&mut target);
     let frame = wk_frame { target: (&raw const target).cast(), ..still_frame(frame_id, size) };
     // SAFETY: live handles; the host's context is current.
-    ok(unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) });
+    ok(unsafe { wk_view_record(scene.view, &frame, stages) });
     let pixels = canvas.pixels(&host.gl);
     canvas.delete(&host.gl);
     pixels

@@ -2,7 +2,7 @@
 //! can be destroyed, and a new device draws the same picture.
 
 use glow::HasContext;
-use welkin::capi::{device::*, frame::*, status::*, texture::*};
+use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 use welkin::gpu::gl::GlMode;
 
 use crate::c_scene::{
@@ -25,7 +25,7 @@ fn an_own_device_that_was_lost_is_followed_by_one_that_draws_the_same() {
         let pictures = [0, 1].map(|_| {
             let mut own = Own::new(backends);
             let scene = wet_scene(own.device);
-            let drawn = own.wet_picture(scene.view, 1, SIZE, |_, _| ());
+            let drawn = own.wet_picture(scene.view, 1, SIZE, WK_STAGE_ALL, |_, _| ());
             let pixels = (SIZE.0 * SIZE.1) as usize;
             let color = own.image(WK_FORMAT_RGBA8_UNORM, SIZE, &vec![[7_u8; 4]; pixels]);
             let target = wk_own_target { color, ..init("wk_own_target") };

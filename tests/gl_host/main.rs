@@ -24,6 +24,7 @@ mod sky;
 mod snapshot;
 mod state;
 mod unusual;
+mod veil;
 mod windows;
 
 /// The size of the pictures that come through the C functions.

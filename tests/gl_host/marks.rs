@@ -4,10 +4,9 @@ use welkin::capi::device::*;
 use welkin::gpu::gl::GlMode;
 
 use crate::c_scene::{
-    assert_same,
-    marks::{classes, half_normals, own_pictures, packed_normals},
+    marks::{STAGES, classes, half_normals, own_pictures, packed_normals},
     ok,
-    own::wet_scene,
+    own::{different, wet_scene},
 };
 use crate::{
     SIZE,
@@ -21,11 +20,10 @@ use crate::{
 #[test]
 fn classes_and_normals_of_an_opengl_host_are_those_of_an_own_device() {
     let wanted = own_pictures(SIZE);
-    for (api, mode) in [
-        (Api::Core(3, 3), GlMode::Shared),
-        (Api::Es(3, 1), GlMode::Shared),
-        (Api::Core(4, 5), GlMode::HostContext),
-        (Api::Compatibility(4, 5), GlMode::HostContext),
+    for (api, mode, all) in [
+        (Api::Core(3, 3), GlMode::Shared, true),
+        (Api::Es(3, 1), GlMode::Shared, false),
+        (Api::Compatibility(4, 5), GlMode::HostContext, false),
     ] {
         let host = Host::new(api, Window::None, mode);
         let gl = &host.gl;
@@ -37,15 +35,14 @@ fn classes_and_normals_of_an_opengl_host_are_those_of_an_own_device() {
         let device = device(&host);
         let scene = wet_scene(device);
         let said = [
-            (None, None, 0),
-            (Some(marks), None, 1),
-            (Some(coloured), None, 1),
-            (None, Some(halves), 2),
-            (None, Some(packed), 2),
             (Some(marks), Some(halves), 3),
+            (Some(coloured), Some(packed), 3),
+            (Some(coloured), None, 1),
+            (None, Some(packed), 2),
+            (None, None, 0),
         ];
-        for (i, (marks, normals, which)) in said.into_iter().enumerate() {
-            let got = wet_picture(&host, &scene, 1 + i as u64, SIZE, |target| {
+        for (i, (marks, normals, which)) in said.into_iter().enumerate().take(if all { 5 } else { 2 }) {
+            let got = wet_picture(&host, &scene, 10 + i as u64, SIZE, STAGES, |target| {
                 if let Some(marks) = marks {
                     target.surface_classes = image(image_of(marks));
                 }
@@ -53,8 +50,8 @@ fn classes_and_normals_of_an_opengl_host_are_those_of_an_own_device() {
                     target.normals = image(image_of(normals));
                 }
             });
-            println!("{api:?} {mode:?}: {i}");
-            assert_same(&got, &wanted[which], 4);
+            let off = different(&got, &wanted[which], 4);
+            assert_eq!(off, 0, "{api:?} {mode:?}, case {i}");
         }
         scene.destroy();
         // SAFETY: a live handle.

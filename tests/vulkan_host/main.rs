@@ -10,6 +10,7 @@ mod ground;
 mod host;
 mod images;
 mod loss;
+mod marks;
 mod refusals;
 mod reuse;
 mod sharing;
