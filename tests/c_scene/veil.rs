@@ -1,15 +1,18 @@
 //! A thing of glass in fog and in rain: what a host's own shader makes of it with the frame's veil, and what Welkin itself draws
 //! before an opaque thing at the same place.
 
-use welkin::capi::{device::*, frame::*, sky::*, status::*, timeline::*, veil::*, view::*, weather::*, weather_kinds::*};
+use welkin::capi::{device::*, frame::*, status::*, timeline::*, veil::*, view::*, weather::*, weather_kinds::*};
 
 use super::{Scene, frame_of, init, ok, own::Size};
 
-/// Of the thing, in the frame's units: 1 is 1000 cd/m^2.
-pub const COLOR: [f32; 3] = [0.4, 1.2, 2.5];
+/// Of the thing: of 1000 cd/m^2 in linear units, or as a display shows it.
+pub const COLOR: [f32; 3] = [0.1, 0.3, 0.6];
 /// How much of itself the thing shows.
 pub const ALPHA: f32 = 0.5;
 pub const STAGES: wk_stage_flags = WK_STAGE_PREPARE | WK_STAGE_BACKGROUND | WK_STAGE_MEDIUM;
+/// Rain, and what the frame's numbers mean. In the sRGB curve's numbers glass cannot be blended right.
+pub const CASES: [(bool, wk_color_space); 3] =
+    [(false, WK_COLOR_SCENE_LINEAR), (true, WK_COLOR_SCENE_LINEAR), (false, WK_COLOR_DISPLAY_LINEAR)];
 /// How far before the camera the thing stands, m.
 pub const FAR_M: [f64; 4] = [12.0, 60.0, 250.0, 1500.0];
 
@@ -53,11 +56,11 @@ pub fn snippet(language: wk_shading_language) -> &'static str {
     }
 }
 
-/// Records a frame in linear units, its target aside.
-pub fn frame(id: u64, size: Size) -> wk_frame {
+/// A frame in these units, its target aside.
+pub fn frame(id: u64, size: Size, color_space: wk_color_space) -> wk_frame {
     let frame = frame_of(id, size);
     wk_frame {
-        color_space: WK_COLOR_SCENE_LINEAR,
+        color_space,
         cd_m2_per_unit: 1000.0,
         flags: frame.flags | WK_FRAME_NO_HISTORY,
         ..frame
@@ -71,13 +74,13 @@ pub fn depth(far_m: f64) -> f32 {
 
 /// What turns a pixel's place in the picture into its ray, per metre before the camera: (1 / p0, 1 / p5).
 pub fn slopes(size: Size) -> [f32; 2] {
-    let p = frame(0, size).projection;
+    let p = frame_of(0, size).projection;
     [(1.0 / p[0]) as f32, (1.0 / p[5]) as f32]
 }
 
 /// Fails unless the host's glass before `behind` is half of that and half of the `opaque` thing.
 pub fn assert_mixed(got: &[[f32; 4]], behind: &[[f32; 4]], opaque: &[[f32; 4]], what: &str) {
-    let (mut worst, mut sum, mut apart) = (0.0_f32, 0.0, 0.0_f32);
+    let (mut worst, mut sum) = (0.0_f32, 0.0);
     for ((g, b), o) in got.iter().zip(behind).zip(opaque) {
         for c in 0..3 {
             let wanted = (1.0 - ALPHA) * b[c] + ALPHA * o[c];
@@ -85,13 +88,11 @@ pub fn assert_mixed(got: &[[f32; 4]], behind: &[[f32; 4]], opaque: &[[f32; 4]], 
             assert!(off.is_finite(), "{what}: {g:?} {wanted}");
             worst = worst.max(off);
             sum += off;
-            apart = apart.max((o[c] / COLOR[c] - 1.0).abs());
         }
     }
     let mean = sum / (3 * got.len()) as f32;
-    println!("{what}: mean {mean}, worst {worst}, the veil changes the thing by {apart}");
     assert!(mean < MEAN && worst < WORST, "{what}: mean {mean}, worst {worst}");
 }
 
-const MEAN: f32 = 0.005;
-const WORST: f32 = 0.03;
+const MEAN: f32 = 0.01;
+const WORST: f32 = 0.06;

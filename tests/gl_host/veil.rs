@@ -136,10 +136,10 @@ fn read(gl: &glow::Context, canvas: &Canvas) -> Vec<[f32; 4]> {
     pixels
 }
 
-fn record(scene: &Scene, canvas: &Canvas, id: u64) {
+fn record(scene: &Scene, canvas: &Canvas, id: u64, space: wk_color_space) {
     let mut target = canvas.target();
     target.generation = id;
-    let frame = wk_frame { target: (&raw const target).cast(), ..frame(id, SIZE) };
+    let frame = wk_frame { target: (&raw const target).cast(), ..frame(id, SIZE, space) };
     // SAFETY: live handles; the host's context is current.
     ok(unsafe { wk_view_record(scene.view, &frame, STAGES) });
 }
@@ -155,18 +155,18 @@ fn glass_by_the_published_shader_is_what_welkin_draws_before_an_opaque_thing() {
         let gl = &host.gl;
         let device = device(&host);
         let program = program(gl, api);
-        for rain in [false, true] {
+        for (rain, space) in CASES {
             let scene = scene(device, rain);
             let mut id = 0;
             for far_m in FAR_M {
                 let thing = canvas(gl, COLOR, depth(far_m));
-                record(&scene, &thing, id + 1);
+                record(&scene, &thing, id + 1, space);
                 let opaque = read(gl, &thing);
                 let sky = canvas(gl, [0.0; 3], 0.0);
-                record(&scene, &sky, id + 2);
+                record(&scene, &sky, id + 2, space);
                 let behind = read(gl, &sky);
                 draw_glass(gl, program, &sky, &textures(&scene), far_m);
-                let what = format!("{api:?}, {mode:?}, rain {rain}, {far_m} m");
+                let what = format!("{api:?}, {mode:?}, rain {rain}, colour space {space}, {far_m} m");
                 assert_mixed(&read(gl, &sky), &behind, &opaque, &what);
                 thing.delete(gl);
                 sky.delete(gl);

@@ -14,6 +14,7 @@ mod marks;
 mod refusals;
 mod reuse;
 mod sharing;
+mod veil;
 mod weather;
 
 use ash::vk;
