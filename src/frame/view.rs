@@ -169,9 +169,27 @@ impl View {
     }
 
     /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may record
-    /// it again.
+    /// it again, and nothing is kept that there may have been no memory for.
     pub(crate) fn take_back(&mut self, recorded: Stages) {
         self.recorded = recorded;
+        self.forget_images();
+    }
+
+    /// Lets go what the view holds of the picture's size.
+    fn forget_images(&mut self) {
+        (self.bound, self.copy) = (None, None);
+        self.rain.forget_picture();
+    }
+
+    /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
+    /// may be too small for.
+    fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        let Some(color) = frame.color else { return Ok(()) };
+        let (made, bytes) = (self.hold_copy(color)?, self.rain.bytes());
+        if stages.has(Stages::PARTICLES) && self.rain.draws() {
+            let _ = self.rain.layer(&self.device, color);
+        }
+        if made || self.rain.bytes() != bytes { self.device.check_made() } else { Ok(()) }
     }
 
     fn record_and_submit(
@@ -194,7 +212,7 @@ impl View {
             self.last_call = Some(inside);
         }
         device.submit(encoder);
-        device.check()
+        device.check_made()
     }
 
     /// Counts what a measured call that began at `start` took beyond its recording: the host's context and images came
@@ -256,6 +274,9 @@ impl View {
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
+        }
+        if rays.is_some() {
+            self.hold_images(frame, stages)?;
         }
         if self.recorded == Stages(0) {
             self.prepare(context, frame, &scene, to)?;
@@ -462,8 +483,8 @@ impl View {
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
-    /// Makes the colour copy anew if it does not serve the host's colour.
-    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<()> {
+    /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
+    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
         let fits = self.copy.as_ref().is_some_and(|c| match &reading {
             Some(reading) => c == reading,
@@ -475,7 +496,7 @@ impl View {
             self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
             self.report.bytes = self.bytes();
         }
-        Ok(())
+        Ok(!fits)
     }
 
     /// Brings the colour copy up to date with all that was recorded.

@@ -65,6 +65,10 @@ pub trait HostBinding: Send + Sync {
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
+    /// The first error flag that OpenGL raised since the last question. Asked while entered.
+    fn raised(&self) -> Option<Error> {
+        None
+    }
     /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
     fn closing(&self);
     /// Called once, still entered, when the device's own objects are gone.
@@ -297,6 +301,38 @@ impl Device {
     /// The fault.
     pub fn check(&self) -> Result<()> {
         self.take_fault().map_or(Ok(()), Err)
+    }
+
+    /// As [`Device::check`], after images were made, while entered: OpenGL says only when asked that there is no memory for one.
+    ///
+    /// # Errors
+    /// The fault.
+    pub(crate) fn check_made(&self) -> Result<()> {
+        self.check()?;
+        match &self.binding {
+            Some(binding) => binding.raised(),
+            None => self.raised_in_own(),
+        }
+        .map_or(Ok(()), Err)
+    }
+
+    /// The error flag of an own device on OpenGL.
+    #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+    fn raised_in_own(&self) -> Option<Error> {
+        if self.caps.backend != wgpu::Backend::Gl || self.is_lost() {
+            return None;
+        }
+        // SAFETY: the context is only asked for its error flag, under the lock that all of wgpu's calls take.
+        let error = unsafe {
+            let hal = self.device.as_hal::<wgpu::hal::gles::Api>()?;
+            glow::HasContext::get_error(&*hal.context().lock())
+        };
+        super::gl::raised_in_welkin(error)
+    }
+
+    #[cfg(any(target_os = "macos", target_os = "ios"))]
+    fn raised_in_own(&self) -> Option<Error> {
+        None
     }
 
     /// Destroys the native device as a driver crash would; for tests of the lost path.

@@ -17,6 +17,7 @@ mod loss;
 mod marks;
 mod matrix;
 mod own;
+mod memory;
 mod painter;
 mod pictures;
 mod resized;
