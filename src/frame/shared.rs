@@ -25,7 +25,7 @@ impl Shared {
     pub fn new(device: &Device) -> Result<Self> {
         let shared =
             Self { composite: Mutex::new(Composite::new(device)), glass: Mutex::new(None), sky: SkyLibrary::default() };
-        device.check()?;
+        device.check_made()?;
         Ok(shared)
     }
 

@@ -93,7 +93,7 @@ impl View {
         let planner = Planner::new(sky.settings());
         let rain = Rain::new(&device, RainSettings::default());
         let around = Around::new(&device.device);
-        device.check()?;
+        device.check_made()?;
         drop(_entered);
         Ok(Self {
             device,
@@ -141,8 +141,14 @@ impl View {
     pub fn frame_textures(&mut self) -> Result<FrameTextures> {
         let device = self.device.clone();
         let _entered = device.enter()?;
-        let froxels = self.froxels.get_or_insert_with(|| Froxels::new(&device));
-        device.check()?;
+        let froxels = match &self.froxels {
+            Some(froxels) => froxels,
+            None => {
+                let froxels = Froxels::new(&device);
+                device.check_made()?;
+                self.froxels.insert(froxels)
+            }
+        };
         let (light, through) = (froxels.light.clone(), froxels.through.clone());
         Ok(FrameTextures { light, through, light_scale: self.light_scale })
     }

@@ -369,7 +369,7 @@ impl Surface {
         }
         if !direct {
             self.stand_in = Some(StandIn::new(&device, (options.width, options.height), format, IMAGE_USAGE)?);
-            device.check()?;
+            device.check_made()?;
         }
         self.ready = true;
         Ok(())

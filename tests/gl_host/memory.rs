@@ -5,10 +5,18 @@ use std::{process::Command, ptr::null_mut};
 
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 
+use welkin::gpu::gl::GlMode;
+
 use crate::SIZE;
 use crate::c_scene::{
     init, message, ok,
-    own::{Own, different, still_frame, wet_scene},
+    own::{Own, Size, different, still_frame, wet_scene},
+};
+use crate::{
+    canvas::{Canvas, wet_picture},
+    capi::device,
+    egl::{Api, Window},
+    host::Host,
 };
 
 const MIB: u64 = 1 << 20;
@@ -74,10 +82,30 @@ fn runs_out(backends: wk_backend_flags) {
     assert_eq!(fill(own.device, &huge).len(), 0);
     let many = fill(own.device, &wk_texture_desc { width: 2048, height: 2048, ..desc });
     assert!(!many.is_empty() && many.len() < 40, "{}", many.len());
-    // SAFETY: live handles.
+    // SAFETY: live handles with the sizes given.
     unsafe {
         many.iter().for_each(|t| ok(wk_texture_destroy(*t)));
         ok(wk_device_get_status(own.device));
+    }
+    // Reading takes memory too, of the GPU and of the process; whichever ends first.
+    let large = wk_texture_desc { width: 8192, height: 7168, ..desc };
+    let mut texture = null_mut();
+    // SAFETY: live handles with the sizes given.
+    unsafe {
+        leave(None);
+        ok(wk_texture_create(own.device, &large, &mut texture));
+        let mut room = vec![7_u8; 4 * 8192 * 7168];
+        for mib in [100, 300] {
+            leave(Some(mib * MIB));
+            let status = wk_texture_read(texture, room.as_mut_ptr().cast(), room.len(), 4 * 8192);
+            assert_eq!(status, WK_ERROR_OUT_OF_MEMORY, "{mib} MiB: {}", message());
+            assert!(room.iter().all(|b| *b == 7), "after a failure no output was written");
+        }
+        leave(None);
+        ok(wk_texture_read(texture, room.as_mut_ptr().cast(), room.len(), 4 * 8192));
+        assert!(room.iter().all(|b| *b == 0));
+        ok(wk_texture_destroy(texture));
+        leave(Some(512 * MIB));
     }
     let after = own.wet_picture(scene.view, 2, SIZE, WK_STAGE_ALL, |_, _| ());
     leave(None);
@@ -153,5 +181,35 @@ fn a_frame_that_does_not_fit_is_refused_on_an_own_vulkan_device() {
 fn a_frame_that_does_not_fit_is_refused_on_an_own_opengl_device() {
     if in_a_process("memory::a_frame_that_does_not_fit_is_refused_on_an_own_opengl_device") {
         frame_runs_out(WK_BACKEND_GL);
+    }
+}
+
+#[test]
+fn a_frame_that_does_not_fit_is_refused_in_an_opengl_host() {
+    if !in_a_process("memory::a_frame_that_does_not_fit_is_refused_in_an_opengl_host") {
+        return;
+    }
+    for (api, mode) in [(Api::Core(3, 3), GlMode::Shared), (Api::Compatibility(4, 5), GlMode::HostContext)] {
+        let host = Host::new(api, Window::None, mode);
+        let device = device(&host);
+        let scene = wet_scene(device);
+        let wanted = wet_picture(&host, &scene, 1, SIZE, WK_STAGE_ALL, |_| ());
+        let large: Size = (4096, 4096);
+        let canvas = Canvas::new(&host.gl, large);
+        let target = canvas.target();
+        let frame = wk_frame { target: (&raw const target).cast(), ..still_frame(2, large) };
+        leave(Some(48 * MIB));
+        for _ in 0..2 {
+            // SAFETY: live handles; the host's context is current.
+            let status = unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) };
+            assert_eq!(status, WK_ERROR_OUT_OF_MEMORY, "{mode:?}: {}", message());
+        }
+        leave(None);
+        canvas.delete(&host.gl);
+        let got = wet_picture(&host, &scene, 3, SIZE, WK_STAGE_ALL, |_| ());
+        assert_eq!(different(&got, &wanted, 6), 0, "{mode:?}");
+        scene.destroy();
+        // SAFETY: a live handle.
+        ok(unsafe { wk_device_destroy(device) });
     }
 }
