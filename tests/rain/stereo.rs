@@ -96,7 +96,7 @@ fn far_sky_clouds_and_fog_are_the_same_in_both_eyes() {
 #[test]
 fn both_eyes_see_the_same_drops_displaced_as_near_things_are() {
     let mut host = white(SIZE);
-    let weather = rain(60.0, 0.0);
+    let weather = rain(10.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
     host.context.update(7.0).unwrap();
     let head = DVec3::new(1.5, -2.0, 1.7);
@@ -122,7 +122,7 @@ fn both_eyes_see_the_same_drops_displaced_as_near_things_are() {
     // Each is drawn where the eye has it, and nothing else is: the pictures against the drops.
     let wall = [upright([1.5, 0.6, 0.0], [20.0, 0.1, 50.0])];
     let counts = each(&mut host, head, |host, _| check(host, (&wall, &wall), &classes, 0.02, "an eye"));
-    println!("{counts:?}");
+    assert!(counts.iter().all(|(_, drawn)| *drawn > 50), "{counts:?}");
     // By the pictures alone: what is nearer than the wall lies farther right in the left eye's.
     let dark = each(&mut host, head, |host, _| {
         through(host, &wall).into_iter().map(|v| (1.0 - v).max(0.0)).collect::<Vec<_>>()
@@ -140,7 +140,6 @@ fn both_eyes_see_the_same_drops_displaced_as_near_things_are() {
         range.map(alike).sum::<f64>() / n
     };
     let (right_way, wrong_way) = (mean(least..=most), mean(-most..=-least));
-    println!("best at {best} of {least}..{most}, {right_way} against {wrong_way}");
     assert!((least..=most).contains(&best), "{best} is not in {least}..={most}");
-    assert!(right_way > 2.0 * wrong_way, "{right_way} {wrong_way}");
+    assert!(right_way > 10.0 * wrong_way, "{right_way} {wrong_way}");
 }
