@@ -31,8 +31,7 @@ fn named(window: &Window) -> wk_window {
     wk_window { kind: WK_WINDOW_XLIB, display, screen, id: window, ..init("wk_window") }
 }
 
-/// One frame as a host draws it: the first call that is not WK_OK.
-fn draw(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_status {
+fn record(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_status {
     let target = wk_own_target { surface, ..init("wk_own_target") };
     let frame = wk_frame {
         frame_id,
@@ -41,12 +40,15 @@ fn draw(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_statu
         ..init("wk_frame")
     };
     // SAFETY: live handles.
+    unsafe { wk_view_record(view, &frame, WK_STAGE_ALL) }
+}
+
+/// One frame as a host draws it: the first answer that is not WK_OK.
+fn draw(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_status {
+    // SAFETY: live handles.
     unsafe {
-        let calls: [&dyn Fn() -> wk_status; 3] = [
-            &|| wk_surface_acquire(surface),
-            &|| wk_view_record(view, &frame, WK_STAGE_ALL),
-            &|| wk_surface_present(surface),
-        ];
+        let calls: [&dyn Fn() -> wk_status; 3] =
+            [&|| wk_surface_acquire(surface), &|| record(view, surface, frame_id), &|| wk_surface_present(surface)];
         calls.into_iter().map(|call| call()).find(|status| *status != WK_OK).unwrap_or(WK_OK)
     }
 }
@@ -143,6 +145,36 @@ fn a_c_host_lives_through_its_windows_changes() {
         }
         // The same view draws into another window.
         ok(configure(surface, 60, 50));
+        shows_again(view, surface, (60, 50), &mut id);
+        // The device is lost with an image in hand: everything says so, and can be destroyed.
+        // SAFETY: live handles.
+        unsafe {
+            id += 1;
+            ok(wk_surface_acquire(surface));
+            ok(record(view, surface, id));
+            abi::lose_in_next_call();
+            assert_eq!(wk_device_get_status(device), WK_ERROR_DEVICE_LOST);
+            id += 1;
+            assert_eq!(draw(view, surface, id), WK_ERROR_DEVICE_LOST, "{}", message());
+            assert_eq!(wk_surface_present(surface), WK_ERROR_DEVICE_LOST, "{}", message());
+            assert_eq!(configure(surface, 60, 50), WK_ERROR_DEVICE_LOST, "{}", message());
+            let mut another = null_mut();
+            assert_eq!(wk_surface_create(device, &named(&other), &mut another), WK_ERROR_DEVICE_LOST, "{}", message());
+            assert!(another.is_null());
+        }
+        // SAFETY: live handles.
+        unsafe {
+            ok(wk_surface_destroy(surface));
+            ok(wk_view_destroy(view));
+            ok(wk_context_destroy(context));
+            ok(wk_device_destroy(device));
+            // A new one presents to the same window.
+            ok(wk_device_create_for_window(&desc, &named(&other), &mut device));
+            ok(wk_surface_create(device, &named(&other), &mut surface));
+            ok(wk_context_create(device, null(), &mut context));
+            ok(wk_view_create(context, null(), &mut view));
+            ok(configure(surface, 60, 50));
+        }
         shows_again(view, surface, (60, 50), &mut id);
         // SAFETY: live handles.
         unsafe {
