@@ -61,7 +61,8 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
     let view = buffer.get_mapped_range(..).map_err(map)?;
     let mut packed = Vec::new();
     let size = row as usize * height as usize;
-    let full = |_| Error::new(Status::OutOfMemory, format!("there are no {size} bytes of memory for a texture read back"));
+    let full =
+        |_| Error::new(Status::OutOfMemory, format!("there are no {size} bytes of memory for a texture read back"));
     packed.try_reserve_exact(size).map_err(full)?;
     view.chunks_exact(padded as usize).for_each(|line| packed.extend_from_slice(&line[..row as usize]));
     Ok(packed)

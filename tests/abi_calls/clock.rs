@@ -142,7 +142,8 @@ fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
         let seam = told(midnight(year, month, day));
         for (i, pair) in seam.windows(2).enumerate() {
             let change = |a: f64, b: f64| (b / a - 1.0).abs();
-            let worst = change(pair[0].0, pair[1].0).max(change(pair[0].1, pair[1].1)).max(change(pair[0].2, pair[1].2));
+            let worst =
+                change(pair[0].0, pair[1].0).max(change(pair[0].1, pair[1].1)).max(change(pair[0].2, pair[1].2));
             assert!(worst < 0.02, "{year}-{month}-{day}, step {i}: {pair:?}");
         }
         for (a, b) in seam.iter().zip(&noon) {

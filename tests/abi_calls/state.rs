@@ -342,7 +342,8 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     let told = answers(second.0, 1234.5);
     let path = Path::new(FIXTURES).join(format!("format{FORMAT}.answers"));
     if std::env::var_os("WELKIN_BLESS").is_some() {
-        std::fs::write(&path, told.iter().map(|(name, value)| format!("{name} {value:?}\n")).collect::<String>()).unwrap();
+        std::fs::write(&path, told.iter().map(|(name, value)| format!("{name} {value:?}\n")).collect::<String>())
+            .unwrap();
     }
     let written = std::fs::read_to_string(&path).unwrap();
     assert_eq!(written.lines().count(), told.len());

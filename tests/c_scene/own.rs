@@ -2,10 +2,7 @@
 
 use std::ptr::null_mut;
 
-use welkin::capi::{
-    device::*, frame::*, ground::*, texture::*, timeline::*, view::*, weather::*,
-    weather_kinds::*,
-};
+use welkin::capi::{device::*, frame::*, ground::*, texture::*, timeline::*, view::*, weather::*, weather_kinds::*};
 
 use super::{Scene, frame_of, init, ok};
 

@@ -59,12 +59,7 @@ pub fn snippet(language: wk_shading_language) -> &'static str {
 /// A frame in these units, its target aside.
 pub fn frame(id: u64, size: Size, color_space: wk_color_space) -> wk_frame {
     let frame = frame_of(id, size);
-    wk_frame {
-        color_space,
-        cd_m2_per_unit: 1000.0,
-        flags: frame.flags | WK_FRAME_NO_HISTORY,
-        ..frame
-    }
+    wk_frame { color_space, cd_m2_per_unit: 1000.0, flags: frame.flags | WK_FRAME_NO_HISTORY, ..frame }
 }
 
 /// The depth of a thing that stands `far_m` before the camera.

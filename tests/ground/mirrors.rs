@@ -252,7 +252,8 @@ fn a_lamp_above_wet_paving_has_its_image_below_it_by_fresnels_law_and_none_on_dr
     host.ground_is(SurfaceState::Wet);
     let eye = at + DVec3::new(0.0, -6.0, 2.0);
     let position_m = at + DVec3::new(0.0, 6.0, 2.0);
-    let lamp = HostLight { position_m, direction: -DVec3::Z, intensity_cd: [500.0; 3], inner_deg: 180.0, outer_deg: 180.0 };
+    let lamp =
+        HostLight { position_m, direction: -DVec3::Z, intensity_cd: [500.0; 3], inner_deg: 180.0, outer_deg: 180.0 };
     let light = of_lamp(&mut host, look(eye, 0.0, -18.4, 0.8), lamp);
     let column = |x: usize| light.iter().skip(x).step_by(SIZE.0 as usize).sum::<f64>();
     let widest = (0..SIZE.0 as usize).max_by(|a, b| column(*a).total_cmp(&column(*b))).unwrap();

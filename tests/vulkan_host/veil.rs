@@ -36,7 +36,8 @@ fn shader(far_m: f64, light_scale: f64) -> Vec<u32> {
         SIZE.1
     );
     let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
-    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
     let info = validator.validate(&module).expect("the snippet is valid");
     let options = naga::back::spv::Options { flags: naga::back::spv::WriterFlags::empty(), ..Default::default() };
     naga::back::spv::write_vec(&module, &info, &options, None).expect("SPIR-V")
