@@ -88,10 +88,51 @@ fn a_c_host_makes_uses_and_destroys_everything() {
 #[test]
 fn valgrind_finds_no_error_and_no_leak() {
     let noop = program("tests/c/noop.c", &[], Some(&library()));
-    let options = ["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect"];
-    assert_eq!(run(Command::new("valgrind").args(options).arg(&noop)), "ok\n");
+    assert_eq!(watched(&noop, &[]), "ok\n");
     tidy(&noop);
 }
+
+/// Runs a program under valgrind, which must find no error and nothing that was lost.
+fn watched(program: &Path, arguments: &[&str]) -> String {
+    let options = ["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect"];
+    run(Command::new("valgrind").args(options).arg(program).args(arguments))
+}
+
+/// Memory checks that take minutes: the C++ wrapper, and each kind of wrong and right call of the C interface. The test
+/// program of those is what cargo built beside this one.
+#[test]
+fn valgrind_finds_nothing_in_the_long_suite() {
+    if std::env::var_os("WELKIN_ACCEPT").is_none() {
+        return;
+    }
+    for options in [&["-pedantic"][..], &["-pedantic", "-fno-exceptions"]] {
+        let raii = program("tests/c/raii.cpp", options, Some(&library()));
+        assert_eq!(watched(&raii, &[]), "ok\n");
+        tidy(&raii);
+    }
+    let here = std::env::current_exe().expect("a program");
+    let named = |p: &PathBuf| p.file_name().is_some_and(|n| n.to_string_lossy().starts_with("abi_calls-"));
+    let beside = fs::read_dir(here.parent().expect("a folder")).expect("the folder is there");
+    let made = |p: &PathBuf| fs::metadata(p).and_then(|m| m.modified()).ok();
+    let tests =
+        beside.map(|e| e.expect("a file").path()).filter(|p| named(p) && p.extension().is_none()).max_by_key(made);
+    let tests = tests.expect("cargo has built the tests of the C interface");
+    let skipped = UNWATCHED.iter().flat_map(|name| ["--skip", *name]);
+    let said = watched(&tests, &["--test-threads=1"].into_iter().chain(skipped).collect::<Vec<_>>());
+    assert!(said.contains("test result: ok"), "{said}");
+}
+
+/// Tests that compute for long rather than call: under valgrind each would take minutes.
+const UNWATCHED: [&str; 8] = [
+    "tables_are_built_ahead",
+    "a_leap_is_answered",
+    "the_ends_of_the_altitudes",
+    "sizes_of_other_versions",
+    "what_any_setter_sets",
+    "one_byte_changed_anywhere",
+    "a_state_of_another_place",
+    "the_timeline_and_the_light",
+];
 
 #[test]
 fn a_cpp_host_with_and_without_exceptions() {

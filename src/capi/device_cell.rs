@@ -98,7 +98,7 @@ impl DeviceCell {
     /// Drops GPU objects. Where the host's context can no longer be entered they are given up: its objects went with it,
     /// and a driver need not survive a call without a context.
     fn release<T>(&self, objects: T) {
-        match self.gpu.enter() {
+        match self.gpu.enter_to_release() {
             Ok(entered) => {
                 drop(objects);
                 drop(entered);
@@ -118,7 +118,7 @@ impl DeviceCell {
     /// Releases what waited for the host's context, before a call that enters it by itself.
     pub(super) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
-        if waits && let Ok(_entered) = self.gpu.enter() {
+        if waits && let Ok(_entered) = self.gpu.enter_to_release() {
             drop(self.take_retired());
         }
     }
@@ -135,7 +135,7 @@ impl DeviceCell {
 
     /// Releases an object now if the host's context can be entered from here, else at the next GPU call.
     pub(super) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
-        match self.gpu.enter() {
+        match self.gpu.enter_to_release() {
             Ok(entered) => {
                 drop(object);
                 drop(entered);

@@ -87,6 +87,7 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
         // SAFETY: the caller's promise about `out_texture`.
         let place = unsafe { layout::out_struct(&"out_texture", out_texture)? };
         object.cell.host().check_own_shaders("ground textures")?;
+        object.cell.check_not_lost()?;
         object.cell.drain();
         let ground = object.write().ground_texture()?;
         place.set(&wk_ground_texture {

@@ -134,6 +134,7 @@ pub unsafe extern "C" fn wk_context_set_occluder_maps(
         unsafe {
             input::each("maps", maps, count as usize, stride as usize, MAX_OCCLUDER_MAPS, &mut take)?;
         }
+        object.cell.check_not_lost()?;
         object.cell.drain();
         // SAFETY: the caller's promise about the images.
         unsafe { host::set_occluder_maps(call, &object, list.iter().flatten())? };

@@ -176,7 +176,7 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
         usage,
         view_formats: &[],
     });
-    gpu.check()?;
+    gpu.check_made()?;
     Ok(texture)
 }
 

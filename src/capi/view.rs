@@ -313,6 +313,7 @@ pub unsafe extern "C" fn wk_view_record(
         unsafe { layout::check_chain(&"frame", c.next, &[])? };
         layout::WK_STAGE_FLAGS.check(&"stages", stages.into())?;
         let stages = Stages::from_bits(stages)?;
+        object.cell.check_not_lost()?;
         object.cell.drain();
         let measured = (c.flags & WK_FRAME_MEASURE != 0).then(Instant::now);
         // SAFETY: as above.

@@ -22,7 +22,7 @@ impl Pipelines {
     /// A GPU fault.
     pub fn new(device: &Device) -> Result<Self> {
         let made = Self { composite: Mutex::new(Composite::new(device)), glass: Mutex::new(None) };
-        device.check()?;
+        device.check_made()?;
         Ok(made)
     }
 

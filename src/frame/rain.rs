@@ -148,6 +148,11 @@ impl Rain {
         self.layer.bytes()
     }
 
+    /// Lets the picture's layer go.
+    pub fn forget_picture(&mut self) {
+        self.layer.forget_picture();
+    }
+
     /// The layer for a picture like `color`.
     pub fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
         self.layer.view(device, color.size())

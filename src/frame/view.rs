@@ -94,7 +94,7 @@ impl View {
         let planner = Planner::new(planned::PARTS, planned::rebuild_work(sky.settings()));
         let rain = Rain::new(&device, RainSettings::default());
         let around = Around::new(&device.device);
-        device.check()?;
+        device.check_made()?;
         drop(_entered);
         Ok(Self {
             device,
@@ -142,8 +142,14 @@ impl View {
     pub fn frame_textures(&mut self) -> Result<FrameTextures> {
         let device = self.device.clone();
         let _entered = device.enter()?;
-        let froxels = self.froxels.get_or_insert_with(|| Froxels::new(&device));
-        device.check()?;
+        let froxels = match &self.froxels {
+            Some(froxels) => froxels,
+            None => {
+                let froxels = Froxels::new(&device);
+                device.check_made()?;
+                self.froxels.insert(froxels)
+            }
+        };
         let (light, through) = (froxels.light.clone(), froxels.through.clone());
         Ok(FrameTextures { light, through, light_scale: self.light_scale })
     }
@@ -160,9 +166,49 @@ impl View {
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
         let _entered = device.enter()?;
+        let recorded = self.recorded_of(frame.frame_id);
+        self.record_and_submit(context, frame, stages, &device).inspect_err(|_| self.take_back(recorded))
+    }
+
+    /// The stages that were recorded of a frame so far, for [`View::take_back`].
+    pub(crate) fn recorded_of(&self, frame_id: u64) -> Stages {
+        if frame_id == self.report.frame_id { self.recorded } else { Stages(0) }
+    }
+
+    /// After a call that failed once it was recorded: the frame has the stages that it had before, so that the host may record
+    /// it again, and nothing is kept that there may have been no memory for.
+    pub(crate) fn take_back(&mut self, recorded: Stages) {
+        self.recorded = recorded;
+        self.forget_images();
+    }
+
+    /// Lets go what the view holds of the picture's size.
+    fn forget_images(&mut self) {
+        (self.bound, self.copy) = (None, None);
+        self.rain.forget_picture();
+    }
+
+    /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
+    /// may be too small for.
+    fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        let Some(color) = frame.color else { return Ok(()) };
+        let (made, bytes) = (self.hold_copy(color)?, self.rain.bytes());
+        if stages.has(Stages::PARTICLES) && self.rain.draws() {
+            let _ = self.rain.layer(&self.device, color);
+        }
+        if made || self.rain.bytes() != bytes { self.device.check_made() } else { Ok(()) }
+    }
+
+    fn record_and_submit(
+        &mut self,
+        context: &Context,
+        frame: &Frame<'_>,
+        stages: Stages,
+        device: &Arc<Device>,
+    ) -> Result<()> {
         let mut encoder =
             device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
-        let mut to = Recording::new(&device, &mut encoder);
+        let mut to = Recording::new(device, &mut encoder);
         if frame.flags.has(FrameFlags::MEASURE) {
             let so_far = if frame.frame_id == self.report.frame_id { self.report.costs } else { None };
             to.measure(so_far.unwrap_or_default())?;
@@ -173,7 +219,7 @@ impl View {
             self.last_call = Some(inside);
         }
         device.submit(encoder);
-        device.check()
+        device.check_made()
     }
 
     /// Counts what a measured call that began at `start` took beyond its recording: the host's context and images came
@@ -211,7 +257,9 @@ impl View {
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
         let device = self.device.clone();
+        let recorded = self.recorded_of(frame.frame_id);
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
+            .inspect_err(|_| self.take_back(recorded))
     }
 
     fn record_stages(
@@ -233,6 +281,9 @@ impl View {
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
+        }
+        if rays.is_some() {
+            self.hold_images(frame, stages)?;
         }
         if self.recorded == Stages(0) {
             self.prepare(context, frame, &scene, to)?;
@@ -437,8 +488,8 @@ impl View {
             + self.glass.as_ref().map_or(0, |g| g.bytes())
     }
 
-    /// Makes the colour copy anew if it does not serve the host's colour.
-    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<()> {
+    /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
+    fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
         let fits = self.copy.as_ref().is_some_and(|c| match &reading {
             Some(reading) => c == reading,
@@ -450,7 +501,7 @@ impl View {
             self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
             self.report.bytes = self.bytes();
         }
-        Ok(())
+        Ok(!fits)
     }
 
     /// Brings the colour copy up to date with all that was recorded.

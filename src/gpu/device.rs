@@ -65,6 +65,10 @@ pub trait HostBinding: Send + Sync {
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
+    /// The first error flag that OpenGL raised since the last question. Asked while entered.
+    fn raised(&self) -> Option<Error> {
+        None
+    }
     /// Called once, entered, before the device's own objects go: whatever holds on to them must let go.
     fn closing(&self);
     /// Called once, still entered, when the device's own objects are gone.
@@ -254,6 +258,14 @@ impl Device {
         if self.is_lost() {
             return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
         }
+        self.enter_to_release()
+    }
+
+    /// The same also when the device is lost: what it made in the host's context is still there and must be deleted in it.
+    ///
+    /// # Errors
+    /// Whatever keeps the host's context from being entered.
+    pub(crate) fn enter_to_release(&self) -> Result<Entered<'_>> {
         if let Some(binding) = &self.binding {
             binding.enter()?;
         }
@@ -291,9 +303,42 @@ impl Device {
         self.take_fault().map_or(Ok(()), Err)
     }
 
+    /// As [`Device::check`], after images were made, while entered: OpenGL says only when asked that there is no memory for one.
+    ///
+    /// # Errors
+    /// The fault.
+    pub(crate) fn check_made(&self) -> Result<()> {
+        self.check()?;
+        match &self.binding {
+            Some(binding) => binding.raised(),
+            None => self.raised_in_own(),
+        }
+        .map_or(Ok(()), Err)
+    }
+
+    /// The error flag of an own device on OpenGL.
+    #[cfg(not(any(target_os = "macos", target_os = "ios")))]
+    fn raised_in_own(&self) -> Option<Error> {
+        if self.caps.backend != wgpu::Backend::Gl || self.is_lost() {
+            return None;
+        }
+        // SAFETY: the context is only asked for its error flag, under the lock that all of wgpu's calls take.
+        let error = unsafe {
+            let hal = self.device.as_hal::<wgpu::hal::gles::Api>()?;
+            glow::HasContext::get_error(&*hal.context().lock())
+        };
+        super::gl::raised_in_welkin(error)
+    }
+
+    #[cfg(any(target_os = "macos", target_os = "ios"))]
+    fn raised_in_own(&self) -> Option<Error> {
+        None
+    }
+
     /// Destroys the native device as a driver crash would; for tests of the lost path.
     pub fn simulate_loss(&self) {
         self.faults.lost.store(true, Ordering::Release);
+        let _entered = self.enter_to_release();
         self.device.destroy();
     }
 

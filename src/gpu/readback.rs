@@ -31,6 +31,7 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
+    device.check_made()?;
     let mut encoder = device.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
         wgpu::TexelCopyTextureInfo {
@@ -58,7 +59,13 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
     }
     let map = |e| Error::new(Status::Internal, format!("mapping a readback buffer failed: {e}"));
     let view = buffer.get_mapped_range(..).map_err(map)?;
-    Ok(view.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+    let mut packed = Vec::new();
+    let size = row as usize * height as usize;
+    let full =
+        |_| Error::new(Status::OutOfMemory, format!("there are no {size} bytes of memory for a texture read back"));
+    packed.try_reserve_exact(size).map_err(full)?;
+    view.chunks_exact(padded as usize).for_each(|line| packed.extend_from_slice(&line[..row as usize]));
+    Ok(packed)
 }
 
 /// The texels of mip 0 as RGBA in f32; missing channels are 0, a missing alpha 1; 8-bit ones are divided by 255

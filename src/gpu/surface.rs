@@ -327,7 +327,8 @@ impl Surface {
         }
         let device = self.device.clone();
         let _entered = device.enter()?;
-        (self.current, self.stand_in) = (None, None);
+        self.give_back();
+        self.stand_in = None;
         self.ready = false;
         self.options = Some(*options);
         if options.width == 0 || options.height == 0 {
@@ -369,7 +370,7 @@ impl Surface {
         }
         if !direct {
             self.stand_in = Some(StandIn::new(&device, (options.width, options.height), format, IMAGE_USAGE)?);
-            device.check()?;
+            device.check_made()?;
         }
         self.ready = true;
         Ok(())
@@ -430,6 +431,16 @@ impl Surface {
         Ok(picture)
     }
 
+    /// Lets an image in hand go undrawn. wgpu does not take it back from a lost device, and would panic when the surface goes
+    /// before it: there it is destroyed, whoever else holds it.
+    fn give_back(&mut self) {
+        if let Some(image) = self.current.take()
+            && self.device.is_lost()
+        {
+            image.texture.destroy();
+        }
+    }
+
     /// What the host draws into for an image in hand.
     fn picture(&self, image: &wgpu::SurfaceTexture) -> wgpu::Texture {
         self.stand_in.as_ref().map_or_else(|| image.texture.clone(), |s| s.texture.clone())
@@ -455,6 +466,12 @@ impl Surface {
             return Err(outdated(&fault.message));
         }
         Ok(())
+    }
+}
+
+impl Drop for Surface {
+    fn drop(&mut self) {
+        self.give_back();
     }
 }
 

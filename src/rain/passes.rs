@@ -142,6 +142,11 @@ impl RainLayer {
         layer + cones + listed + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
+    /// Lets the picture's layer go, which the driver may not have had memory for.
+    pub fn forget_picture(&mut self) {
+        self.texture = None;
+    }
+
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
     pub fn view(&mut self, device: &Device, size: wgpu::Extent3d) -> &wgpu::TextureView {
         let fits = |(t, _): &(wgpu::Texture, wgpu::TextureView)| (t.width(), t.height()) == (size.width, size.height);

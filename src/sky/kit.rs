@@ -151,7 +151,7 @@ impl Kit {
             parts,
             work: Mutex::default(),
         };
-        device.check()?;
+        device.check_made()?;
         Ok(kit)
     }
 

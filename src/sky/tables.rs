@@ -76,7 +76,7 @@ impl SkyTables {
     pub fn of_library(library: &SkyLibrary, device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let kit = library.kit(device, settings)?;
         let light = Table::new(device, "sky light", Name::Lights.size(settings));
-        device.check()?;
+        device.check_made()?;
         Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0, busy: false })
     }
 

@@ -181,7 +181,7 @@ impl SkyVolume {
         let view = uniform_buffer(&device, "sky view", bytes_of(&written));
         let textures = [&sky.whole, &air.whole, &tables.light.view, &kit.nothing.view];
         let view_group = view_group(&kit, &view, textures);
-        device.check()?;
+        device.check_made()?;
         let (marched, drawn, fade) = (None, [None; LAMPS], None);
         Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, fade, written })
     }

@@ -1,6 +1,6 @@
 //! The clock at its seams: leap days, the ends of days and years, and the sun and the moon that go on over them.
 
-use welkin::capi::{query::*, status::*, timeline::*};
+use welkin::capi::{conditions::*, query::*, status::*, timeline::*, weather::*};
 
 use super::world::{World, init, message};
 
@@ -103,5 +103,52 @@ fn sun_and_moon_go_on_over_midnight_the_leap_day_and_the_years_end() {
             }
             last = now;
         }
+    }
+}
+
+/// What a timeline tells and what the ground gets of light, second by second over a seam of the calendar: no jump, and what the
+/// weather itself does is the same as at any other hour.
+#[test]
+fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
+    let told = |utc_s: f64| {
+        let world = World::new();
+        let (from, to) = (
+            wk_weather { visibility_m: 2000.0, temperature_c: 3.0, ..init("wk_weather") },
+            wk_weather { visibility_m: 20_000.0, temperature_c: 12.0, ..init("wk_weather") },
+        );
+        let mut told = Vec::new();
+        // SAFETY: live pointers with the sizes given.
+        unsafe {
+            assert_eq!(wk_context_set_weather(world.context, &from, 0.0, 0.0), WK_OK, "{}", message());
+            assert_eq!(wk_context_set_weather(world.context, &to, 1000.0, 600.0), WK_OK, "{}", message());
+            // The seam comes in the middle of the change.
+            assert_eq!(wk_context_set_clock(world.context, utc_s, 1300.0), WK_OK, "{}", message());
+            for i in 0..=20 {
+                let time_s = 1290.0 + f64::from(i);
+                let mut now = init::<wk_conditions>("wk_conditions");
+                let mut light: [wk_ground_light; 1] = std::mem::zeroed();
+                let size = size_of::<wk_ground_light>() as u32;
+                let at = [0.0; 3];
+                assert_eq!(wk_context_get_conditions(world.context, &at, time_s, &mut now), WK_OK, "{}", message());
+                let got = wk_context_get_light_at(world.context, &at, 1, 24, time_s, light.as_mut_ptr(), size);
+                assert_eq!(got, WK_OK, "{}", message());
+                told.push((now.visibility_m, now.temperature_c, light[0].total_lux + 1.0));
+            }
+        }
+        told
+    };
+    let noon = told(midnight(2026, 5, 5) + 0.5 * DAY_S);
+    for [year, month, day] in [[2024, 2, 29], [2024, 3, 1], [2027, 1, 1], [2000, 1, 1], [2100, 3, 1]] {
+        let seam = told(midnight(year, month, day));
+        for (i, pair) in seam.windows(2).enumerate() {
+            let change = |a: f64, b: f64| (b / a - 1.0).abs();
+            let worst =
+                change(pair[0].0, pair[1].0).max(change(pair[0].1, pair[1].1)).max(change(pair[0].2, pair[1].2));
+            assert!(worst < 0.02, "{year}-{month}-{day}, step {i}: {pair:?}");
+        }
+        for (a, b) in seam.iter().zip(&noon) {
+            assert_eq!((a.0, a.1), (b.0, b.1), "the weather does not ask the calendar");
+        }
+        assert!(seam[0].0 < seam[20].0, "{seam:?}");
     }
 }

@@ -7,8 +7,8 @@ use std::{
 };
 
 use welkin::capi::{
-    area::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, rain::*, status::*, timeline::*, weather::*,
-    weather_kinds::*, wind::*, wind_grid::*,
+    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, query::*, rain::*, status::*,
+    timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -274,6 +274,41 @@ fn one_byte_changed_anywhere_is_refused_and_so_is_any_cut() {
     assert_eq!(second.hash(), first.hash());
 }
 
+/// What a context with everything set answers at a time, in the order of the file beside the state.
+fn answers(context: *mut wk_context, time_s: f64) -> Vec<(&'static str, f64)> {
+    let at = [0.5; 3];
+    let (mut now, mut ground, mut wind) = (init::<wk_conditions>("wk_conditions"), init("wk_ground"), init("wk_wind"));
+    let (mut sun, mut moon) = (init::<wk_celestial>("wk_celestial"), init("wk_celestial"));
+    let mut rain = init::<wk_rainfall>("wk_rainfall");
+    // SAFETY: live pointers.
+    unsafe {
+        ok(wk_context_get_conditions(context, &at, time_s, &mut now));
+        ok(wk_context_get_ground(context, &at, &mut ground));
+        ok(wk_context_get_wind_at(context, &at, time_s, &mut wind));
+        ok(wk_context_get_sun_at(context, &at, time_s, &mut sun));
+        ok(wk_context_get_moon_at(context, &at, time_s, &mut moon));
+        ok(wk_context_get_rainfall_at(context, &[900.0, 400.0, 0.0], time_s, &mut rain));
+    }
+    vec![
+        ("visibility_m", now.visibility_m),
+        ("temperature_c", now.temperature_c),
+        ("rain_mm_h", now.rain_mm_h),
+        ("cloud_cover", now.cloud_cover),
+        ("water_mm", ground.water_mm),
+        ("film_mm", ground.film_mm),
+        ("wetness", ground.wetness),
+        ("surface_class", f64::from(ground.surface_class)),
+        ("wind_east_m_s", wind.velocity_m_s[0]),
+        ("wind_north_m_s", wind.velocity_m_s[1]),
+        ("wind_up_m_s", wind.velocity_m_s[2]),
+        ("sun_east", sun.direction[0]),
+        ("sun_up", sun.direction[2]),
+        ("moon_east", moon.direction[0]),
+        ("area_rate_mm_h", rain.rate_mm_h),
+        ("area_extinction_per_m", rain.extinction_per_m),
+    ]
+}
+
 /// The state of each format that was ever written. That of the present one is written anew by WELKIN_BLESS=1, which is right
 /// only as long as no release wrote it: afterwards a state that no longer loads needs another format.
 #[test]
@@ -303,6 +338,20 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     }
     assert!(ground.in_puddle == 1 && ground.water_mm > 5.0, "{}", ground.water_mm);
     assert!((0.2..0.3).contains(&wind.velocity_m_s[2]), "the wind grid's updraught: {:?}", wind.velocity_m_s);
+    // What it answers is what the state answered when it was written.
+    let told = answers(second.0, 1234.5);
+    let path = Path::new(FIXTURES).join(format!("format{FORMAT}.answers"));
+    if std::env::var_os("WELKIN_BLESS").is_some() {
+        std::fs::write(&path, told.iter().map(|(name, value)| format!("{name} {value:?}\n")).collect::<String>())
+            .unwrap();
+    }
+    let written = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(written.lines().count(), told.len());
+    for (line, (name, value)) in written.lines().zip(&told) {
+        let (of, wanted) = line.split_once(' ').unwrap();
+        let wanted: f64 = wanted.parse().unwrap();
+        assert!(of == *name && (value - wanted).abs() <= 1e-9 * wanted.abs(), "{name}: {value}, was {line}");
+    }
     update(second.0, 2000.0);
     let before = second.hash();
     for old in 1..FORMAT {

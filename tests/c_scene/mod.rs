@@ -1,6 +1,10 @@
 //! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
 
 pub mod ground;
+pub mod loss;
+pub mod marks;
+pub mod own;
+pub mod veil;
 
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
@@ -75,8 +79,13 @@ impl Scene {
 
 /// Looks north from 2 m above ground, 1 rad high, reversed infinite depth; the picture is sRGB-encoded.
 pub fn frame(frame_id: u64) -> wk_frame {
+    frame_of(frame_id, SIZE)
+}
+
+/// The same of a picture of another size.
+pub fn frame_of(frame_id: u64, size: (u32, u32)) -> wk_frame {
     let focal = 1.0 / f64::tan(0.5);
-    let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+    let aspect = f64::from(size.0) / f64::from(size.1);
     let mut projection = [0.0; 16];
     (projection[0], projection[5], projection[11], projection[14]) = (focal / aspect, focal, -1.0, 0.1);
     // East is the picture's right, up its up, north away from the eye.

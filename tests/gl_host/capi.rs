@@ -31,7 +31,7 @@ pub fn device(host: &Host) -> *mut wk_device {
     device
 }
 
-fn image(image: GlImage) -> wk_opengl_image {
+pub fn image(image: GlImage) -> wk_opengl_image {
     let none = wk_opengl_image { kind: WK_OPENGL_NONE, name: 0, target: glow::TEXTURE_2D, reserved0: 0 };
     match image {
         GlImage::Texture { name, target } => wk_opengl_image { kind: WK_OPENGL_TEXTURE, name, target, ..none },
@@ -51,7 +51,7 @@ pub fn target(color: GlImage, depth: GlImage) -> wk_opengl_target {
 }
 
 /// Clears blue 0.5 and a depth, draws, and reads; rows from the top.
-fn picture(host: &Host, scene: &Scene, fbo: glow::Framebuffer, target: &wk_opengl_target, id: u64) -> Vec<[u8; 4]> {
+pub fn picture(host: &Host, scene: &Scene, fbo: glow::Framebuffer, target: &wk_opengl_target, id: u64) -> Vec<[u8; 4]> {
     let gl = &host.gl;
     let frame = wk_frame { target: std::ptr::from_ref(target).cast(), ..frame(id) };
     let mut pixels = vec![[0_u8; 4]; (SIZE.0 * SIZE.1) as usize];

@@ -7,7 +7,7 @@ pub const WIDTH: u32 = 64;
 pub const HEIGHT: u32 = 48;
 
 /// The client format and type that go with an internal format.
-fn client(internal: u32) -> (u32, u32) {
+pub fn client(internal: u32) -> (u32, u32) {
     match internal {
         glow::RGBA16F => (glow::RGBA, glow::HALF_FLOAT),
         glow::RGBA32F => (glow::RGBA, glow::FLOAT),

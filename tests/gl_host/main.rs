@@ -4,6 +4,7 @@
 
 #[path = "../c_scene/mod.rs"]
 mod c_scene;
+mod canvas;
 mod capi;
 mod egl;
 mod exercise;
@@ -12,14 +13,19 @@ mod host;
 mod images;
 mod kinds;
 mod life;
+mod loss;
+mod marks;
 mod matrix;
+mod memory;
 mod own;
 mod painter;
 mod pictures;
+mod resized;
 mod sky;
 mod snapshot;
 mod state;
 mod unusual;
+mod veil;
 mod windows;
 
 /// The size of the pictures that come through the C functions.

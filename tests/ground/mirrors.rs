@@ -8,7 +8,7 @@ use welkin::{
         SurfaceClass,
         reference::{fresnel_water, glitter, normal_quantile},
     },
-    scene::HostLight,
+    scene::{Camera, HostLight},
     weather::{CloudKind, CloudLayer, Surface, SurfaceState, Weather, Wind},
 };
 
@@ -195,4 +195,67 @@ fn a_lamp_shines_in_a_puddle_by_the_law_of_glitter_and_not_on_grass() {
         }
     }
     assert!(compared >= 9 && brightest > 100.0, "{compared} {brightest}");
+}
+
+/// The picture's light of a lamp alone: what the eye gets of it by the ground, cd/m^2, pixel by pixel.
+fn of_lamp(host: &mut Host, camera: Camera, lamp: HostLight) -> Vec<f64> {
+    let eye = camera.position;
+    let mut picture = |lamps: &[HostLight]| {
+        host.context.set_lights(lamps).unwrap();
+        host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]))
+    };
+    let (dark, lit) = (picture(&[]), picture(&[lamp]));
+    lit.iter().zip(&dark).map(|(a, b)| f64::from(a[1] - b[1])).collect()
+}
+
+#[test]
+fn a_lamp_above_wet_paving_has_its_image_below_it_by_fresnels_law_and_none_on_dry() {
+    let mut host = Host::new();
+    host.ground_is(SurfaceState::StandingWater);
+    host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
+    let at = puddle(&host).extend(0.0);
+    for elevation in [65.0f64, 40.0, 25.0, 15.0] {
+        let (sin, cos) = elevation.to_radians().sin_cos();
+        // The water's middle mirrors the lamp; the eye is one metre from it, the lamp two.
+        let eye = at + DVec3::new(0.0, -cos, sin);
+        let position_m = at + 2.0 * DVec3::new(0.02, cos, sin);
+        let lamp = HostLight {
+            position_m,
+            direction: -DVec3::Z,
+            intensity_cd: [500.0; 3],
+            inner_deg: 180.0,
+            outer_deg: 180.0,
+        };
+        let fov = 0.25;
+        let camera = look(eye, 0.0, -elevation, fov);
+        host.ground_is(SurfaceState::StandingWater);
+        let light = of_lamp(&mut host, camera, lamp);
+        let (mut sum, mut place) = (0.0, [0.0; 2]);
+        let pixel = 2.0 * (0.5 * fov).tan() / f64::from(SIZE.1);
+        for (i, l) in light.iter().enumerate() {
+            let (x, y) = (i as u32 % SIZE.0, i as u32 / SIZE.0);
+            let off = ray(&camera, x, y).dot(ray(&camera, SIZE.0 / 2, SIZE.1 / 2));
+            let lux = l * pixel * pixel * off.powi(3);
+            sum += lux;
+            place = [place[0] + lux * f64::from(x), place[1] + lux * f64::from(y)];
+        }
+        // What a plane mirror sends: the lamp three metres away, times Fresnel's share.
+        let want = lamp.intensity_cd[1] * fresnel_water(sin) / 9.0;
+        assert!((sum / want - 1.0).abs() < 0.02, "{elevation}: {sum} lux, want {want}");
+        // It stands where the image below the ground is seen: in the middle of the picture.
+        let off = [place[0] / sum - f64::from(SIZE.0) / 2.0, place[1] / sum - f64::from(SIZE.1) / 2.0];
+        assert!(off[0].abs() < 1.0 && off[1].abs() < 1.0, "{elevation}: {off:?}");
+        host.ground_is(SurfaceState::Dry);
+        assert!(of_lamp(&mut host, camera, lamp).iter().all(|l| *l == 0.0), "{elevation}: dry ground mirrors no lamp");
+    }
+    // A film: the image is wide, and to the side of the lamp there is nothing of it.
+    host.ground_is(SurfaceState::Wet);
+    let eye = at + DVec3::new(0.0, -6.0, 2.0);
+    let position_m = at + DVec3::new(0.0, 6.0, 2.0);
+    let lamp =
+        HostLight { position_m, direction: -DVec3::Z, intensity_cd: [500.0; 3], inner_deg: 180.0, outer_deg: 180.0 };
+    let light = of_lamp(&mut host, look(eye, 0.0, -18.4, 0.8), lamp);
+    let column = |x: usize| light.iter().skip(x).step_by(SIZE.0 as usize).sum::<f64>();
+    let widest = (0..SIZE.0 as usize).max_by(|a, b| column(*a).total_cmp(&column(*b))).unwrap();
+    assert!((78..=81).contains(&widest) && column(80) > 10.0 * column(5), "{widest}: {} {}", column(80), column(5));
 }

@@ -22,5 +22,6 @@ mod shelter;
 mod slopes;
 mod speeds;
 mod stability;
+mod stereo;
 mod stones;
 mod streaks;

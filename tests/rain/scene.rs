@@ -187,6 +187,11 @@ impl Host {
 
     pub fn record(&mut self, stages: Stages) -> welkin::Result<()> {
         self.frames += 1;
+        self.record_again(stages)
+    }
+
+    /// Under the number of the last frame: another view's picture of the same moment.
+    pub fn record_again(&mut self, stages: Stages) -> welkin::Result<()> {
         let frame = Frame {
             camera_velocity_m_s: self.velocity_m_s,
             ..Frame::new(self.frames, self.camera, &self.color, Some(&self.depth))

@@ -381,6 +381,38 @@ impl Host {
         }
     }
 
+    /// Fills an image with these texels, rows from the top, and leaves it in `layout`.
+    pub fn write_texels<T: bytemuck::Pod>(&self, image: &HostImage, texels: &[T], layout: vk::ImageLayout) {
+        assert_eq!(texels.len() as u32, image.width * image.height);
+        let (buffer, memory) = self.buffer(size_of_val(texels) as u64);
+        // SAFETY: the memory is host-visible and coherent, and the size fits.
+        unsafe {
+            let at = self.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty()).unwrap();
+            at.cast::<T>().copy_from_nonoverlapping(texels.as_ptr(), texels.len());
+            self.device.unmap_memory(memory);
+        }
+        let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        self.run(&[], &[], true, |c| {
+            self.transition(c, image, vk::ImageLayout::UNDEFINED, target);
+            let region = vk::BufferImageCopy::default()
+                .image_subresource(vk::ImageSubresourceLayers {
+                    aspect_mask: aspects(image.format),
+                    base_array_layer: image.layer,
+                    layer_count: 1,
+                    ..Default::default()
+                })
+                .image_extent(vk::Extent3D { width: image.width, height: image.height, depth: 1 });
+            // SAFETY: plain Vulkan by its rules.
+            unsafe { self.device.cmd_copy_buffer_to_image(c, buffer, image.image, target, &[region]) };
+            self.transition(c, image, target, layout);
+        });
+        // SAFETY: the queue was waited for.
+        unsafe {
+            self.device.destroy_buffer(buffer, None);
+            self.device.free_memory(memory, None);
+        }
+    }
+
     /// A semaphore: binary, or timeline from 0.
     pub fn semaphore(&self, timeline: bool) -> vk::Semaphore {
         let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);

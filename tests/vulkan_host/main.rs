@@ -9,9 +9,12 @@ mod draw;
 mod ground;
 mod host;
 mod images;
+mod loss;
+mod marks;
 mod refusals;
 mod reuse;
 mod sharing;
+mod veil;
 mod weather;
 
 use ash::vk;

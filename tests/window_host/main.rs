@@ -2,6 +2,7 @@
 //! the window is an answer, not a fault.
 #![cfg(target_os = "linux")]
 
+mod capi;
 mod x11;
 
 use std::sync::atomic::Ordering;

@@ -55,10 +55,12 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
         frame.surface_classes = images.surface_classes.as_ref();
         frame.normals = images.normals.as_ref();
     }
-    let recorded = object.lock().record(&object.context.read(), &frame, stages).map_err(in_frame);
+    let mut view = object.lock();
+    let before = view.recorded_of(frame.frame_id);
+    let recorded = view.record(&object.context.read(), &frame, stages).map_err(in_frame);
     drop(entered);
     recorded?;
-    host.check()
+    host.check().inspect_err(|_| view.take_back(before))
 }
 
 pub(in crate::capi) fn set_occluder_maps<'a>(

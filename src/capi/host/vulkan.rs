@@ -153,6 +153,7 @@ pub(in crate::capi) unsafe fn record(
     let gpu = object.cell.gpu();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
     let mut view = object.lock();
+    let recorded = view.recorded_of(frame.frame_id);
     view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
     if object.has_veil() && stages.has(Stages::MEDIUM) {
         let veil = view.frame_textures()?;
@@ -171,7 +172,7 @@ pub(in crate::capi) unsafe fn record(
         .collect();
     let over = HandOver { images: &lent, wait: waits.as_slice(), signal: signals.as_slice() };
     // SAFETY: as above; the queue is used by the header's contract.
-    unsafe { host.submit(encoder, &over) }.map_err(|e| match e.status {
+    unsafe { host.submit(encoder, &over) }.inspect_err(|_| view.take_back(recorded)).map_err(|e| match e.status {
         Status::InvalidArgument => e.within("frame.target."),
         _ => e,
     })

@@ -223,6 +223,10 @@ impl HostBinding for GlHost {
         Self::leave(self);
     }
 
+    fn raised(&self) -> Option<Error> {
+        raised_in_welkin(self.inner().api.take_error())
+    }
+
     fn reading(&self, color: &wgpu::Texture) -> Option<wgpu::Texture> {
         self.inner().entry_of(color)?.target.color_read.clone()
     }
@@ -426,7 +430,7 @@ fn bind_again(api: &Api, image: GlImage) {
 }
 
 /// An error flag that Welkin's own calls left.
-fn raised_in_welkin(error: u32) -> Option<Error> {
+pub(in crate::gpu) fn raised_in_welkin(error: u32) -> Option<Error> {
     let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
     (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))
 }

@@ -47,6 +47,7 @@ mod windows;
 use std::ffi::{c_char, c_void};
 
 pub use check::{GlInfo, GlProfile};
+pub(super) use host::raised_in_welkin;
 pub use host::{Current, GlHost};
 pub use image::GlImage;
 pub use open::{GlDevice, adopt};
