@@ -35,7 +35,8 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
     d->lamps = (lamp_pair){0};
     d->time_s = 0.0;
     d->history = false;
-    d->scene.with_bridge = s->bridge;
+    d->scene.with_bridge = s->world == WITH_BRIDGE;
+    d->scene.empty = s->world == NO_WORLD;
     weather_close(&d->weather);
     bool ok = weather_open(&d->weather, d->platform) && s->prepare(d) &&
               (!s->windscreen || let_it_rain_on_the_glass(d, s)) && demo_draw(d);

@@ -18,6 +18,9 @@ typedef struct box {
     double mean[3];
 } box;
 
+/* About as the eye weighs differences of encoded red, green and blue. */
+static const float WEIGHTS[3] = {3, 4, 2};
+
 static int by_color(const void *a, const void *b) { return memcmp(a, b, 3); }
 
 static int sort_axis;
@@ -56,7 +59,7 @@ static void measure(box *b, const swatch *list)
     }
     b->error = 0.0;
     for (int c = 0; c < 3; c++) {
-        double error = squares[c] - sum[c] * sum[c] / weight;
+        double error = WEIGHTS[c] * (squares[c] - sum[c] * sum[c] / weight);
         b->mean[c] = sum[c] / weight;
         if (b->count > 1 && error > b->error)
             b->error = error, b->axis = c;
@@ -103,7 +106,7 @@ static int nearest(const palette *p, const float c[3])
     float least = 1e9f;
     for (int i = 0; i < p->count; i++) {
         float r = c[0] - p->rgb[i][0], g = c[1] - p->rgb[i][1], b = c[2] - p->rgb[i][2];
-        float d = 2.0f * r * r + 4.0f * g * g + b * b; /* about as the eye weighs them */
+        float d = WEIGHTS[0] * r * r + WEIGHTS[1] * g * g + WEIGHTS[2] * b * b;
         if (d < least)
             least = d, best = i;
     }
@@ -126,11 +129,11 @@ bool palette_choose(palette *p, const uint8_t *rgb, int width, int height, uint8
             const uint8_t *pixel = rgb + 3 * ((size_t)y * (size_t)width + (size_t)x);
             float wanted[3], *at = here + 3 * (x + 1), *under = below + 3 * (x + 1);
             for (int c = 0; c < 3; c++)
-                wanted[c] = pixel[c] + (float)clamp(at[c], -12.0, 12.0);
+                wanted[c] = pixel[c] + (float)clamp(at[c], -48.0, 48.0);
             int k = nearest(p, wanted);
             indices[(size_t)y * (size_t)width + (size_t)x] = (uint8_t)k;
             for (int c = 0; c < 3; c++) {
-                float e = (wanted[c] - p->rgb[k][c]) / 16.0f;
+                float e = (wanted[c] - p->rgb[k][c]) * (0.85f / 16.0f); /* less than all of it: calmer, and fewer bytes */
                 at[3 * step + c] += 7.0f * e, under[-3 * step + c] += 3.0f * e;
                 under[c] += 5.0f * e, under[3 * step + c] += e;
             }

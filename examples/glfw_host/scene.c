@@ -140,6 +140,8 @@ static mat4 shadow_matrix(const scene *s, vec3 sun)
 
 static void draw(const scene *s, bool with_ground, bool objects)
 {
+    if (s->empty)
+        return;
     GLsizei first = with_ground ? 0 : s->ground_indices;
     GLsizei count = (with_ground ? s->ground_indices : 0);
     if (objects)

@@ -16,7 +16,7 @@ typedef struct scene {
     ground ground;
     mesh mesh;
     GLsizei ground_indices, object_indices, bridge_indices;
-    bool with_bridge;
+    bool with_bridge, empty; /* empty: nothing is drawn, as from space */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;

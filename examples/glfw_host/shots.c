@@ -64,6 +64,16 @@ static bool sunset(demo *d)
 static bool twilight(demo *d) { return clear(d, 3); }
 static bool night(demo *d) { return clear(d, 4); }
 
+/* The same clear air with the sun elsewhere, for the pictures from high up. */
+static bool clear_with_sun(demo *d, double azimuth_deg, double elevation_deg)
+{
+    return clear(d, 0) && sun_at(d, azimuth_deg, elevation_deg);
+}
+
+static bool twelve_km(demo *d) { return clear_with_sun(d, 60, 25); }
+static bool space(demo *d) { return clear_with_sun(d, 30, 5); }
+static bool shadow(demo *d) { return clear_with_sun(d, 10, -9); }
+
 static bool haze(demo *d)
 {
     wk_weather w = weather_here(5000, 0.5);
@@ -265,28 +275,32 @@ static bool with_wipers(demo *d, double time_s)
 /* The eye on the hillside from which the posts' distances count, and a driver's on the road. */
 #define HILLSIDE 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 1.5, 50.0
 #define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
+#define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
 
 const shot SHOTS[] = {
-    {"noon", "Noon", HILLSIDE, noon, false, NULL},
-    {"low_sun", "Low sun", HILLSIDE, low_sun, false, NULL},
-    {"sunset", "Sunset", HILLSIDE, sunset, false, NULL},
-    {"twilight", "Civil twilight", HILLSIDE, twilight, false, NULL},
-    {"night", "Night with a half moon", HILLSIDE, night, false, NULL},
-    {"haze", "Haze, visibility 5 km", HILLSIDE, haze, false, NULL},
-    {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, false, NULL},
-    {"fog", "Fog, visibility 150 m", HILLSIDE, fog, false, NULL},
-    {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, false, NULL},
-    {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, false, NULL},
-    {"cloudburst", "Cloudburst, 60 mm/h, gusts", ROADSIDE(-4.0), cloudburst, false, NULL},
-    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, false, NULL},
-    {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, false, without_wipers},
-    {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, false, with_wipers},
-    {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, false, NULL},
-    {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, false, NULL},
-    {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, false, NULL},
-    {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, false, NULL},
-    {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, false, NULL},
-    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, true, NULL},
+    {"noon", "Noon", HILLSIDE, noon, WORLD, NULL},
+    {"low_sun", "Low sun", HILLSIDE, low_sun, WORLD, NULL},
+    {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
+    {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
+    {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
+    {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
+    {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},
+    {"fog", "Fog, visibility 150 m", HILLSIDE, fog, WORLD, NULL},
+    {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, WORLD, NULL},
+    {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, WORLD, NULL},
+    {"cloudburst", "Cloudburst, 60 mm/h, wind 9 m/s", ROADSIDE(-4.0), cloudburst, WORLD, NULL},
+    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL},
+    {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers},
+    {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers},
+    {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL},
+    {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
+    {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
+    {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
+    {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
+    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},
+    {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL},
+    {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL},
+    {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 
@@ -294,6 +308,5 @@ camera shot_camera(const shot *s, const ground *g)
 {
     double x, y;
     ground_road_point(s->along_m, s->right_m, &x, &y);
-    /* The hillside's eye stands off the road: right_m counts from the road at the same distance down it. */
     return (camera){vec(x, y, ground_z(g, x, y) + s->up_m), direction(s->azimuth_deg, s->elevation_deg), RAD(s->fov_y_deg)};
 }

@@ -4,6 +4,8 @@
 
 #include "demo.h"
 
+enum world { WORLD, WITH_BRIDGE, NO_WORLD /* from so high that the host's land would end in the picture */ };
+
 typedef struct shot {
     const char *name, *caption;
     /* Where the camera stands: down the road and right of it, above the ground, m. */
@@ -11,7 +13,7 @@ typedef struct shot {
     double azimuth_deg, elevation_deg, fov_y_deg;
     /* Sets sun and weather, and all else that is there. */
     bool (*prepare)(demo *d);
-    bool bridge;
+    enum world world;
     /* The window that the camera looks through at a time: it has been in the rain for 50 s. NULL: none. */
     bool (*windscreen)(demo *d, double time_s);
 } shot;
