@@ -136,10 +136,10 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
 #[test]
 fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
     let host = Host::build("gallery");
-    let said = run(host.command().args(["--size", "320x180", "--gallery", "fog", "work_lights", "under_the_bridge"]));
-    assert_eq!(said.matches(".png: ").count(), 3, "each picture is said as it is made: {said}");
-    let [fog, lamps, bridge] = ["fog.png", "work_lights.png", "under_the_bridge.png"].map(|name| host.picture(name));
-    assert!([&fog, &lamps, &bridge].iter().all(|p| p.dimensions() == (320, 180)));
+    let said = run(host.command().args(["--size", "320x180", "--gallery", "work_lights", "under_the_bridge"]));
+    assert_eq!(said.matches(".png: ").count(), 2, "each picture is said as it is made: {said}");
+    let [lamps, bridge] = ["work_lights.png", "under_the_bridge.png"].map(|name| host.picture(name));
+    assert!([&lamps, &bridge].iter().all(|p| p.dimensions() == (320, 180)));
     // The deck's underside is dark before a bright sky; pixels on the edge between them have a part of both.
     let column = |y: u32| bridge.get_pixel(150, y)[0];
     assert!(column(44) < 80 && column(64) > 170, "a deck before the sky: {} {}", column(44), column(64));
@@ -148,9 +148,7 @@ fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
     assert!(between > 120, "one sample a pixel leaves a score of them, four some hundred: {between}");
     // What the lamps shine on is lit, what is behind it is night.
     let (work, night) = (mean(&lamps, [70, 100, 100, 112]), mean(&lamps, [0, 0, 320, 10]));
-    assert!(work[1] > 60.0 && night[1] < 40.0, "{work:?} before {night:?}");
-    // Fog hides the far end of the road, not the excavator.
-    assert!(contrast(&fog, 143) > 30 && contrast(&fog, 95) < 60, "{} {}", contrast(&fog, 143), contrast(&fog, 95));
+    assert!(work[1] > 120.0 && night[1] < 60.0, "{work:?} before {night:?}");
     let mut unknown = host.command();
     let unknown = unknown.args(["--gallery", "volcano"]).output().expect("the host runs");
     let said = String::from_utf8_lossy(&unknown.stderr).into_owned();

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "palette.h"
 #include "png_file.h"
 #include "shots.h"
 
@@ -27,6 +28,16 @@ static bool let_it_rain_on_the_glass(demo *d, const shot *s)
     return true;
 }
 
+static bool write(const char *path, const uint8_t *rgb, int width, int height)
+{
+    palette colors;
+    uint8_t *indices = malloc((size_t)width * (size_t)height);
+    bool ok = indices && palette_choose(&colors, rgb, width, height, indices) &&
+              png_write_indexed(path, indices, width, height, (const uint8_t(*)[3])colors.rgb, colors.count);
+    free(indices);
+    return ok;
+}
+
 static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
 {
     char path[1024];
@@ -45,7 +56,7 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
         return false;
     picture_read(&d->picture, rgb);
     snprintf(path, sizeof path, "%s/%s.png", out, s->name);
-    if (!png_write_palette(path, rgb, d->picture.shown_width, d->picture.shown_height))
+    if (!write(path, rgb, d->picture.shown_width, d->picture.shown_height))
         return false;
     printf("%s: %s\n", path, s->caption);
     fflush(stdout);

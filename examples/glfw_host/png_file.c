@@ -6,8 +6,6 @@
 
 #include <png.h>
 
-#include "palette.h"
-
 static void on_fault(png_structp png, png_const_charp message)
 {
     fprintf(stderr, "%s: %s\n", (const char *)png_get_error_ptr(png), message);
@@ -57,7 +55,7 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
 }
 
 /* Rows of RGB, or of indices where there is a palette. */
-static bool write_rows(const char *path, const uint8_t *pixels, int width, int height, const palette *colors)
+static bool write_rows(const char *path, const uint8_t *pixels, int width, int height, const uint8_t (*colors)[3], int count)
 {
     const size_t row_bytes = (size_t)width * (colors ? 1 : 3);
     FILE *file = fopen(path, "wb");
@@ -73,9 +71,9 @@ static bool write_rows(const char *path, const uint8_t *pixels, int width, int h
                      PNG_FILTER_TYPE_DEFAULT);
         if (colors) {
             png_color list[256];
-            for (int i = 0; i < colors->count; i++)
-                list[i] = (png_color){colors->rgb[i][0], colors->rgb[i][1], colors->rgb[i][2]};
-            png_set_PLTE(png, info, list, colors->count);
+            for (int i = 0; i < count; i++)
+                list[i] = (png_color){colors[i][0], colors[i][1], colors[i][2]};
+            png_set_PLTE(png, info, list, count);
             png_set_compression_level(png, 9);
         }
         png_write_info(png, info);
@@ -90,15 +88,10 @@ static bool write_rows(const char *path, const uint8_t *pixels, int width, int h
 
 bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height)
 {
-    return write_rows(path, pixels, width, height, NULL);
+    return write_rows(path, pixels, width, height, NULL, 0);
 }
 
-bool png_write_palette(const char *path, const uint8_t *pixels, int width, int height)
+bool png_write_indexed(const char *path, const uint8_t *indices, int width, int height, const uint8_t (*colors)[3], int count)
 {
-    palette colors;
-    uint8_t *indices = malloc((size_t)width * (size_t)height);
-    bool ok = indices && palette_choose(&colors, pixels, width, height, indices) &&
-              write_rows(path, indices, width, height, &colors);
-    free(indices);
-    return ok;
+    return write_rows(path, indices, width, height, colors, count);
 }
