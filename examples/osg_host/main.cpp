@@ -2,6 +2,7 @@
  * A simulator on OpenSceneGraph with Welkin's weather: `osg_host --data ../data` opens a window, --help lists the rest.
  * welkin_osg.hpp is the part to copy; light.cpp, glass.cpp, cab.cpp and weather.cpp show one thing each.
  */
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -81,6 +82,7 @@ private:
     bool open();
     void open_window_of(Window &window, int number);
     void draw(int frames, bool weather, double step_s);
+    void catch_up();
     std::vector<osg::ref_ptr<osg::Image>> pictures(int frames, bool weather, double step_s);
     bool check();
     bool write();
@@ -138,12 +140,13 @@ bool Host::open()
     if (!scene_) return false;
     if (options_.precipitation == Precipitation::Osg) background_ = add_osg_rain(*scene_);
     seat_ = seat(site_, options_.cab);
-    world_free(); /* OSG has its own copy */
     if (options_.cab) {
         cab_ = std::make_unique<Cab>(seat_, colors);
         scene_->addChild(cab_->node());
     }
     weather_ = new WeatherOfWindows(options_, site_);
+    world_free(); /* OSG and the weather have their own copies */
+    time_s_ = 3600.0 * options_.leap_h;
     viewer_.setRealizeOperation(weather_);
     viewer_.setThreadingModel(options_.threading);
     windows_.resize(size_t(options_.windows));
@@ -164,10 +167,20 @@ void Host::draw(int frames, bool weather, double step_s)
     }
 }
 
+/* After a leap a simulated ground takes more than one update: a picture that stands alone waits for it. */
+void Host::catch_up()
+{
+    const auto lags = [](const Window &window) { return window.weather->weather->pending.load(); };
+    int frames = 0;
+    for (; std::any_of(windows_.begin(), windows_.end(), lags) && !viewer_.done(); frames++) draw(1, true, 0.0);
+    if (frames > 0) std::cout << "the ground lagged for " << frames << " more frames" << std::endl;
+}
+
 /* Draws some frames and answers the last one of each window. */
 std::vector<osg::ref_ptr<osg::Image>> Host::pictures(int frames, bool weather, double step_s)
 {
     draw(frames - 1, weather, step_s);
+    catch_up();
     viewer_.stopThreading(); /* what a drawing thread reads may be changed only while there is none */
     for (Window &window : windows_) window.capture->wanted = true;
     viewer_.startThreading();
