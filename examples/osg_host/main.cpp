@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include <osg/GLExtensions>
 #include <osgDB/WriteFile>
 #include <osgGA/TrackballManipulator>
 #include <osgViewer/CompositeViewer>
@@ -24,8 +25,29 @@ struct Capture : osg::Camera::DrawCallback {
     void operator()(osg::RenderInfo &info) const override
     {
         if (!wanted) return;
-        const auto *traits = info.getState()->getGraphicsContext()->getTraits();
-        image->readPixels(0, 0, traits->width, traits->height, GL_RGB, GL_UNSIGNED_BYTE);
+        const auto *window = info.getState()->getGraphicsContext();
+        const int width = window->getTraits()->width, height = window->getTraits()->height;
+        auto *gl = info.getState()->get<osg::GLExtensions>();
+        GLint samples = 0;
+        glGetIntegerv(GL_SAMPLES, &samples);
+        GLuint frame = 0, color = 0;
+        if (samples > 0) { /* Mesa's software driver reads one sample of a window: the mean of all is made by hand */
+            gl->glGenFramebuffers(1, &frame);
+            gl->glGenRenderbuffers(1, &color);
+            gl->glBindRenderbuffer(GL_RENDERBUFFER_EXT, color);
+            gl->glRenderbufferStorage(GL_RENDERBUFFER_EXT, GL_RGBA8, width, height);
+            gl->glBindRenderbuffer(GL_RENDERBUFFER_EXT, 0);
+            gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, frame);
+            gl->glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_RENDERBUFFER_EXT, color);
+            gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, frame);
+        }
+        image->readPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE);
+        if (samples > 0) {
+            gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, window->getDefaultFboId());
+            gl->glDeleteRenderbuffers(1, &color);
+            gl->glDeleteFramebuffers(1, &frame);
+        }
     }
     bool wanted = false; /* changed between frames, with all threads at rest */
     osg::ref_ptr<osg::Image> image = new osg::Image;
