@@ -75,6 +75,22 @@ struct AskForVeil : osg::Camera::DrawCallback {
     osg::ref_ptr<welkin_osg::View> weather;
 };
 
+/* Rain that trainees notice: as in nature, hardly any shows by day (docs/rain-contrast.md). */
+struct TrainersRain : osg::Camera::DrawCallback {
+    explicit TrainersRain(welkin_osg::View *weather) : weather(weather) {}
+    void operator()(osg::RenderInfo &) const override
+    {
+        wk_view *view = weather->get();
+        if (!view || view == told) return;
+        wk_rain rain = WK_RAIN_INIT;
+        rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
+        welkin_osg::check(wk_view_set_rain(view, &rain));
+        told = view;
+    }
+    osg::ref_ptr<welkin_osg::View> weather;
+    mutable wk_view *told = nullptr; /* looked at by the drawing thread alone */
+};
+
 struct Window {
     osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
     osg::ref_ptr<welkin_osg::View> weather;
@@ -148,6 +164,7 @@ void Host::open_window_of(Window &window, int number)
     camera->setUserData(window.weather); /* where the glass finds its veil */
     if (options_.check) window.state->attach(window.weather, camera);
     else window.weather->attach(camera);
+    camera->addPreDrawCallback(new TrainersRain(window.weather));
     camera->addPreDrawCallback(new WeatherLight(window.weather, window.view));
     if (window.weather->before_transparent) camera->addPreDrawCallback(new AskForVeil(window.weather));
     if (cab_) camera->addPreDrawCallback(new CabGlass(cab_.get(), window.weather));
