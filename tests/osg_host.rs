@@ -132,9 +132,14 @@ fn weather_comes_and_goes_without_a_trace() {
 #[test]
 fn samples_of_textures_and_windows_make_edges_smooth() {
     let host = Host::new("samples");
-    let ways = [("--msaa none --reversed", "--msaa textures --reversed"), ("--window --msaa none", "--window --msaa osg --samples 4")];
+    let ways = [
+        ("--msaa none --reversed", "--msaa textures --reversed"),
+        ("--window --msaa none", "--window --msaa osg --samples 4"),
+    ];
     for (i, (plain, sampled)) in ways.iter().enumerate() {
-        let draw = |way: &str, name: &str| host.picture(&format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"));
+        let draw = |way: &str, name: &str| {
+            host.picture(&format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"))
+        };
         let (one, four) = (draw(plain, "one"), draw(sampled, "four"));
         for part in [MEADOW, [0, 0, 200, 60]] {
             let (a, b) = (green(&one, part).0, green(&four, part).0);
@@ -145,9 +150,17 @@ fn samples_of_textures_and_windows_make_edges_smooth() {
             let pixels = (250..285).flat_map(|y| (200..250).map(move |x| (x, y)));
             pixels.filter(|(x, y)| p.get_pixel(*x, *y)[0].abs_diff(p.get_pixel(x + 1, *y)[0]) > 70).count()
         };
-        assert!(steps(&four) < steps(&one) * 3 / 4, "{sampled}: {} hard steps, without samples {}", steps(&four), steps(&one));
+        assert!(
+            steps(&four) < steps(&one) * 3 / 4,
+            "{sampled}: {} hard steps, without samples {}",
+            steps(&four),
+            steps(&one)
+        );
         let said = host.run(&format!("--check --frames 2 --size 160 90 {sampled}"), None);
-        assert!(said.contains("\nok\n") && said.contains("leaves 0 %") && said.contains(" 0 changed"), "{sampled}: {said}");
+        assert!(
+            said.contains("\nok\n") && said.contains("leaves 0 %") && said.contains(" 0 changed"),
+            "{sampled}: {said}"
+        );
     }
 }
 
@@ -156,7 +169,8 @@ fn samples_of_textures_and_windows_make_edges_smooth() {
 fn scenes_without_units_are_lit_as_those_in_luminance() {
     let host = Host::new("light");
     for hour in ["17", "0.2"] {
-        let draw = |way: &str, name: &str| host.picture(name, &format!("{way} --hour {hour} --frames 2 --size 640 360"));
+        let draw =
+            |way: &str, name: &str| host.picture(name, &format!("{way} --hour {hour} --frames 2 --size 640 360"));
         let (linear, window) = (draw("--msaa none", "linear.png"), draw("--window --msaa none", "window.png"));
         let (a, b) = (green(&linear, MEADOW).0, green(&window, MEADOW).0);
         assert!((a - b).abs() < 5.0, "hour {hour}: the meadow has {b} in the window, {a} in luminance");

@@ -1,5 +1,5 @@
 /*
- * The host's whole link with Welkin: eight calls. A simulator's author copies this file and weather_link.c and puts the
+ * The host's whole link with Welkin: nine calls. A simulator's author copies this file and weather_link.c and puts the
  * names of their own camera, picture and light in place of this host's.
  *
  * All of them are called on the thread that draws, with the host's OpenGL context current. Those that answer bool write
