@@ -105,8 +105,8 @@ accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90
 	$(MAKE) --no-print-directory bench
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
-gallery: setup ## draw the README's pictures anew into docs/gallery
-	cargo run --locked --release --example native -- docs/gallery
+gallery: host ## draw the README's pictures anew into docs/gallery, by the demo's host (GALLERY="noon fog": these alone)
+	"$(STAGE)/glfw_host/glfw_host" --data examples/data --out docs/gallery --gallery $(GALLERY)
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
 	cargo run --locked --release --example lab -- $(ARGS)

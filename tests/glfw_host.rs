@@ -132,6 +132,52 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
     assert!(far[1] > 100.0, "fog at noon is bright, got {far:?}");
 }
 
+/// The gallery's pictures have the size that was asked for, smooth edges, and in them what only they have: lamps, a bridge.
+#[test]
+fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
+    let host = Host::build("gallery");
+    let said = run(host.command().args(["--size", "320x180", "--gallery", "work_lights", "under_the_bridge"]));
+    assert_eq!(said.matches(".png: ").count(), 2, "each picture is said as it is made: {said}");
+    let [lamps, bridge] = ["work_lights.png", "under_the_bridge.png"].map(|name| host.picture(name));
+    assert!([&lamps, &bridge].iter().all(|p| p.dimensions() == (320, 180)));
+    // The deck's underside is dark before a bright sky; pixels on the edge between them have a part of both.
+    let column = |y: u32| bridge.get_pixel(150, y)[0];
+    assert!(column(44) < 80 && column(64) > 170, "a deck before the sky: {} {}", column(44), column(64));
+    let edge = (45..60).flat_map(|y| (0..320).map(move |x| (x, y)));
+    let between = edge.filter(|(x, y)| (80..170).contains(&bridge.get_pixel(*x, *y)[0])).count();
+    assert!(between > 120, "one sample a pixel leaves a score of them, four some hundred: {between}");
+    // What the lamps shine on is lit, what is behind it is night.
+    let (work, night) = (mean(&lamps, [70, 100, 100, 112]), mean(&lamps, [0, 0, 320, 10]));
+    assert!(work[1] > 120.0 && night[1] < 60.0, "{work:?} before {night:?}");
+    let mut unknown = host.command();
+    let unknown = unknown.args(["--gallery", "volcano"]).output().expect("the host runs");
+    let said = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert!(!unknown.status.success() && said.contains("under_the_bridge"), "the names that there are: {said}");
+}
+
+/// The README shows each picture of the gallery, and `docs/gallery` holds no others but the OpenSceneGraph host's.
+#[test]
+fn the_readme_shows_the_gallery() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("the README");
+    let shots = fs::read_to_string(root().join("examples/glfw_host/shots.c")).expect("the shots");
+    let shots = shots.split("SHOTS[] = {").nth(1).expect("a table");
+    let names = shots.lines().filter_map(|l| l.trim().strip_prefix("{\"")?.split('"').next());
+    let mut shown: Vec<String> = names.map(|name| format!("{name}.png")).collect();
+    assert!(shown.len() > 20, "{shown:?}");
+    shown.extend(["osg_host.png", "osg_precipitation.png", "osg_cab.png"].map(str::to_owned));
+    assert!(shown.iter().all(|name| readme.contains(&format!("docs/gallery/{name}"))), "{shown:?}");
+    let files = fs::read_dir(root().join("docs/gallery")).expect("the gallery").map(|f| f.expect("a file"));
+    let (mut found, mut bytes) = (Vec::new(), 0);
+    for file in files {
+        bytes += file.metadata().expect("a file").len();
+        found.push(file.file_name().into_string().expect("a name"));
+    }
+    found.sort();
+    shown.sort();
+    assert_eq!(found, shown);
+    assert!(bytes < 9_000_000, "the gallery has {bytes} bytes: every clone carries them");
+}
+
 #[test]
 fn a_window_opens_draws_and_closes() {
     let host = Host::build("window");

@@ -98,6 +98,9 @@ impl Host {
     }
 }
 
+/// Grass near the camera in pictures of 640 x 360.
+const MEADOW: [u32; 4] = [440, 260, 640, 350];
+
 /// Mean of green over a rectangle, and its standard deviation.
 fn green(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> (f64, f64) {
     let values = (y0..y1).flat_map(|y| (x0..x1).map(move |x| f64::from(picture.get_pixel(x, y)[1])));
@@ -122,6 +125,68 @@ fn weather_comes_and_goes_without_a_trace() {
             "{target}: {said}"
         );
     }
+}
+
+/// A multisampled texture of which Welkin draws every sample, and a window of four samples: the picture of one sample with smoother
+/// edges, and OpenGL as it was.
+#[test]
+fn samples_of_textures_and_windows_make_edges_smooth() {
+    let host = Host::new("samples");
+    let ways = [
+        ("--msaa none --reversed", "--msaa textures --reversed"),
+        ("--window --msaa none", "--window --msaa osg --samples 4"),
+    ];
+    for (i, (plain, sampled)) in ways.iter().enumerate() {
+        let draw = |way: &str, name: &str| {
+            host.picture(&format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"))
+        };
+        let (one, four) = (draw(plain, "one"), draw(sampled, "four"));
+        for part in [MEADOW, [0, 0, 200, 60]] {
+            let (a, b) = (green(&one, part).0, green(&four, part).0);
+            assert!((a - b).abs() < 2.0, "{sampled}: {b} where one sample a pixel has {a}");
+        }
+        // The boom's slanted edges: steps from pixel to pixel are smaller.
+        let steps = |p: &image::RgbImage| {
+            let pixels = (250..285).flat_map(|y| (200..250).map(move |x| (x, y)));
+            pixels.filter(|(x, y)| p.get_pixel(*x, *y)[0].abs_diff(p.get_pixel(x + 1, *y)[0]) > 70).count()
+        };
+        assert!(
+            steps(&four) < steps(&one) * 3 / 4,
+            "{sampled}: {} hard steps, without samples {}",
+            steps(&four),
+            steps(&one)
+        );
+        let said = host.run(&format!("--check --frames 2 --size 160 90 {sampled}"), None);
+        assert!(
+            said.contains("\nok\n") && said.contains("leaves 0 %") && said.contains(" 0 changed"),
+            "{sampled}: {said}"
+        );
+    }
+}
+
+/// A scene whose colours are the display's own is as bright under the weather as one in luminance, at noon and at dusk.
+#[test]
+fn scenes_without_units_are_lit_as_those_in_luminance() {
+    let host = Host::new("light");
+    for hour in ["17", "0.2"] {
+        let draw =
+            |way: &str, name: &str| host.picture(name, &format!("{way} --hour {hour} --frames 2 --size 640 360"));
+        let (linear, window) = (draw("--msaa none", "linear.png"), draw("--window --msaa none", "window.png"));
+        let (a, b) = (green(&linear, MEADOW).0, green(&window, MEADOW).0);
+        assert!((a - b).abs() < 5.0, "hour {hour}: the meadow has {b} in the window, {a} in luminance");
+    }
+}
+
+/// After a leap of hours a simulated ground needs more updates than one: the glue says so and the host draws on.
+#[test]
+fn a_picture_waits_for_the_simulated_ground() {
+    let host = Host::new("leap");
+    let said = host.run("--leap 24 --msaa none --size 160 90 --frames 2", None);
+    assert!(!said.contains("lagged"), "without a picture nothing waits: {said}");
+    let path = host.folder.join("leap.png");
+    let said = host.run(&format!("--leap 24 --msaa none --size 160 90 --frames 2 --out {}", path.display()), None);
+    let lagged = said.split("the ground lagged for ").nth(1).and_then(|s| s.split(' ').next()?.parse::<u32>().ok());
+    assert!(lagged.is_some_and(|frames| frames > 0), "{said}");
 }
 
 /// Two windows of one viewer draw the same in all of OSG's threading models, by both ways to live beside OpenGL.

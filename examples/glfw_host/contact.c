@@ -37,12 +37,12 @@ static bool save(demo *d, sheet *s, int row, const char *out, uint8_t *rgb)
     char path[1024], name[32];
     const picture *p = &d->picture;
     picture_read(p, rgb);
-    sheet_put(s, d->hour, row, rgb, p->width, p->height);
+    sheet_put(s, d->hour, row, rgb, p->shown_width, p->shown_height);
     snprintf(name, sizeof name, "%.31s", HOURS[d->hour].name);
     for (char *c = name; *c; c++)
         *c = *c == ' ' ? '_' : *c;
     snprintf(path, sizeof path, "%s/%02d_%s.png", out, d->report + 1, name);
-    if (!png_write_rgb8(path, rgb, p->width, p->height))
+    if (!png_write_rgb8(path, rgb, p->shown_width, p->shown_height))
         return false;
     /* All of them take minutes on a software driver: whoever waits sees each one come. */
     printf("%s\n", path);
@@ -101,7 +101,7 @@ int contact_run(const char *data, const char *out, int width, int height, int on
     int code = 1;
     if (!headless_open(&p))
         return 1;
-    if (gl_load(&p) && demo_open(&d, &p, data, width, height)) {
+    if (gl_load(&p) && demo_open(&d, &p, data, width, height, 1)) {
         bool one = only > 0 && only <= d.reports.count;
         printf("no display: writing pictures to %s\nadapter: %s\n", out, weather_adapter(&d.weather));
         code = one ? write_sheet(&d, only - 1, 1, out) : write_sheet(&d, 0, d.reports.count, out);

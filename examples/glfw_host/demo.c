@@ -47,7 +47,7 @@ double demo_clock_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-bool demo_open(demo *d, const platform *p, const char *data, int width, int height)
+bool demo_open(demo *d, const platform *p, const char *data, int width, int height, int finer)
 {
     char path[1024];
     *d = (demo){.platform = p, .cut = true, .started_ms = demo_clock_ms()};
@@ -55,7 +55,7 @@ bool demo_open(demo *d, const platform *p, const char *data, int width, int heig
     if (!scene_create(&d->scene, path))
         return false;
     snprintf(path, sizeof path, "%s/metar.txt", data);
-    if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height))
+    if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height, finer))
         return false;
     return weather_open(&d->weather, p) && demo_next_report(d, 0) && demo_next_hour(d, 0);
 }
@@ -92,29 +92,33 @@ const char *demo_camera_name(const demo *d)
 
 bool demo_resize(demo *d, int width, int height)
 {
-    if (width == d->picture.width && height == d->picture.height)
+    int finer = d->picture.width / d->picture.shown_width;
+    if (width == d->picture.shown_width && height == d->picture.shown_height)
         return true;
     picture_destroy(&d->picture);
     weather_resized(&d->weather);
-    return picture_create(&d->picture, width, height);
+    return picture_create(&d->picture, width, height, finer);
 }
 
 bool demo_draw(demo *d)
 {
-    camera c = view_from(d);
+    camera c = d->still ? *d->still : view_from(d);
     light l = bare_light();
     bool weather = !d->bare;
     double start = demo_clock_ms();
-    double time_s = d->moving ? (start - d->started_ms) * 1e-3 : 0.0;
+    double time_s = d->moving ? (start - d->started_ms) * 1e-3 : d->time_s;
     if (weather && !weather_light(&d->weather, &c, time_s, &l))
         return false;
+    l.lamps = d->lamps;
+    if (l.lamps.intensity_cd[1] > 0.0f)
+        l.cd_m2_per_unit = fmax(l.cd_m2_per_unit, 1.0); /* what a lamp lights must fit into half floats */
     picture *p = &d->picture;
     scene_draw(&d->scene, &c, &l, p->width, p->height, p->reversed, p->frame);
     glFinish(); /* for the figures only: a simulator would not wait here */
     double drawn = demo_clock_ms();
     if (weather && d->measure && !weather_measure(&d->weather, p, &c, l.cd_m2_per_unit, d->frame))
         return false;
-    if (weather && !d->measure && !weather_draw(&d->weather, p, &c, l.cd_m2_per_unit, d->frame, d->cut || !d->moving))
+    if (weather && !d->measure && !weather_draw(&d->weather, p, &c, l.cd_m2_per_unit, d->frame, d->cut || !(d->moving || d->history)))
         return false;
     glFinish();
     double end = demo_clock_ms();

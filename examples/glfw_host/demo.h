@@ -17,18 +17,22 @@ typedef struct demo {
     report_list reports;
     weather_link weather;
     int report, hour, camera;
+    const camera *still; /* a camera of the caller's in place of the four; NULL: none */
+    lamp_pair lamps;     /* of the host; intensity 0: off */
     bool bare; /* without weather: what the host draws by itself */
     bool cut;  /* the camera jumped */
     bool measure; /* time each effect of the next frame, whose picture is of no use */
+    bool history; /* frames go on from those before although time stands */
     bool moving; /* time runs, and weather changes over some seconds */
+    double time_s; /* of the simulation while it stands still */
     double started_ms;
     uint64_t frame;
     double ms; /* the last frame, GPU included */
     double weather_ms; /* Welkin's part of it */
 } demo;
 
-/* `data` is the folder with the terrain and the reports. The host's context is current. */
-bool demo_open(demo *d, const platform *p, const char *data, int width, int height);
+/* `data` is the folder with the terrain and the reports. The host's context is current. See picture_create for the size. */
+bool demo_open(demo *d, const platform *p, const char *data, int width, int height, int finer);
 void demo_close(demo *d);
 
 /* Each goes round. `step` is 1 or -1. */

@@ -7,22 +7,27 @@
 #include <string.h>
 
 #include "contact.h"
+#include "gallery.h"
 #include "window.h"
 
 static const char USAGE[] =
     "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N]\n"
+    "glfw_host --gallery [NAME..] [--data DIR] [--out DIR] [--size WxH]\n"
     "  --data DIR   terrain and weather reports (examples/data)\n"
     "  --out DIR    where pictures go when there is no display (out); it must exist\n"
-    "  --size WxH   of the picture (640x360; window 1280x720)\n"
+    "  --size WxH   of the picture (640x360; window and gallery 1280x720)\n"
     "  --headless   write pictures even where there is a display\n"
     "  --frames N   close the window after N frames\n"
-    "  --report N   begin with report N; pictures of that one only\n";
+    "  --report N   begin with report N; pictures of that one only\n"
+    "  --gallery    draw the README's pictures, or those of the names given, with 2 x 2 samples a pixel\n";
 
 int main(int argc, char **argv)
 {
     const char *data = "examples/data", *out = "out";
     int width = 0, height = 0, frames = 0, report = 0;
-    bool headless = !window_possible();
+    bool headless = !window_possible(), gallery = false;
+    char **names = argv; /* gathered where the arguments stood */
+    int name_count = 0;
     for (int i = 1; i < argc; i++) {
         bool more = i + 1 < argc;
         if (strcmp(argv[i], "--data") == 0 && more)
@@ -35,6 +40,10 @@ int main(int argc, char **argv)
             report = atoi(argv[++i]);
         else if (strcmp(argv[i], "--headless") == 0)
             headless = true;
+        else if (strcmp(argv[i], "--gallery") == 0)
+            gallery = true;
+        else if (gallery && argv[i][0] != '-')
+            names[name_count++] = argv[i];
         else if (strcmp(argv[i], "--size") == 0 && more && sscanf(argv[i + 1], "%dx%d", &width, &height) == 2 &&
                  width >= 16 && height >= 16 && width <= 8192 && height <= 8192)
             i++;
@@ -44,6 +53,8 @@ int main(int argc, char **argv)
         }
     }
     if (width == 0)
-        width = headless ? 640 : 1280, height = headless ? 360 : 720;
+        width = headless && !gallery ? 640 : 1280, height = headless && !gallery ? 360 : 720;
+    if (gallery)
+        return gallery_run(data, out, width, height, names, name_count);
     return headless ? contact_run(data, out, width, height, report) : window_run(data, width, height, frames, report);
 }

@@ -56,7 +56,7 @@ static void excavator(const ground *g, mesh *m)
     undercarriage(m, base);
     mat4 house = multiply(base, multiply(translation(vec(0, 0, 1.1)), rotation(2, RAD(12.0))));
     part(m, house, vec(0, -0.6, 0.6), vec(2.7, 3.6, 1.0), YELLOW);
-    part(m, house, vec(0, -2.2, 0.65), vec(2.7, 0.7, 1.1), STEEL);
+    part(m, house, vec(0, -2.2, 0.65), vec(2.74, 0.7, 1.1), STEEL);
     part(m, house, vec(0.5, -1.3, 1.2), vec(1.5, 1.5, 0.3), YELLOW);
     part(m, house, vec(-0.85, 0.7, 1.35), vec(0.95, 1.7, 1.6), GLASS);
     part(m, house, vec(-0.85, 0.7, 2.2), vec(1.05, 1.8, 0.12), YELLOW);
@@ -115,6 +115,34 @@ static void wood(const ground *g, mesh *m)
         mesh_cone(m, add(foot, vec(0, 0, 0.12 * tall)), 0.2 * tall, 0.5 * tall, 9, albedo);
         mesh_cone(m, add(foot, vec(0, 0, 0.38 * tall)), 0.15 * tall, 0.62 * tall, 9, scale(albedo, 1.1));
     }
+}
+
+#define BRIDGE_ALONG_M 82.0
+#define BRIDGE_CLEARANCE_M 5.2
+
+void objects_bridge(const ground *g, solid boxes[BRIDGE_BOXES])
+{
+    double x, y, ahead_x, ahead_y;
+    ground_road_point(BRIDGE_ALONG_M, 0.0, &x, &y);
+    ground_road_point(BRIDGE_ALONG_M + 1.0, 0.0, &ahead_x, &ahead_y);
+    mat4 foot = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, -atan2(ahead_x - x, ahead_y - y)));
+    const double clear = BRIDGE_CLEARANCE_M;
+    int n = 0;
+    /* x across the road, y along it. */
+    boxes[n++] = (solid){multiply(foot, translation(vec(0, 0, clear + 0.5))), vec(70, 13, 1.0)};
+    for (int side = -1; side <= 1; side += 2) {
+        boxes[n++] = (solid){multiply(foot, translation(vec(0, 6.375 * side, clear + 1.5))), vec(70, 0.25, 1.0)};
+        for (int pier = -1; pier <= 1; pier++)
+            boxes[n++] = (solid){multiply(foot, translation(vec(8.5 * side, 4.5 * pier, 0.5 * clear - 1.5))), vec(1.1, 1.1, clear + 3.0)};
+    }
+}
+
+void objects_bridge_mesh(const ground *g, mesh *m)
+{
+    solid boxes[BRIDGE_BOXES];
+    objects_bridge(g, boxes);
+    for (int i = 0; i < BRIDGE_BOXES; i++)
+        mesh_box(m, boxes[i].place, boxes[i].size, vec(0.30, 0.29, 0.27));
 }
 
 void objects_mesh(const ground *g, mesh *m)

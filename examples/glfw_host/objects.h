@@ -13,4 +13,15 @@ vec3 objects_survey_eye(const ground *g);
 
 void objects_mesh(const ground *g, mesh *m);
 
+/* A box, its middle at the origin of `place`. */
+typedef struct solid {
+    mat4 place;
+    vec3 size;
+} solid;
+
+/* A bridge over the road, some 80 m down: the deck comes first. */
+#define BRIDGE_BOXES 9
+void objects_bridge(const ground *g, solid boxes[BRIDGE_BOXES]);
+void objects_bridge_mesh(const ground *g, mesh *m);
+
 #endif

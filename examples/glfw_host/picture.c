@@ -32,12 +32,14 @@ static GLuint framebuffer(GLuint color, GLuint depth)
     return name;
 }
 
-bool picture_create(picture *p, int width, int height)
+bool picture_create(picture *p, int shown_width, int shown_height, int finer)
 {
-    *p = (picture){.width = width, .height = height, .reversed = glClipControl != NULL};
+    int width = shown_width * finer, height = shown_height * finer;
+    *p = (picture){.width = width, .height = height, .shown_width = shown_width, .shown_height = shown_height,
+                   .reversed = glClipControl != NULL};
     p->color = texture(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     p->depth = texture(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
-    p->shown = texture(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE);
+    p->shown = texture(GL_RGBA8, shown_width, shown_height, GL_RGBA, GL_UNSIGNED_BYTE);
     p->classes = texture(GL_R8, width, height, GL_RED, GL_UNSIGNED_BYTE);
     p->frame = framebuffer(p->color, p->depth);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, p->classes, 0);
@@ -68,12 +70,14 @@ void picture_destroy(picture *p)
 void picture_present(const picture *p, float exposure)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, p->shown_frame);
-    glViewport(0, 0, p->width, p->height);
+    glViewport(0, 0, p->shown_width, p->shown_height);
     glUseProgram(p->program);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, p->color);
     glUniform1i(glGetUniformLocation(p->program, "picture"), 0);
+    glUniform1i(glGetUniformLocation(p->program, "finer"), p->width / p->shown_width);
     glUniform1f(glGetUniformLocation(p->program, "exposure"), exposure);
+    glUniform1f(glGetUniformLocation(p->program, "grain"), p->plain ? 0.0f : 1.0f);
     glBindVertexArray(p->array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
@@ -81,14 +85,14 @@ void picture_present(const picture *p, float exposure)
 
 void picture_read(const picture *p, uint8_t *rgb)
 {
-    size_t row = (size_t)p->width * 3;
+    size_t row = (size_t)p->shown_width * 3;
     uint8_t *spare = malloc(row);
     glBindFramebuffer(GL_FRAMEBUFFER, p->shown_frame);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, p->width, p->height, GL_RGB, GL_UNSIGNED_BYTE, rgb);
+    glReadPixels(0, 0, p->shown_width, p->shown_height, GL_RGB, GL_UNSIGNED_BYTE, rgb);
     /* OpenGL's first row is the bottom one. */
-    for (int y = 0; spare && y < p->height / 2; y++) {
-        uint8_t *top = rgb + (size_t)y * row, *bottom = rgb + (size_t)(p->height - 1 - y) * row;
+    for (int y = 0; spare && y < p->shown_height / 2; y++) {
+        uint8_t *top = rgb + (size_t)y * row, *bottom = rgb + (size_t)(p->shown_height - 1 - y) * row;
         memcpy(spare, top, row);
         memcpy(top, bottom, row);
         memcpy(bottom, spare, row);

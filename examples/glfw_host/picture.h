@@ -5,7 +5,8 @@
 #include "gl.h"
 
 typedef struct picture {
-    int width, height;
+    int width, height;             /* of what is drawn */
+    int shown_width, shown_height; /* of what people see: smaller where the picture is drawn finer */
     GLuint color;   /* RGBA16F texture */
     GLuint depth;   /* DEPTH_COMPONENT32F texture */
     GLuint classes; /* R8 texture: what each pixel is made of, a wk_surface_class over 255 */
@@ -13,19 +14,21 @@ typedef struct picture {
     GLuint shown;   /* RGBA8 texture, display-encoded */
     GLuint shown_frame;
     GLuint program, array;
+    bool plain;    /* without the grain that hides the steps of eight bits: as a PNG it would be three times as large */
     bool reversed; /* depth 1 is near, 0 is infinitely far */
 } picture;
 
-bool picture_create(picture *p, int width, int height);
+/* `finer` samples along each side of a shown pixel: 1, or 2 for a picture whose edges are smooth. */
+bool picture_create(picture *p, int width, int height, int finer);
 void picture_destroy(picture *p);
 
 /*
- * Encodes the colour for the display into `shown`. `exposure` > 0: the colour is scene-linear, 1 - exp(-exposure x) maps
+ * Averages the samples of each shown pixel and encodes them for the display into `shown`. `exposure` > 0: the colour is scene-linear, 1 - exp(-exposure x) maps
  * it; 0: it is tone-mapped already.
  */
 void picture_present(const picture *p, float exposure);
 
-/* Reads `shown`: width * height * 3 bytes, top row first. */
+/* Reads `shown`: shown_width * shown_height * 3 bytes, top row first. */
 void picture_read(const picture *p, uint8_t *rgb);
 
 #endif

@@ -54,8 +54,10 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
     return true;
 }
 
-bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height)
+/* Rows of RGB, or of indices where there is a palette. */
+static bool write_rows(const char *path, const uint8_t *pixels, int width, int height, const uint8_t (*colors)[3], int count)
 {
+    const size_t row_bytes = (size_t)width * (colors ? 1 : 3);
     FILE *file = fopen(path, "wb");
     if (!file)
         return fail(path, "cannot be written");
@@ -64,14 +66,32 @@ bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int heig
     volatile bool ok = false;
     if (!setjmp(png_jmpbuf(png))) {
         png_init_io(png, file);
-        png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8,
+                     colors ? PNG_COLOR_TYPE_PALETTE : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                     PNG_FILTER_TYPE_DEFAULT);
+        if (colors) {
+            png_color list[256];
+            for (int i = 0; i < count; i++)
+                list[i] = (png_color){colors[i][0], colors[i][1], colors[i][2]};
+            png_set_PLTE(png, info, list, count);
+            png_set_compression_level(png, 9);
+        }
         png_write_info(png, info);
         for (int row = 0; row < height; row++)
-            png_write_row(png, (png_const_bytep)(pixels + (size_t)row * (size_t)width * 3));
+            png_write_row(png, (png_const_bytep)(pixels + (size_t)row * row_bytes));
         png_write_end(png, info);
         ok = true;
     }
     png_destroy_write_struct(&png, &info);
     return fclose(file) == 0 && ok;
+}
+
+bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height)
+{
+    return write_rows(path, pixels, width, height, NULL, 0);
+}
+
+bool png_write_indexed(const char *path, const uint8_t *indices, int width, int height, const uint8_t (*colors)[3], int count)
+{
+    return write_rows(path, indices, width, height, colors, count);
 }

@@ -11,4 +11,7 @@ bool png_read_grey16(const char *path, uint16_t **pixels, int *width, int *heigh
 /* Writes 8-bit RGB, top row first, display-encoded. */
 bool png_write_rgb8(const char *path, const uint8_t *pixels, int width, int height);
 
+/* The same as one index a pixel into at most 256 colours. */
+bool png_write_indexed(const char *path, const uint8_t *indices, int width, int height, const uint8_t (*colors)[3], int count);
+
 #endif

@@ -70,6 +70,8 @@ bool scene_create(scene *s, const char *terrain_png)
     s->ground_indices = (GLsizei)s->mesh.index_count;
     objects_mesh(&s->ground, &s->mesh);
     s->object_indices = (GLsizei)s->mesh.index_count - s->ground_indices;
+    objects_bridge_mesh(&s->ground, &s->mesh);
+    s->bridge_indices = (GLsizei)s->mesh.index_count - s->ground_indices - s->object_indices;
     s->lit = malloc(s->mesh.vertex_count * sizeof *s->lit);
     if (!s->lit) {
         fprintf(stderr, "out of memory\n");
@@ -138,8 +140,12 @@ static mat4 shadow_matrix(const scene *s, vec3 sun)
 
 static void draw(const scene *s, bool with_ground, bool objects)
 {
+    if (s->empty)
+        return;
     GLsizei first = with_ground ? 0 : s->ground_indices;
-    GLsizei count = (with_ground ? s->ground_indices : 0) + (objects ? s->object_indices : 0);
+    GLsizei count = (with_ground ? s->ground_indices : 0);
+    if (objects)
+        count += s->object_indices + (s->with_bridge ? s->bridge_indices : 0);
     glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, (const void *)((size_t)first * sizeof(uint32_t)));
 }
 
@@ -175,6 +181,32 @@ static void set_light(const scene *s, const light *l, const float to_shadow[16])
     glUniform1i(glGetUniformLocation(p, "shadow_map"), 0);
 }
 
+static void set_vector(GLuint program, const char *name, vec3 v)
+{
+    glUniform3f(glGetUniformLocation(program, name), (float)v.x, (float)v.y, (float)v.z);
+}
+
+static void set_lamps(GLuint p, const lamp_pair *l)
+{
+    set_vector(p, "lamp_position[0]", l->position[0]);
+    set_vector(p, "lamp_position[1]", l->position[1]);
+    set_vector(p, "lamp_direction[0]", l->direction[0]);
+    set_vector(p, "lamp_direction[1]", l->direction[1]);
+    glUniform3fv(glGetUniformLocation(p, "lamp_intensity"), 1, l->intensity_cd);
+    glUniform2f(glGetUniformLocation(p, "lamp_cosines"), (float)cos(RAD(l->outer_deg)), (float)cos(RAD(l->inner_deg)));
+}
+
+/* What takes the sky's light from what is below it. */
+static void set_deck(const scene *s)
+{
+    solid boxes[BRIDGE_BOXES];
+    objects_bridge(&s->ground, boxes);
+    vec3 half = scale(boxes[0].size, s->with_bridge ? 0.5 : 0.0);
+    set_vector(s->program, "deck_foot", transform_point(boxes[0].place, vec(0, 0, -0.5 * boxes[0].size.z)));
+    set_vector(s->program, "deck_right", transform_direction(boxes[0].place, vec(1, 0, 0)));
+    glUniform2f(glGetUniformLocation(s->program, "deck_half"), (float)half.x, (float)half.y);
+}
+
 void scene_draw(scene *s, const camera *c, const light *l, int width, int height, bool reversed, GLuint framebuffer)
 {
     float to_shadow[16], to_clip[16];
@@ -195,6 +227,8 @@ void scene_draw(scene *s, const camera *c, const light *l, int width, int height
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glUseProgram(s->program);
     set_light(s, l, to_shadow);
+    set_lamps(s->program, &l->lamps);
+    set_deck(s);
     glUniform3f(glGetUniformLocation(s->program, "eye"), (float)c->position.x, (float)c->position.y, (float)c->position.z);
     glUniformMatrix4fv(glGetUniformLocation(s->program, "to_clip"), 1, GL_FALSE, to_clip);
     glUniform1i(glGetUniformLocation(s->program, "ground"), 1);

@@ -15,7 +15,8 @@ typedef struct camera {
 typedef struct scene {
     ground ground;
     mesh mesh;
-    GLsizei ground_indices, object_indices;
+    GLsizei ground_indices, object_indices, bridge_indices;
+    bool with_bridge, empty; /* empty: nothing is drawn, as from space */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;

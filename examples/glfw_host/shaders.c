@@ -48,8 +48,12 @@ const char *const SCENE_FRAGMENT =
     "    return mix(n, 0.5, smoothstep(0.3, 1.0, footprint / size));\n"
     "}\n"
 
+    /* The pad's dirt ends in a ragged line. */
+    "float pad_edge(float foot) { return length(v_position.xy - pad) + 5.0 * (noise(3.0, foot) - 0.5); }\n"
+    "float footprint() { return sqrt(length(dFdx(v_position.xy)) * length(dFdy(v_position.xy))); }\n"
+
     "vec3 ground_albedo(vec3 n) {\n"
-    "    float foot = sqrt(length(dFdx(v_position.xy)) * length(dFdy(v_position.xy)));\n"
+    "    float foot = footprint();\n"
     "    float fine = noise(0.35, foot), small = noise(2.1, foot), mid = noise(17.0, foot);\n"
     "    float large = noise(160.0, foot), huge = noise(900.0, foot);\n"
     "    vec3 meadow = mix(vec3(0.075, 0.095, 0.030), vec3(0.165, 0.140, 0.060), 0.55 * large + 0.45 * mid);\n"
@@ -64,8 +68,7 @@ const char *const SCENE_FRAGMENT =
     "    albedo = mix(albedo, rock, smoothstep(0.80, 0.70, n.z));\n"
     "    vec3 gravel = vec3(0.23, 0.205, 0.17) * (0.7 + 0.35 * fine + 0.25 * small);\n"
     "    vec3 dirt = vec3(0.16, 0.105, 0.065) * (0.6 + 0.5 * fine + 0.3 * small);\n"
-    "    float pad_edge = length(v_position.xy - pad) + 5.0 * (noise(3.0, foot) - 0.5);\n"
-    "    albedo = mix(dirt, albedo, smoothstep(9.0, 12.0, pad_edge));\n"
+    "    albedo = mix(dirt, albedo, smoothstep(9.0, 12.0, pad_edge(foot)));\n"
     "    float soft = foot * 0.7 + 0.01, d = abs(v_road);\n"
     "    albedo = mix(gravel, albedo, smoothstep(4.6 - soft, 5.2 + soft, d + 0.8 * (mid - 0.5)));\n"
     "    vec3 asphalt = vec3(0.075) * (0.8 + 0.4 * fine);\n"
@@ -76,14 +79,19 @@ const char *const SCENE_FRAGMENT =
 
     /* A wk_surface_class: paved road, soil beside it and on the pad, rock on steep faces, plants elsewhere; machines and sheds. */
     "float made_of(vec3 n) {\n"
-    "    if (!ground) return 6.0;\n"
+    "    if (!ground) return v_albedo.g > 1.5 * v_albedo.r ? 4.0 : 6.0;\n"
     "    if (abs(v_road) < 3.55) return 3.0;\n"
-    "    if (abs(v_road) < 4.9 || length(v_position.xy - pad) < 10.5) return 1.0;\n"
+    "    if (abs(v_road) < 4.9 || pad_edge(footprint()) < 10.5) return 1.0;\n"
     "    return n.z < 0.75 ? 2.0 : 4.0;\n"
     "}\n";
 
 /* How the ground and all else is lit. */
 const char *const SCENE_FRAGMENT_END =
+    "uniform vec3 lamp_position[2], lamp_direction[2], lamp_intensity;\n"
+    "uniform vec2 lamp_cosines;\n"     /* of where the beam has ended, of where it is full */
+    "uniform vec3 deck_foot, deck_right;\n" /* middle of the underside of a bridge; across the road */
+    "uniform vec2 deck_half;\n"        /* 0: there is none */
+
     "float sun_visibility(float cosine) {\n"
     "    if (any(lessThan(v_shadow, vec3(0.0))) || any(greaterThan(v_shadow, vec3(1.0)))) return v_sunlit;\n"
     "    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));\n"
@@ -103,11 +111,40 @@ const char *const SCENE_FRAGMENT_END =
     "    return max(e, vec3(0.0));\n"
     "}\n"
 
+    /* Part of the sky over level ground that a level rectangle hides, one of whose corners is `a` away over its height; odd in
+       both, so that four corners make any rectangle (Howell, Catalog of Radiation Heat Transfer Configuration Factors, B-4). */
+    "float hidden_by(vec2 a) {\n"
+    "    vec2 r = inversesqrt(1.0 + a * a);\n"
+    "    return (a.x * r.x * atan(a.y * r.x) + a.y * r.y * atan(a.x * r.y)) / (2.0 * PI);\n"
+    "}\n"
+    "float sky_left(vec3 n) {\n"
+    "    vec3 p = v_position - deck_foot;\n"
+    "    if (deck_half.x == 0.0 || p.z > 0.02 || (p.z > -0.02 && n.z > 0.5)) return 1.0;\n"
+    "    vec2 at = vec2(dot(p.xy, deck_right.xy), dot(p.xy, vec2(-deck_right.y, deck_right.x)));\n"
+    /* The underside is lit by ground that lies in the deck's own shade. */
+    "    if (p.z > -0.02 && n.z < -0.5) return 0.35;\n"
+    "    float below = max(-p.z, 0.02);\n"
+    "    vec2 a = (-deck_half - at) / below, b = (deck_half - at) / below;\n"
+    "    return 1.0 - (hidden_by(b) - hidden_by(vec2(a.x, b.y)) - hidden_by(vec2(b.x, a.y)) + hidden_by(a));\n"
+    "}\n"
+
+    "vec3 lamp_light(vec3 n) {\n"
+    "    vec3 light = vec3(0.0);\n"
+    "    for (int i = 0; i < 2; i++) {\n"
+    "        vec3 to = v_position - lamp_position[i], d = normalize(to);\n"
+    "        float beam = smoothstep(lamp_cosines.x, lamp_cosines.y, dot(d, normalize(lamp_direction[i])));\n"
+    "        light += lamp_intensity * (beam * max(-dot(n, d), 0.0) / dot(to, to));\n"
+    "    }\n"
+    "    return light;\n"
+    "}\n"
+
     "void main() {\n"
     "    vec3 n = normalize(v_normal);\n"
     "    vec3 albedo = ground ? ground_albedo(n) : v_albedo;\n"
     "    float cosine = max(dot(n, sun_direction), 0.0);\n"
-    "    vec3 irradiance = sun_illuminance * (cosine > 0.0 ? cosine * sun_visibility(cosine) : 0.0) + sky_irradiance(n);\n"
+    "    vec3 irradiance = sun_illuminance * (cosine > 0.0 ? cosine * sun_visibility(cosine) : 0.0);\n"
+    "    irradiance += sky_irradiance(n) * sky_left(n);\n"
+    "    if (lamp_intensity.g > 0.0) irradiance += lamp_light(n);\n"
     "    colour = vec4(min(albedo / PI * irradiance * per_unit, vec3(60000.0)), 1.0);\n"
     "    surface_class = vec4(made_of(n) / 255.0, 0.0, 0.0, 1.0);\n"
     "}\n";
@@ -125,27 +162,32 @@ const char *const SHADOW_FRAGMENT =
 /* One triangle that covers the picture. */
 const char *const PRESENT_VERTEX =
     "#version 330 core\n"
-    "out vec2 at;\n"
     "void main() {\n"
-    "    at = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);\n"
+    "    vec2 at = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);\n"
     "    gl_Position = vec4(at * 2.0 - 1.0, 0.0, 1.0);\n"
     "}\n";
 
 const char *const PRESENT_FRAGMENT =
     "#version 330 core\n"
-    "in vec2 at;\n"
     "uniform sampler2D picture;\n"
+    "uniform int finer;\n"        /* samples along each side of a pixel */
     "uniform float exposure;\n"   /* 0: the picture is tone-mapped already */
     "out vec4 encoded;\n"
+    "uniform float grain;\n"      /* 1: hides the steps of eight bits; 0: none, for files that are to be small */
     "float dither(uvec2 p) {\n"
     "    uint h = p.x * 0x8da6b343u ^ p.y * 0xd8163841u;\n"
     "    h = (h ^ (h >> 15u)) * 0x2c1b3c6du; h = (h ^ (h >> 12u)) * 0x297a2d39u;\n"
     "    return float(h >> 8u) / 16777216.0 - 0.5;\n"
     "}\n"
     "void main() {\n"
-    "    vec3 x = texture(picture, at).rgb;\n"
-    "    if (exposure > 0.0) x = 1.0 - exp(-x * exposure);\n"
-    "    x = clamp(x, 0.0, 1.0);\n"
+    /* Samples are averaged as the display's light: averaged before the tone curve, an edge before the sun would stay jagged. */
+    "    ivec2 first = ivec2(gl_FragCoord.xy) * finer;\n"
+    "    vec3 x = vec3(0.0);\n"
+    "    for (int i = 0; i < finer * finer; i++) {\n"
+    "        vec3 s = texelFetch(picture, first + ivec2(i % finer, i / finer), 0).rgb;\n"
+    "        x += clamp(exposure > 0.0 ? 1.0 - exp(-s * exposure) : s, 0.0, 1.0);\n"
+    "    }\n"
+    "    x /= float(finer * finer);\n"
     "    vec3 s = mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, vec3(lessThanEqual(x, vec3(0.0031308))));\n"
-    "    encoded = vec4(s + dither(uvec2(gl_FragCoord.xy)) / 255.0, 1.0);\n"
+    "    encoded = vec4(s + grain * dither(uvec2(gl_FragCoord.xy)) / 255.0, 1.0);\n"
     "}\n";

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool check(wk_status status)
+bool weather_check(wk_status status)
 {
     if (status >= WK_OK)
         return true;
@@ -30,17 +30,17 @@ bool weather_open(weather_link *w, const platform *p)
     rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
 
     *w = (weather_link){.caps = WK_CAPS_INIT};
-    return check(wk_device_create_opengl(&host, &w->device)) &&
-           check(wk_context_create(w->device, &place, &w->context)) &&
-           check(wk_view_create(w->context, NULL, &w->view)) &&
-           check(wk_view_set_rain(w->view, &rain));
+    return weather_check(wk_device_create_opengl(&host, &w->device)) &&
+           weather_check(wk_context_create(w->device, &place, &w->context)) &&
+           weather_check(wk_view_create(w->context, NULL, &w->view)) &&
+           weather_check(wk_view_set_rain(w->view, &rain));
 }
 
 void weather_close(weather_link *w)
 {
-    check(wk_view_destroy(w->view));
-    check(wk_context_destroy(w->context));
-    check(wk_device_destroy(w->device));
+    weather_check(wk_view_destroy(w->view));
+    weather_check(wk_context_destroy(w->context));
+    weather_check(wk_device_destroy(w->device));
     *w = (weather_link){0};
 }
 
@@ -48,15 +48,15 @@ bool weather_report(weather_link *w, const char *metar, double transition_s)
 {
     wk_weather weather = WK_WEATHER_INIT;
     wk_cloud_layer layers[16];
-    if (!check(wk_weather_from_metar(metar, layers, 16, sizeof layers[0], &weather, NULL)))
+    if (!weather_check(wk_weather_from_metar(metar, layers, 16, sizeof layers[0], &weather, NULL)))
         return false;
     weather.station_altitude_m = SITE_ALTITUDE_M; /* reports do not carry it */
-    return check(wk_context_set_weather(w->context, &weather, w->time_s, transition_s));
+    return weather_check(wk_context_set_weather(w->context, &weather, w->time_s, transition_s));
 }
 
 bool weather_clock(weather_link *w, double utc_s)
 {
-    return check(wk_context_set_clock(w->context, utc_s, w->time_s));
+    return weather_check(wk_context_set_clock(w->context, utc_s, w->time_s));
 }
 
 bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
@@ -67,9 +67,9 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     wk_ground_light arriving;
     w->time_s = time_s;
     /* WK_PENDING passes: a simulated ground that lags after a leap goes on in the next frame. */
-    if (!check(wk_context_update(w->context, time_s)) || !check(wk_context_get_sun(w->context, &at, &sun)) ||
-        !check(wk_context_get_moon(w->context, &at, &moon)) || !check(wk_context_get_ambient(w->context, &at, &sky)) ||
-        !check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))
+    if (!weather_check(wk_context_update(w->context, time_s)) || !weather_check(wk_context_get_sun(w->context, &at, &sun)) ||
+        !weather_check(wk_context_get_moon(w->context, &at, &moon)) || !weather_check(wk_context_get_ambient(w->context, &at, &sky)) ||
+        !weather_check(wk_context_get_light(w->context, &at, 1, sizeof at, &arriving, sizeof arriving)))
         return false;
 
     /* This host's shaders have one lamp: whichever of the two gives more. */
@@ -86,7 +86,8 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
     return true;
 }
 
-static bool record(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, uint32_t flags)
+static bool record(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, uint32_t flags,
+                   wk_stage_flags stages)
 {
     wk_opengl_target target = WK_OPENGL_TARGET_INIT;
     target.color.kind = target.depth.kind = target.surface_classes.kind = WK_OPENGL_TEXTURE;
@@ -110,12 +111,18 @@ static bool record(weather_link *w, const picture *p, const camera *c, double cd
     f.color_space = WK_COLOR_SCENE_LINEAR;
     f.cd_m2_per_unit = cd_m2_per_unit;
     f.target = &target;
-    return check(wk_view_record(w->view, &f, WK_STAGE_ALL));
+    return weather_check(wk_view_record(w->view, &f, stages));
 }
 
 bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still)
 {
-    return record(w, p, c, cd_m2_per_unit, frame, still ? WK_FRAME_CUT | WK_FRAME_NO_HISTORY : 0);
+    return record(w, p, c, cd_m2_per_unit, frame, still ? WK_FRAME_CUT | WK_FRAME_NO_HISTORY : 0, WK_STAGE_ALL);
+}
+
+bool weather_prepare(weather_link *w, const picture *p, const camera *c, double time_s, uint64_t frame)
+{
+    w->time_s = time_s;
+    return weather_check(wk_context_update(w->context, time_s)) && record(w, p, c, 1.0, frame, 0, WK_STAGE_PREPARE);
 }
 
 bool weather_measure(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame)
@@ -124,8 +131,9 @@ bool weather_measure(weather_link *w, const picture *p, const camera *c, double 
     const uint32_t room = sizeof costs / sizeof costs[0];
     const uint32_t flags = WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE;
     /* Once for what is compiled at its first use, under a frame number of its own. */
-    if (!record(w, p, c, cd_m2_per_unit, ~frame, flags) || !record(w, p, c, cd_m2_per_unit, frame, flags) ||
-        !check(wk_view_get_costs(w->view, costs, room, sizeof costs[0], &w->cost_count)))
+    if (!record(w, p, c, cd_m2_per_unit, ~frame, flags, WK_STAGE_ALL) ||
+        !record(w, p, c, cd_m2_per_unit, frame, flags, WK_STAGE_ALL) ||
+        !weather_check(wk_view_get_costs(w->view, costs, room, sizeof costs[0], &w->cost_count)))
         return false;
     for (uint32_t i = 0; i < w->cost_count; i++) {
         costs[i].ms += w->costs[i].ms;
@@ -142,14 +150,14 @@ void weather_resized(weather_link *w)
 
 const char *weather_adapter(weather_link *w)
 {
-    return check(wk_device_get_caps(w->device, &w->caps)) ? w->caps.adapter_name : "unknown";
+    return weather_check(wk_device_get_caps(w->device, &w->caps)) ? w->caps.adapter_name : "unknown";
 }
 
 const char *weather_summary(weather_link *w)
 {
     const double site[3] = {0.0, 0.0, SITE_ALTITUDE_M};
     wk_conditions now = WK_CONDITIONS_INIT;
-    if (!check(wk_context_get_conditions(w->context, &site, w->time_s, &now)))
+    if (!weather_check(wk_context_get_conditions(w->context, &site, w->time_s, &now)))
         return "";
     snprintf(w->summary, sizeof w->summary, "visibility %.0f m, %.0f %% humid, %.1f hPa", now.visibility_m,
              100.0 * now.relative_humidity, now.pressure_hpa);
@@ -164,7 +172,7 @@ void weather_print_costs(weather_link *w)
     for (uint32_t i = 0; i < w->cost_count; i++)
         if (w->costs[i].ms > 0.0)
             printf("  %-12s %7.2f\n", w->costs[i].name, w->costs[i].ms / w->measured_frames);
-    if (check(wk_view_get_report(w->view, &report)))
+    if (weather_check(wk_view_get_report(w->view, &report)))
         printf("last frame: %u full-screen passes, %u tables rebuilt, %.1f MiB of the view's own\n",
                (unsigned)report.passes, (unsigned)report.tables_rebuilt, (double)report.bytes / 1048576.0);
 }

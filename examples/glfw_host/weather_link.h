@@ -1,5 +1,5 @@
 /*
- * The host's whole link with Welkin: eight calls. A simulator's author copies this file and weather_link.c and puts the
+ * The host's whole link with Welkin: nine calls. A simulator's author copies this file and weather_link.c and puts the
  * names of their own camera, picture and light in place of this host's.
  *
  * All of them are called on the thread that draws, with the host's OpenGL context current. Those that answer bool write
@@ -27,6 +27,9 @@ typedef struct weather_link {
     uint32_t cost_count, measured_frames;
 } weather_link;
 
+/* Whether a call of Welkin's went well; if not, stderr says why. */
+bool weather_check(wk_status status);
+
 /* Once, when the host has made its contexts. */
 bool weather_open(weather_link *w, const platform *p);
 void weather_close(weather_link *w);
@@ -45,6 +48,9 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l);
  * picture that stands alone and has no frames before it.
  */
 bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still);
+
+/* Moves on what has a history, such as water on a windscreen, without a picture. */
+bool weather_prepare(weather_link *w, const picture *p, const camera *c, double time_s, uint64_t frame);
 
 /*
  * The same once more, with each effect waited for and timed: for figures, slower than weather_draw. Adds to what

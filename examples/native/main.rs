@@ -1,24 +1,27 @@
 //! A Rust host with its own `wgpu::Device`: it draws its world, Welkin draws the weather into the same textures.
 //!
-//! `cargo run --release --example native [-- OUT_DIR [NAME..]]` writes the pictures of the README's gallery as PNG.
+//! `cargo run --release --example native [-- FILE.png [METAR]]` writes one picture.
 
-mod shots;
 mod world;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec2};
 use welkin::{
-    context::{Context, ContextDesc, Scene},
+    context::{Context, ContextDesc, GivenDirection, Scene},
     frame::{Frame, Shared, Stages, View, tone},
     gpu::{Device, readback},
     rain::RainSettings,
-    scene::{Camera, HostLight},
+    scene::Camera,
+    weather::Weather,
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (640, 360);
+
+/// Where the camera stands over the terrain, on the valley's level floor, m east and north of its centre.
+const AT: Vec2 = Vec2::new(2604.0, 138.8);
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -27,9 +30,6 @@ struct HostUniform {
     sun: [f32; 4],
     sun_light: [f32; 4],
     sky_light: [f32; 4],
-    lamps: [[[f32; 4]; 3]; 2],
-    /// Lowest and highest corner of the bridge's deck, camera-relative; 1 in the last: there is one.
-    deck: [[f32; 4]; 2],
 }
 
 /// Everything the host owns: Welkin knows nothing of it but `device` and the two targets.
@@ -122,8 +122,8 @@ impl Host {
     }
 
     /// Vertices relative to the camera, so that f32 holds them.
-    fn vertices(&self, eye: DVec3, bridge: bool) -> wgpu::Buffer {
-        let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2(), bridge);
+    fn vertices(&self, eye: DVec3) -> wgpu::Buffer {
+        let mut mesh = world::mesh(&self.terrain, eye.truncate().as_vec2());
         for v in &mut mesh {
             for (p, e) in v.position.iter_mut().zip(eye.to_array()) {
                 *p -= e as f32;
@@ -140,24 +140,13 @@ impl Host {
     }
 
     /// Draws the host's own world, lit by what Welkin's query says of sun and sky.
-    fn draw(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        camera: &Camera,
-        scene: &Scene,
-        lamps: &[HostLight],
-        world: Option<&wgpu::Buffer>,
-        deck: [[f32; 4]; 2],
-    ) {
-        let eye = camera.position;
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, camera: &Camera, scene: &Scene, world: &wgpu::Buffer) {
         let pad = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
         let block = HostUniform {
             view_projection: (camera.projection * camera.view).as_mat4(),
             sun: pad(scene.sun.direction.to_array()),
             sun_light: pad(scene.ground.sun_lux),
             sky_light: pad(scene.ground.sky_lux),
-            lamps: std::array::from_fn(|i| lamps.get(i).map_or([[0.0; 4]; 3], |l| lamp(l, eye))),
-            deck,
         };
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
         let [color, depth, classes] =
@@ -180,65 +169,30 @@ impl Host {
             }),
             ..Default::default()
         });
-        if let Some(vertices) = world {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.group, &[]);
-            pass.set_vertex_buffer(0, vertices.slice(..));
-            pass.draw(0..(vertices.size() / size_of::<world::Vertex>() as u64) as u32, 0..1);
-        }
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_vertex_buffer(0, world.slice(..));
+        pass.draw(0..(world.size() / size_of::<world::Vertex>() as u64) as u32, 0..1);
     }
 }
 
-/// A lamp as the host's shader reads it.
-fn lamp(l: &HostLight, eye: DVec3) -> [[f32; 4]; 3] {
-    let row = |v: DVec3, w: f64| [v.x as f32, v.y as f32, v.z as f32, w as f32];
-    [
-        row(l.position_m - eye, l.inner_deg.to_radians().cos()),
-        row(l.direction.normalize(), l.outer_deg.to_radians().cos()),
-        row(DVec3::from(l.intensity_cd), 0.0),
-    ]
-}
-
-/// The deck of a shot's bridge as the host's shader reads it.
-fn deck(shot: &shots::Shot) -> [[f32; 4]; 2] {
-    let (foot, size) = world::bridge()[0];
-    let foot = foot - Vec3::new(0.0, 0.0, shot.height_m as f32);
-    let flat = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
-    let there = f32::from(u8::from(shot.bridge));
-    [(foot - flat).extend(there).to_array(), (foot + flat + Vec3::new(0.0, 0.0, size.z)).extend(there).to_array()]
-}
-
-/// One picture: the host's world with the weather drawn into it.
-fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fallible<()> {
+/// The host's world with the weather drawn into it.
+fn take(host: &Host, shared: &Arc<Shared>, metar: &str, path: &str) -> Fallible<()> {
     let mut context = Context::new(host.device.clone(), shared.clone(), ContextDesc::default())?;
-    let ground = f64::from(host.terrain.height(glam::Vec2::from_array(shot.at)));
-    (shot.weather)(&mut context, ground)?;
-    let eye = DVec3::new(
-        f64::from(shot.at[0]),
-        f64::from(shot.at[1]),
-        shot.height_m + if shot.above_ground { ground } else { 0.0 },
-    );
-    let (sa, ca) = shot.azimuth_deg.to_radians().sin_cos();
-    let (se, ce) = shot.elevation_deg.to_radians().sin_cos();
+    let ground = f64::from(host.terrain.height(AT));
+    let weather = Weather { station_altitude_m: ground, ..Weather::from_metar(metar)?.weather };
+    context.set_sun(Some(GivenDirection { azimuth_deg: 70.0, elevation_deg: 35.0 }))?;
+    context.set_weather(&weather, 0.0, 0.0)?;
+    let eye = DVec3::new(f64::from(AT.x), f64::from(AT.y), ground + 1.8);
     let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
-    let forward = DVec3::new(sa * ce, ca * ce, se);
-    let camera = Camera::look_to(eye, forward, DVec3::Z, shot.fov_y_deg.to_radians(), aspect, 0.1);
+    let forward = DVec3::new(0.14, 0.99, -0.09);
+    let camera = Camera::look_to(eye, forward, DVec3::Z, 50_f64.to_radians(), aspect, 0.1);
     let mut view = View::new(&context)?;
     view.set_rain(RainSettings::TRAINER)?;
-    if let Some(windscreen) = shot.windscreen {
-        // Rain has fallen on it for 50 s.
-        for i in 0..=1000u32 {
-            let time_s = f64::from(i) / 20.0;
-            view.set_windscreen(Some(&windscreen(time_s)))?;
-            context.update(time_s)?;
-            let frame = Frame::new(u64::from(i) + 2, camera, &host.color, None);
-            view.record(&context, &frame, Stages::PREPARE)?;
-        }
-    }
-    let vertices = shot.above_ground.then(|| host.vertices(eye, shot.bridge));
+    let vertices = host.vertices(eye);
     let mut encoder = host.device.device.create_command_encoder(&Default::default());
     let scene = context.scene_at(eye, context.time_s())?;
-    host.draw(&mut encoder, &camera, &scene, context.lights(), vertices.as_ref(), deck(shot));
+    host.draw(&mut encoder, &camera, &scene, &vertices);
     // The road is paved, and it alone mirrors.
     let frame = Frame { surface_classes: Some(&host.classes), ..Frame::new(1, camera, &host.color, Some(&host.depth)) };
     view.record_into(&context, &frame, Stages::ALL, &mut encoder)?;
@@ -252,16 +206,12 @@ fn take(host: &Host, shared: &Arc<Shared>, shot: &shots::Shot, path: &str) -> Fa
 
 fn main() -> Fallible<()> {
     let mut arguments = std::env::args().skip(1);
-    let out = arguments.next().unwrap_or_else(|| "out/gallery".to_owned());
-    let wanted: Vec<String> = arguments.collect();
-    std::fs::create_dir_all(&out)?;
+    let path = arguments.next().unwrap_or_else(|| "native.png".to_owned());
+    let metar = arguments.next().unwrap_or_else(|| "METAR KTRI 121800Z 24012KT 3SM RA OVC015 12/11 A2978".to_owned());
     let host = Host::new()?;
     println!("adapter: {} ({})", host.device.caps().adapter_name, host.device.caps().driver);
     let shared = Arc::new(Shared::new(&host.device)?);
-    for shot in shots::shots().iter().filter(|s| wanted.is_empty() || wanted.iter().any(|w| w == s.name)) {
-        let path = format!("{out}/{}.png", shot.name);
-        take(&host, &shared, shot, &path)?;
-        println!("{path}: {}", shot.caption);
-    }
+    take(&host, &shared, &metar, &path)?;
+    println!("{path}: {metar}");
     Ok(())
 }

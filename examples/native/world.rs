@@ -93,23 +93,11 @@ fn cuboid(foot: Vec3, size: Vec3, albedo: Vec3, out: &mut Vec<Vertex>) {
     }
 }
 
-/// A bridge that goes along the road and over it: feet of its boxes over the ground at `eye`, and their sizes; the
-/// deck comes first.
-pub fn bridge() -> Vec<(Vec3, Vec3)> {
-    let mut boxes = vec![(Vec3::new(-2.0, 30.0, 5.4), Vec3::new(16.4, 130.0, 0.9))];
-    boxes.extend((0..6).map(|i| (Vec3::new(-5.0, 8.0 + 18.0 * i as f32, -1.0), Vec3::new(1.4, 1.6, 6.4))));
-    boxes
-}
-
 /// The whole world as triangles in the host's axes (x east, y north, z up; metres above the sea), seen from `eye`:
-/// the road leads north from there, with a bridge over it if one is wanted.
-pub fn mesh(terrain: &Terrain, eye: Vec2, with_bridge: bool) -> Vec<Vertex> {
+/// the road leads north from there.
+pub fn mesh(terrain: &Terrain, eye: Vec2) -> Vec<Vertex> {
     let mut out = Vec::new();
     terrain.mesh(&mut out);
-    if with_bridge {
-        let foot = eye.extend(terrain.height(eye));
-        bridge().iter().for_each(|(at, size)| cuboid(foot + *at, *size, Vec3::splat(0.28), &mut out));
-    }
     let ground = |at: Vec2| at.extend(terrain.height(at));
     for step in 0..400 {
         let y = step as f32 * 10.0 - 40.0;

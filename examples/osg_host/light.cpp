@@ -1,6 +1,6 @@
 #include "light.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 WeatherLight::WeatherLight(welkin_osg::View *weather, osg::View *view) : weather_(weather), light_(new osg::Light(0))
 {
@@ -10,25 +10,23 @@ WeatherLight::WeatherLight(welkin_osg::View *weather, osg::View *view) : weather
 
 void WeatherLight::operator()(osg::RenderInfo &info) const
 {
-    wk_view *view = weather_->get();
-    if (!view) return;
-    wk_context *context = weather_->weather->context();
+    if (!weather_->get()) return;
     const osg::Vec3d eye = osg::Matrixd::inverse(info.getState()->getInitialViewMatrix()).getTrans();
-    const double at[1][3] = {{eye.x(), eye.y(), eye.z()}};
-    wk_celestial sun = WK_CELESTIAL_INIT, moon = WK_CELESTIAL_INIT;
-    wk_ground_light light;
-    if (!welkin_osg::check(wk_context_get_sun(context, at, &sun)) || !welkin_osg::check(wk_context_get_moon(context, at, &moon)) ||
-        !welkin_osg::check(wk_context_get_light(context, at, 1, sizeof at[0], &light, sizeof light)))
-        return;
-    /* Fixed-function lighting has one sun here: whichever of the two gives more. */
-    const bool by_day = light.sun_lux[1] >= light.moon_lux[1];
-    const double *to = by_day ? sun.apparent : moon.apparent, *lux = by_day ? light.sun_lux : light.moon_lux;
-    light_->setPosition(osg::Vec4(to[0], to[1], to[2], 0));
+    wk_frame frame = weather_->frame; /* its colour space and exposure; the camera is this frame's */
+    std::copy_n(eye.ptr(), 3, frame.position_m);
+    frame.cd_m2_per_unit = 1.0;
+    wk_frame_light light = WK_FRAME_LIGHT_INIT;
+    if (!welkin_osg::check(wk_context_get_frame_light(weather_->weather->context(), &frame, &light))) return;
 
-    /* A white card on level ground has the value 1, by day and by night: OpenGL clamps lit colours to 1. */
-    const double unit = std::max(light.total_lux, 1e-4);
-    weather_->frame.cd_m2_per_unit = unit / osg::PI;
-    light_->setDiffuse(osg::Vec4(lux[0] / unit, lux[1] / unit, lux[2] / unit, 1));
-    light_->setAmbient(osg::Vec4(light.sky_lux[0] / unit, light.sky_lux[1] / unit, light.sky_lux[2] / unit, 1));
+    /* Numbers of a display are final. Luminance is given a unit in which white level ground has the value 1, by day and by night:
+       OpenGL clamps lit colours to 1. */
+    double unit = 1.0;
+    if (frame.color_space == WK_COLOR_SCENE_LINEAR) {
+        unit = std::max(light.ambient[1] + light.direct[1] * std::max(light.direction[2], 0.0), 1e-4);
+        weather_->frame.cd_m2_per_unit = unit;
+    }
+    light_->setPosition(osg::Vec4(light.direction[0], light.direction[1], light.direction[2], 0));
+    light_->setDiffuse(osg::Vec4(light.direct[0] / unit, light.direct[1] / unit, light.direct[2] / unit, 1));
+    light_->setAmbient(osg::Vec4(light.ambient[0] / unit, light.ambient[1] / unit, light.ambient[2] / unit, 1));
     light_->setSpecular(osg::Vec4(0, 0, 0, 1));
 }

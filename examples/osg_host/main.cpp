@@ -2,10 +2,12 @@
  * A simulator on OpenSceneGraph with Welkin's weather: `osg_host --data ../data` opens a window, --help lists the rest.
  * welkin_osg.hpp is the part to copy; light.cpp, glass.cpp, cab.cpp and weather.cpp show one thing each.
  */
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
 
+#include <osg/GLExtensions>
 #include <osgDB/WriteFile>
 #include <osgGA/TrackballManipulator>
 #include <osgViewer/CompositeViewer>
@@ -23,8 +25,29 @@ struct Capture : osg::Camera::DrawCallback {
     void operator()(osg::RenderInfo &info) const override
     {
         if (!wanted) return;
-        const auto *traits = info.getState()->getGraphicsContext()->getTraits();
-        image->readPixels(0, 0, traits->width, traits->height, GL_RGB, GL_UNSIGNED_BYTE);
+        const auto *window = info.getState()->getGraphicsContext();
+        const int width = window->getTraits()->width, height = window->getTraits()->height;
+        auto *gl = info.getState()->get<osg::GLExtensions>();
+        GLint samples = 0;
+        glGetIntegerv(GL_SAMPLES, &samples);
+        GLuint frame = 0, color = 0;
+        if (samples > 0) { /* Mesa's software driver reads one sample of a window: the mean of all is made by hand */
+            gl->glGenFramebuffers(1, &frame);
+            gl->glGenRenderbuffers(1, &color);
+            gl->glBindRenderbuffer(GL_RENDERBUFFER_EXT, color);
+            gl->glRenderbufferStorage(GL_RENDERBUFFER_EXT, GL_RGBA8, width, height);
+            gl->glBindRenderbuffer(GL_RENDERBUFFER_EXT, 0);
+            gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, frame);
+            gl->glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, GL_RENDERBUFFER_EXT, color);
+            gl->glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, frame);
+        }
+        image->readPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE);
+        if (samples > 0) {
+            gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, window->getDefaultFboId());
+            gl->glDeleteRenderbuffers(1, &color);
+            gl->glDeleteFramebuffers(1, &frame);
+        }
     }
     bool wanted = false; /* changed between frames, with all threads at rest */
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -50,6 +73,22 @@ struct AskForVeil : osg::Camera::DrawCallback {
         if (wk_view *view = weather->get()) welkin_osg::check(wk_view_get_frame_textures(view, &veil));
     }
     osg::ref_ptr<welkin_osg::View> weather;
+};
+
+/* Rain that trainees notice: as in nature, hardly any shows by day (docs/rain-contrast.md). */
+struct TrainersRain : osg::Camera::DrawCallback {
+    explicit TrainersRain(welkin_osg::View *weather) : weather(weather) {}
+    void operator()(osg::RenderInfo &) const override
+    {
+        wk_view *view = weather->get();
+        if (!view || view == told) return;
+        wk_rain rain = WK_RAIN_INIT;
+        rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
+        welkin_osg::check(wk_view_set_rain(view, &rain));
+        told = view;
+    }
+    osg::ref_ptr<welkin_osg::View> weather;
+    mutable wk_view *told = nullptr; /* looked at by the drawing thread alone */
 };
 
 struct Window {
@@ -81,6 +120,7 @@ private:
     bool open();
     void open_window_of(Window &window, int number);
     void draw(int frames, bool weather, double step_s);
+    void catch_up();
     std::vector<osg::ref_ptr<osg::Image>> pictures(int frames, bool weather, double step_s);
     bool check();
     bool write();
@@ -124,6 +164,7 @@ void Host::open_window_of(Window &window, int number)
     camera->setUserData(window.weather); /* where the glass finds its veil */
     if (options_.check) window.state->attach(window.weather, camera);
     else window.weather->attach(camera);
+    camera->addPreDrawCallback(new TrainersRain(window.weather));
     camera->addPreDrawCallback(new WeatherLight(window.weather, window.view));
     if (window.weather->before_transparent) camera->addPreDrawCallback(new AskForVeil(window.weather));
     if (cab_) camera->addPreDrawCallback(new CabGlass(cab_.get(), window.weather));
@@ -138,12 +179,13 @@ bool Host::open()
     if (!scene_) return false;
     if (options_.precipitation == Precipitation::Osg) background_ = add_osg_rain(*scene_);
     seat_ = seat(site_, options_.cab);
-    world_free(); /* OSG has its own copy */
     if (options_.cab) {
         cab_ = std::make_unique<Cab>(seat_, colors);
         scene_->addChild(cab_->node());
     }
     weather_ = new WeatherOfWindows(options_, site_);
+    world_free(); /* OSG and the weather have their own copies */
+    time_s_ = 3600.0 * options_.leap_h;
     viewer_.setRealizeOperation(weather_);
     viewer_.setThreadingModel(options_.threading);
     windows_.resize(size_t(options_.windows));
@@ -164,10 +206,20 @@ void Host::draw(int frames, bool weather, double step_s)
     }
 }
 
+/* After a leap a simulated ground takes more than one update: a picture that stands alone waits for it. */
+void Host::catch_up()
+{
+    const auto lags = [](const Window &window) { return window.weather->weather->pending.load(); };
+    int frames = 0;
+    for (; std::any_of(windows_.begin(), windows_.end(), lags) && !viewer_.done(); frames++) draw(1, true, 0.0);
+    if (frames > 0) std::cout << "the ground lagged for " << frames << " more frames" << std::endl;
+}
+
 /* Draws some frames and answers the last one of each window. */
 std::vector<osg::ref_ptr<osg::Image>> Host::pictures(int frames, bool weather, double step_s)
 {
     draw(frames - 1, weather, step_s);
+    catch_up();
     viewer_.stopThreading(); /* what a drawing thread reads may be changed only while there is none */
     for (Window &window : windows_) window.capture->wanted = true;
     viewer_.startThreading();

@@ -30,6 +30,7 @@ bool read_options(osg::ArgumentParser &arguments, Options &o)
     bool ok = true;
     while (arguments.read(option("--metar", "the weather, as an airport reports it"), o.metar)) {}
     while (arguments.read(option("--hour", "hours of 21 June, UTC (17 is noon at the site)"), o.hour_utc)) {}
+    while (arguments.read(option("--leap", "begin after so many hours of weather on a simulated ground"), o.leap_h)) {}
     while (arguments.read(option("--data", "folder of jacksboro_dem.png; without it the land is level"), o.data)) {}
     while (arguments.read(option("--cache", "folder in which Welkin keeps its tables"), o.cache)) {}
     while (arguments.read(option("--out", "draw some frames, write the last one to this PNG file, end"), o.out)) {}

@@ -14,7 +14,7 @@ struct Options {
     std::string metar = "METAR KTRI 121800Z 24012KT 3SM +RA BKN012 OVC030 12/11 A2978";
     std::string data, out, cache;
     int width = 1280, height = 720, frames = 0, samples = 4;
-    double hour_utc = 17.0;
+    double hour_utc = 17.0, leap_h = 0.0;
     bool window_target = false, shared = false, reversed = false, cab = false, check = false, resize = false;
     bool close_window = false;
     int windows = 1;

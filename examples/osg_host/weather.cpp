@@ -6,6 +6,35 @@
 
 using welkin_osg::check;
 
+namespace {
+
+const int NODES = 192;
+const double CELL_M = 0.5;
+
+} // namespace
+
+WeatherOfWindows::WeatherOfWindows(const Options &options, const world_site &site)
+    : osg::Operation("weather", false), options_(options), site_(site)
+{
+    if (options.leap_h <= 0.0) return;
+    for (int north = 0; north < NODES; north++)
+        for (int east = 0; east < NODES; east++)
+            heights_.push_back(float(world_height(site.pad[0] + (east - 0.5 * NODES) * CELL_M, site.pad[1] + (north - 0.5 * NODES) * CELL_M)));
+}
+
+/* The land about the pad, on which rain fills hollows and dries. */
+bool WeatherOfWindows::simulate_ground(wk_context *context) const
+{
+    wk_ground_grid grid = WK_GROUND_GRID_INIT;
+    grid.origin_m[0] = site_.pad[0] - 0.5 * NODES * CELL_M;
+    grid.origin_m[1] = site_.pad[1] - 0.5 * NODES * CELL_M;
+    grid.cell_m = CELL_M;
+    grid.nodes[0] = grid.nodes[1] = NODES;
+    grid.heights_m = heights_.data();
+    grid.height_count = uint32_t(heights_.size());
+    return check(wk_context_set_ground_grid(context, &grid));
+}
+
 welkin_osg::Weather *WeatherOfWindows::of(osg::GraphicsContext *window)
 {
     osg::ref_ptr<welkin_osg::Weather> &weather = weathers_[window];
@@ -27,6 +56,9 @@ bool WeatherOfWindows::open(welkin_osg::Weather &weather, osg::GraphicsContext *
     place.latitude_deg = site_.latitude_deg;
     place.longitude_deg = site_.longitude_deg;
     place.cache_dir = options_.cache.empty() ? nullptr : options_.cache.c_str();
+    wk_simulation_desc simulation = WK_SIMULATION_DESC_INIT;
+    simulation.ground_model = WK_GROUND_SIMULATED;
+    if (!heights_.empty()) place.next = &simulation;
     if (!weather.open(window, options_.shared ? WK_OPENGL_SHARED : WK_OPENGL_HOST_CONTEXT, place)) return false;
 
     wk_weather report = WK_WEATHER_INIT;
@@ -37,8 +69,8 @@ bool WeatherOfWindows::open(welkin_osg::Weather &weather, osg::GraphicsContext *
         return false;
     report.station_altitude_m = site_.pad[2]; /* reports do not carry it; wind counts its height from there */
     wk_context *context = weather.context();
-    if (!check(wk_context_set_clock(context, utc + 3600.0 * options_.hour_utc, 0.0)) ||
-        !check(wk_context_set_weather(context, &report, 0.0, 0.0)))
+    if (!check(wk_context_set_clock(context, utc + 3600.0 * options_.hour_utc, 3600.0 * options_.leap_h)) ||
+        !check(wk_context_set_weather(context, &report, 0.0, 0.0)) || !(heights_.empty() || simulate_ground(context)))
         return false;
 
     /* Behind a progress bar rather than in the first frame; with --cache quick from the second start on. */

@@ -11,7 +11,8 @@
 /* One welkin_osg::Weather for each graphics context; to be set as the viewer's realize operation. */
 class WeatherOfWindows : public osg::Operation {
 public:
-    WeatherOfWindows(const Options &options, const world_site &site) : osg::Operation("weather", false), options_(options), site_(site) {}
+    /* While the world's heights are there. */
+    WeatherOfWindows(const Options &options, const world_site &site);
     /* Made ahead of the window's realization, so that views can be attached. */
     welkin_osg::Weather *of(osg::GraphicsContext *window);
     void operator()(osg::Object *window) override;
@@ -21,8 +22,10 @@ public:
 
 private:
     bool open(welkin_osg::Weather &weather, osg::GraphicsContext *window);
+    bool simulate_ground(wk_context *context) const;
     Options options_;
     world_site site_;
+    std::vector<float> heights_; /* about the pad, for the simulated ground */
     std::map<osg::ref_ptr<osg::GraphicsContext>, osg::ref_ptr<welkin_osg::Weather>> weathers_;
 };
 

@@ -35,8 +35,7 @@ public:
         host_ = gc;
         if (mode == WK_OPENGL_SHARED && !open_pbuffer(gc)) return false;
         wk_opengl_host_desc desc = WK_OPENGL_HOST_DESC_INIT;
-        desc.mode = mode;
-        desc.user = this;
+        desc.mode = mode, desc.user = this;
         desc.get_proc = [](void *, const char *name) -> const void * { return osg::getGLExtensionFuncPtr(name); };
         if (mode == WK_OPENGL_SHARED)
             desc.make_current = [](void *user, uint32_t which) -> int32_t {
@@ -61,6 +60,7 @@ public:
     }
 
     wk_context *context() const { return context_; }
+    std::atomic<bool> pending{false}; /* a simulated ground lags behind the time: who draws on demand draws on until it does not */
     wk_view *create_view()
     {
         wk_view *view = nullptr;
@@ -72,10 +72,8 @@ private:
     bool open_pbuffer(osg::GraphicsContext *gc)
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits(*gc->getTraits());
-        traits->width = traits->height = 1;
-        traits->pbuffer = true, traits->doubleBuffer = false, traits->samples = 0;
-        traits->inheritedWindowData = nullptr;
-        traits->sharedContext = gc;
+        traits->width = traits->height = 1, traits->pbuffer = true, traits->doubleBuffer = false, traits->samples = 0;
+        traits->inheritedWindowData = nullptr, traits->sharedContext = gc;
         own_ = osg::GraphicsContext::createGraphicsContext(traits.get());
         return own_.valid() && own_->realize() && gc->makeCurrentImplementation();
     }
@@ -90,7 +88,6 @@ private:
 class View : public osg::Referenced {
 public:
     explicit View(Weather *weather) : weather(weather) {}
-
     const osg::ref_ptr<Weather> weather;
     wk_frame frame = WK_FRAME_INIT;          /* set colour space, clip space and flags; the rest is filled in */
     osg::ref_ptr<osg::Texture> color, depth; /* attached to the camera; both null: it draws into its window */
@@ -143,7 +140,10 @@ private:
 
     void update(osg::RenderInfo &info)
     {
-        if (get()) report(wk_context_update(weather->context(), info.getState()->getFrameStamp()->getSimulationTime()));
+        if (!get()) return;
+        const wk_status status = wk_context_update(weather->context(), info.getState()->getFrameStamp()->getSimulationTime());
+        weather->pending = status == WK_PENDING; /* the update of the next frame goes on with the steps that remain */
+        report(status);
     }
     void take_camera(osg::RenderInfo &info)
     {
@@ -176,8 +176,7 @@ private:
             target.color.target = target.depth.target = color->getTextureTarget();
             target.width = uint32_t(now[0]->_profile._width), target.height = uint32_t(now[0]->_profile._height);
         }
-        target.generation = generation_;
-        target.multisample = multisample;
+        target.generation = generation_, target.multisample = multisample;
         frame.target = &target;
         if (frame.color_space != WK_COLOR_SCENE_LINEAR) stages &= ~WK_STAGE_TONE; /* the host's colours are final */
         report(wk_view_record(view_, &frame, stages));
@@ -185,8 +184,9 @@ private:
 
     void report(wk_status status)
     {
-        if (status < WK_OK && said_ != wk_last_error_message()) check(status); /* once, not once a frame */
-        if (status < WK_OK) said_ = wk_last_error_message();
+        if (status >= WK_OK || said_ == wk_last_error_message()) return; /* once, not once a frame */
+        said_ = wk_last_error_message();
+        check(status);
     }
 
     wk_view *view_ = nullptr;

@@ -1,0 +1,110 @@
+/* Takes one shot after the other, each with weather of its own from the start: no picture depends on the one before. */
+#include "gallery.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "palette.h"
+#include "png_file.h"
+#include "shots.h"
+
+#define SAMPLES_A_SIDE 2
+#define RAIN_ON_GLASS_S 50.0
+#define GLASS_STEP_S (1.0 / 20.0)
+
+/* Water on glass has a history: it is stepped without a picture. */
+static bool let_it_rain_on_the_glass(demo *d, const shot *s)
+{
+    int steps = (int)(RAIN_ON_GLASS_S / GLASS_STEP_S);
+    for (int i = 0; i <= steps; i++) {
+        double time_s = i * GLASS_STEP_S;
+        if (!s->windscreen(d, time_s) || !weather_prepare(&d->weather, &d->picture, d->still, time_s, d->frame++))
+            return false;
+    }
+    d->time_s = RAIN_ON_GLASS_S;
+    d->history = true;
+    d->cut = false;
+    return true;
+}
+
+static bool write(const char *path, const uint8_t *rgb, int width, int height)
+{
+    palette colors;
+    uint8_t *indices = malloc((size_t)width * (size_t)height);
+    bool ok = indices && palette_choose(&colors, rgb, width, height, indices) &&
+              png_write_indexed(path, indices, width, height, (const uint8_t(*)[3])colors.rgb, colors.count);
+    free(indices);
+    return ok;
+}
+
+static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
+{
+    char path[1024];
+    camera c = shot_camera(s, &d->scene.ground);
+    d->still = &c;
+    d->lamps = (lamp_pair){0};
+    d->time_s = 0.0;
+    d->history = false;
+    d->scene.with_bridge = s->world == WITH_BRIDGE;
+    d->scene.empty = s->world == NO_WORLD;
+    weather_close(&d->weather);
+    bool ok = weather_open(&d->weather, d->platform) && s->prepare(d) &&
+              (!s->windscreen || let_it_rain_on_the_glass(d, s)) && demo_draw(d);
+    d->still = NULL;
+    if (!ok)
+        return false;
+    picture_read(&d->picture, rgb);
+    snprintf(path, sizeof path, "%s/%s.png", out, s->name);
+    if (!write(path, rgb, d->picture.shown_width, d->picture.shown_height))
+        return false;
+    printf("%s: %s\n", path, s->caption);
+    fflush(stdout);
+    return true;
+}
+
+static bool wanted(const shot *s, char *const *names, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (strcmp(names[i], s->name) == 0)
+            return true;
+    return count == 0;
+}
+
+static bool take_all(demo *d, const char *out, char *const *names, int count)
+{
+    uint8_t *rgb = malloc((size_t)d->picture.shown_width * (size_t)d->picture.shown_height * 3);
+    int taken = 0;
+    bool ok = rgb != NULL;
+    for (int i = 0; i < SHOT_COUNT && ok; i++)
+        if (wanted(&SHOTS[i], names, count)) {
+            ok = take(d, &SHOTS[i], out, rgb);
+            taken++;
+        }
+    if (ok && count > 0 && taken != count) {
+        fprintf(stderr, "the gallery has no picture of that name; it has:");
+        for (int i = 0; i < SHOT_COUNT; i++)
+            fprintf(stderr, " %s", SHOTS[i].name);
+        fputc('\n', stderr);
+        ok = false;
+    }
+    free(rgb);
+    return ok;
+}
+
+int gallery_run(const char *data, const char *out, int width, int height, char *const *names, int count)
+{
+    platform p;
+    demo d;
+    bool ok = false;
+    if (!headless_open(&p))
+        return 1;
+    if (gl_load(&p) && demo_open(&d, &p, data, width, height, SAMPLES_A_SIDE)) {
+        d.picture.plain = true;
+        printf("adapter: %s\n", weather_adapter(&d.weather));
+        ok = take_all(&d, out, names, count);
+        demo_close(&d);
+    }
+    headless_close(&p);
+    return ok ? 0 : 1;
+}

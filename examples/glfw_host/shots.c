@@ -1,0 +1,312 @@
+/* Weather in Welkin's own terms, where a report has no figure for it. */
+#include "shots.h"
+
+#include "objects.h"
+
+static wk_weather weather_here(double visibility_m, double humidity)
+{
+    wk_weather w = WK_WEATHER_INIT;
+    w.visibility_m = visibility_m;
+    w.relative_humidity = humidity;
+    w.station_altitude_m = SITE_ALTITUDE_M;
+    return w;
+}
+
+static wk_cloud_layer overcast(wk_cloud_kind kind, double base_m)
+{
+    wk_cloud_layer l = WK_CLOUD_LAYER_INIT;
+    l.kind = kind;
+    l.cover = 1.0;
+    l.base_m = base_m;
+    return l;
+}
+
+static void fall(wk_weather *w, wk_precipitation_kind kind, double rate_mm_h, double wind_m_s, double wind_from_deg)
+{
+    w->precipitation_kind = kind;
+    w->precipitation_rate_mm_h = rate_mm_h;
+    w->wind_speed_m_s = wind_m_s;
+    w->wind_from_deg = wind_from_deg;
+}
+
+/* `cloud` may be NULL. */
+static bool set(demo *d, wk_weather *w, const wk_cloud_layer *cloud)
+{
+    w->clouds = cloud;
+    w->cloud_count = cloud ? 1 : 0;
+    return weather_check(wk_context_set_weather(d->weather.context, w, 0.0, 0.0));
+}
+
+static bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
+{
+    wk_given_direction sun = WK_GIVEN_DIRECTION_INIT;
+    sun.azimuth_deg = azimuth_deg;
+    sun.elevation_deg = elevation_deg;
+    return weather_check(wk_context_set_sun(d->weather.context, &sun));
+}
+
+/* Clear air at one of the host's hours; sun and moon where the almanac has them. */
+static bool clear(demo *d, int hour)
+{
+    wk_weather w = weather_here(40e3, 0.5);
+    return weather_clock(&d->weather, HOURS[hour].utc_s) && set(d, &w, NULL);
+}
+
+static bool noon(demo *d) { return clear(d, 0); }
+static bool low_sun(demo *d) { return clear(d, 1) && sun_at(d, 292, 9); }
+
+/* Some minutes before the hour at which the disc touches the hills. */
+static bool sunset(demo *d)
+{
+    return clear(d, 2) && weather_clock(&d->weather, HOURS[2].utc_s - 300.0);
+}
+
+static bool twilight(demo *d) { return clear(d, 3); }
+static bool night(demo *d) { return clear(d, 4); }
+
+/* The same clear air with the sun elsewhere, for the pictures from high up. */
+static bool clear_with_sun(demo *d, double azimuth_deg, double elevation_deg)
+{
+    return clear(d, 0) && sun_at(d, azimuth_deg, elevation_deg);
+}
+
+static bool twelve_km(demo *d) { return clear_with_sun(d, 60, 25); }
+static bool space(demo *d) { return clear_with_sun(d, 30, 5); }
+static bool shadow(demo *d) { return clear_with_sun(d, 10, -9); }
+
+static bool haze(demo *d)
+{
+    wk_weather w = weather_here(5000, 0.5);
+    w.aerosol_kind = WK_AEROSOL_HAZE;
+    return sun_at(d, 190, 35) && set(d, &w, NULL);
+}
+
+static bool fog(demo *d)
+{
+    wk_weather w = weather_here(150, 1.0);
+    w.fog_kind = WK_FOG_FOG;
+    return sun_at(d, 200, 30) && set(d, &w, NULL);
+}
+
+static bool shallow_fog(demo *d)
+{
+    wk_weather w = weather_here(30e3, 0.95);
+    w.fog_kind = WK_FOG_SHALLOW;
+    w.has = WK_WEATHER_HAS_FOG_TOP | WK_WEATHER_HAS_FOG_VISIBILITY_INSIDE;
+    w.station_altitude_m = SITE_ALTITUDE_M - 45.0; /* the valley's floor */
+    w.fog_top_m = 30.0;
+    w.fog_visibility_inside_m = 150.0;
+    return sun_at(d, 298, 12) && set(d, &w, NULL);
+}
+
+static bool rain(demo *d, double rate_mm_h)
+{
+    wk_weather w = weather_here(4000, 0.95);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 600);
+    fall(&w, WK_PRECIPITATION_RAIN, rate_mm_h, 4.0, 200.0);
+    return sun_at(d, 200, 35) && set(d, &w, &cloud);
+}
+
+static bool overcast_rain(demo *d) { return rain(d, 2.0); }
+static bool steady_rain(demo *d) { return rain(d, 6.0); }
+static bool heavy_rain(demo *d) { return rain(d, 25.0); }
+
+static bool drizzle(demo *d)
+{
+    wk_weather w = weather_here(3000, 0.98);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_STRATUS, 300);
+    w.fog_kind = WK_FOG_MIST;
+    fall(&w, WK_PRECIPITATION_DRIZZLE, 0.5, 2.0, 260.0);
+    return sun_at(d, 200, 35) && set(d, &w, &cloud);
+}
+
+static bool cloudburst(demo *d)
+{
+    wk_weather w = weather_here(500, 0.97);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_CUMULONIMBUS, 600);
+    fall(&w, WK_PRECIPITATION_RAIN, 60.0, 9.0, 155.0);
+    w.precipitation_flags = WK_PRECIPITATION_SHOWERS;
+    return sun_at(d, 200, 35) && set(d, &w, &cloud);
+}
+
+static bool hail(demo *d)
+{
+    wk_weather w = weather_here(9000, 0.9);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_CUMULONIMBUS, 900);
+    fall(&w, WK_PRECIPITATION_HAIL, 40.0, 5.0, 200.0);
+    return sun_at(d, 200, 40) && set(d, &w, &cloud);
+}
+
+static bool wet_road(demo *d)
+{
+    wk_weather w = weather_here(40e3, 0.6);
+    w.has = WK_WEATHER_HAS_SURFACE_STATE;
+    w.surface_state = WK_SURFACE_STANDING_WATER;
+    w.wind_speed_m_s = 2.0;
+    w.wind_from_deg = 250.0;
+    /* Against the sun, as a photographer would: a stop less. */
+    return sun_at(d, 255, 9) && set(d, &w, NULL) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -1.0));
+}
+
+static bool blowing_sand(demo *d)
+{
+    wk_weather w = weather_here(500, 0.15);
+    w.temperature_c = 36.0;
+    w.lofted_kind = WK_LOFTED_BLOWING_SAND;
+    w.wind_speed_m_s = 19.0;
+    w.wind_from_deg = 170.0;
+    return sun_at(d, 150, 40) && set(d, &w, NULL);
+}
+
+/* `ahead_m` down the axis that the site looks along. */
+static wk_rain_area shower(double ahead_m, double right_m, double semi_right_m, double semi_ahead_m, double rate_mm_h)
+{
+    wk_rain_area a = WK_RAIN_AREA_INIT;
+    vec3 ahead = direction(SITE_VIEW_AZIMUTH_DEG, 0.0);
+    a.center_m[0] = ahead_m * ahead.x + right_m * ahead.y;
+    a.center_m[1] = ahead_m * ahead.y - right_m * ahead.x;
+    a.center_m[2] = SITE_ALTITUDE_M;
+    a.semi_axes_m[0] = semi_right_m;
+    a.semi_axes_m[1] = semi_ahead_m;
+    a.heading_deg = SITE_VIEW_AZIMUTH_DEG;
+    a.rim_m = 0.5 * fmin(semi_right_m, semi_ahead_m);
+    a.rate_mm_h = rate_mm_h;
+    a.rain = WK_AREA_RAIN_SHOWERS;
+    a.top_m = SITE_ALTITUDE_M + 3000.0;
+    return a;
+}
+
+static bool rain_shaft(demo *d)
+{
+    wk_weather w = weather_here(35e3, 0.6);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_STRATOCUMULUS, 3000);
+    cloud.cover = 0.88;
+    w.wind_speed_m_s = 13.0;
+    w.wind_from_deg = 170.0;
+    const wk_rain_area areas[] = {
+        shower(7400, -1200, 500, 500, 12), shower(6300, 1000, 1500, 1200, 3), shower(5900, 800, 800, 700, 20)};
+    return sun_at(d, 150, 35) && set(d, &w, &cloud) &&
+           weather_check(wk_context_set_rain_areas(d->weather.context, areas, 3, sizeof areas[0]));
+}
+
+static bool under_the_bridge(demo *d)
+{
+    wk_weather w = weather_here(4000, 0.95);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 600);
+    fall(&w, WK_PRECIPITATION_RAIN, 20.0, 5.0, 85.0); /* from behind the camera */
+    solid boxes[BRIDGE_BOXES];
+    wk_shelter shelters[BRIDGE_BOXES];
+    objects_bridge(&d->scene.ground, boxes);
+    for (int i = 0; i < BRIDGE_BOXES; i++) {
+        const mat4 *place = &boxes[i].place;
+        const double half[3] = {0.5 * boxes[i].size.x, 0.5 * boxes[i].size.y, 0.5 * boxes[i].size.z};
+        shelters[i] = (wk_shelter)WK_SHELTER_INIT;
+        for (int axis = 0; axis < 3; axis++) {
+            shelters[i].center_m[axis] = place->m[12 + axis];
+            shelters[i].half_size_m[axis] = half[axis];
+            for (int k = 0; k < 3; k++)
+                shelters[i].axes[3 * axis + k] = place->m[4 * axis + k];
+        }
+    }
+    return sun_at(d, 200, 35) && set(d, &w, &cloud) &&
+           weather_check(wk_context_set_shelters(d->weather.context, shelters, BRIDGE_BOXES, sizeof shelters[0]));
+}
+
+/* Two lamps on a roof behind the camera, one for each side of the work. */
+static bool work_lights(demo *d)
+{
+    wk_weather w = weather_here(4000, 0.95);
+    wk_light lights[2];
+    const camera *c = d->still;
+    vec3 right = normalize(cross(c->ahead, vec(0, 0, 1)));
+    fall(&w, WK_PRECIPITATION_RAIN, 8.0, 3.0, 200.0);
+    d->lamps = (lamp_pair){.intensity_cd = {40e3f, 37e3f, 30e3f}, .inner_deg = 10.0, .outer_deg = 50.0};
+    for (int i = 0; i < 2; i++) {
+        double side = i ? 1.0 : -1.0;
+        vec3 at = add(add(c->position, scale(right, 1.3 * side)), vec(0, 0, 1.4));
+        vec3 to = normalize(add(add(c->ahead, scale(right, 0.22 * side)), vec(0, 0, -0.14)));
+        d->lamps.position[i] = at, d->lamps.direction[i] = to;
+        lights[i] = (wk_light)WK_LIGHT_INIT;
+        lights[i].position_m[0] = at.x, lights[i].position_m[1] = at.y, lights[i].position_m[2] = at.z;
+        lights[i].direction[0] = to.x, lights[i].direction[1] = to.y, lights[i].direction[2] = to.z;
+        for (int k = 0; k < 3; k++)
+            lights[i].intensity_cd[k] = d->lamps.intensity_cd[k];
+        lights[i].inner_deg = d->lamps.inner_deg, lights[i].outer_deg = d->lamps.outer_deg;
+    }
+    return sun_at(d, 60, -35) && set(d, &w, NULL) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_EV100, 4.5)) &&
+           weather_check(wk_context_set_lights(d->weather.context, lights, 2, sizeof lights[0]));
+}
+
+/* A cab's upright window, 0.6 m away: 1 m wide and 0.56 m high. The rain meets it at 12 m/s. */
+static bool cab(demo *d, const wk_wiper_arm *arms, uint32_t arm_count)
+{
+    wk_windscreen w = WK_WINDSCREEN_INIT;
+    w.pane = WK_WINDSCREEN_PANE_WHOLE_VIEW;
+    w.distance_m = 0.6;
+    w.velocity_m_s[2] = -12.0;
+    w.arms = arms;
+    w.arm_count = arm_count;
+    return weather_check(wk_view_set_windscreen(d->weather.view, &w));
+}
+
+static bool without_wipers(demo *d, double time_s)
+{
+    (void)time_s;
+    return cab(d, NULL, 0);
+}
+
+/* There and back in 1.5 s. */
+static bool with_wipers(demo *d, double time_s)
+{
+    const double pivots_m[2] = {0.22, 0.68};
+    wk_wiper_arm arms[2];
+    for (int i = 0; i < 2; i++) {
+        arms[i] = (wk_wiper_arm)WK_WIPER_ARM_INIT;
+        arms[i].pivot_m[0] = pivots_m[i], arms[i].pivot_m[1] = -0.04;
+        arms[i].length_m = 0.46, arms[i].inner_radius_m = 0.1;
+        arms[i].parked_deg = 170.0, arms[i].far_deg = 50.0;
+        arms[i].position = 0.5 - 0.5 * cos(time_s * 2.0 * PI / 1.5);
+    }
+    return cab(d, arms, 2);
+}
+
+/* The eye on the hillside from which the posts' distances count, and a driver's on the road. */
+#define HILLSIDE 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 1.5, 50.0
+#define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
+#define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
+
+const shot SHOTS[] = {
+    {"noon", "Noon", HILLSIDE, noon, WORLD, NULL},
+    {"low_sun", "Low sun", HILLSIDE, low_sun, WORLD, NULL},
+    {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
+    {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
+    {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
+    {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
+    {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},
+    {"fog", "Fog, visibility 150 m", HILLSIDE, fog, WORLD, NULL},
+    {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, WORLD, NULL},
+    {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, WORLD, NULL},
+    {"cloudburst", "Cloudburst, 60 mm/h, wind 9 m/s", ROADSIDE(-4.0), cloudburst, WORLD, NULL},
+    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL},
+    {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers},
+    {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers},
+    {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL},
+    {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
+    {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
+    {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
+    {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
+    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},
+    {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL},
+    {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL},
+    {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL},
+};
+const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
+
+camera shot_camera(const shot *s, const ground *g)
+{
+    double x, y;
+    ground_road_point(s->along_m, s->right_m, &x, &y);
+    return (camera){vec(x, y, ground_z(g, x, y) + s->up_m), direction(s->azimuth_deg, s->elevation_deg), RAD(s->fov_y_deg)};
+}

@@ -1,0 +1,26 @@
+/* The pictures of the README's gallery: where each is taken from, when, and in what weather. */
+#ifndef SHOTS_H
+#define SHOTS_H
+
+#include "demo.h"
+
+enum world { WORLD, WITH_BRIDGE, NO_WORLD /* from so high that the host's land would end in the picture */ };
+
+typedef struct shot {
+    const char *name, *caption;
+    /* Where the camera stands: down the road and right of it, above the ground, m. */
+    double along_m, right_m, up_m;
+    double azimuth_deg, elevation_deg, fov_y_deg;
+    /* Sets sun and weather, and all else that is there. */
+    bool (*prepare)(demo *d);
+    enum world world;
+    /* The window that the camera looks through at a time: it has been in the rain for 50 s. NULL: none. */
+    bool (*windscreen)(demo *d, double time_s);
+} shot;
+
+extern const shot SHOTS[];
+extern const int SHOT_COUNT;
+
+camera shot_camera(const shot *s, const ground *g);
+
+#endif
