@@ -3,7 +3,7 @@
 //! # Model
 //! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
 //! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No. 8,
-//! 2018, chapter 9). Air, tall haze and precipitation have their own rooms; what they leave ([`ExtinctionBudget`]) is a
+//! 2018, chapter 9). Air, tall haze and precipitation have their own rooms; what they leave is a
 //! **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially
 //! ([`Profile::Exponential`]), on a flat or curved planet.
 //!
@@ -70,50 +70,6 @@ pub fn koschmieder_extinction_per_m(visibility_m: f64) -> f64 {
 /// [`koschmieder_extinction_per_m`].
 pub fn koschmieder_visibility_m(extinction_per_m: f64) -> f64 {
     -CONTRAST_THRESHOLD.ln() / extinction_per_m
-}
-
-/// Who takes how much of the extinction that a reported visibility stands for. All at 550 nm and station height, 1/m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtinctionBudget {
-    /// Molecules.
-    pub rayleigh_per_m: f64,
-    /// Haze reaching to kilometres, drawn by the sky's tables.
-    pub tall_aerosol_per_m: f64,
-    /// Rain, snow, hail: drawn as particles.
-    pub precipitation_per_m: f64,
-    /// What is left for the low layer.
-    pub layer_per_m: f64,
-}
-
-impl ExtinctionBudget {
-    /// Splits the total of `visibility_m` (\[1, 1e6\] m) so that nothing is counted twice: the layer takes what the
-    /// others leave, and nothing if they already exceed it (then the air is as clear as it can be).
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the parameter.
-    pub fn new(
-        visibility_m: f64,
-        rayleigh_per_m: f64,
-        tall_aerosol_per_m: f64,
-        precipitation_per_m: f64,
-    ) -> Result<Self> {
-        check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
-        for (name, v) in [
-            ("rayleigh_per_m", rayleigh_per_m),
-            ("tall_aerosol_per_m", tall_aerosol_per_m),
-            ("precipitation_per_m", precipitation_per_m),
-        ] {
-            check_range(name, v, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
-        }
-        let others = rayleigh_per_m + tall_aerosol_per_m + precipitation_per_m;
-        let layer_per_m = (koschmieder_extinction_per_m(visibility_m) - others).max(0.0);
-        Ok(Self { rayleigh_per_m, tall_aerosol_per_m, precipitation_per_m, layer_per_m })
-    }
-
-    /// Sum of all parts, 1/m.
-    pub fn total_per_m(&self) -> f64 {
-        self.rayleigh_per_m + self.tall_aerosol_per_m + self.precipitation_per_m + self.layer_per_m
-    }
 }
 
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.

@@ -8,6 +8,7 @@ use crate::{
     error::{Error, Result, Status, check_range},
     gpu::{
         Device,
+        bind::{self, Slot},
         pass::{self, FullscreenDesc},
         readback,
     },
@@ -135,22 +136,8 @@ fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) ->
 }
 
 fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: wgpu::BufferSize::new(size_of::<ProbeUniform>() as u64),
-    };
-    let depth = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    gpu.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("fog probe"),
-        entries: &[entry(0, uniform), entry(1, depth)],
-    })
+    let slots = [(0, Slot::Uniform(size_of::<ProbeUniform>())), (1, Slot::Texels)];
+    bind::layout(gpu, "fog probe", wgpu::ShaderStages::FRAGMENT, &slots)
 }
 
 /// [`probe`] over CSV text: the header must have a column `distance_m`; every line comes back with `contrast` and

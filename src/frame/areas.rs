@@ -9,7 +9,9 @@ use crate::{
     context::Scene,
     error::Result,
     gpu::{
-        Device, KeptLayer, Layer, is_kept,
+        Device, KeptLayer, Layer,
+        bind::{self, Slot},
+        is_kept,
         pass::{self, QuadsDesc},
         recent::Recent,
     },
@@ -81,36 +83,14 @@ pub(super) struct AreaPass {
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
-    let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: both,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("rain areas"),
-        entries: &[
-            uniform(0, size_of::<super::uniform::FrameUniform>()),
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled,
-                },
-                count: None,
-            },
-            uniform(4, size_of::<crate::fog::FogUniform>()),
-            uniform(7, size_of::<ColumnsUniform>()),
-            uniform(8, size_of::<ShaftUniform>()),
-        ],
-    })
+    let slots = [
+        (0, Slot::Uniform(size_of::<super::uniform::FrameUniform>())),
+        (1, Slot::texels(multisampled)),
+        (4, Slot::Uniform(size_of::<crate::fog::FogUniform>())),
+        (7, Slot::Uniform(size_of::<ColumnsUniform>())),
+        (8, Slot::Uniform(size_of::<ShaftUniform>())),
+    ];
+    bind::layout(device, "rain areas", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
 
 /// The part of the picture that a column may be in, ndc; `None` if it is in none. `clip` takes camera-relative east, north,
@@ -184,16 +164,6 @@ impl Columns<'_> {
 
 impl AreaPass {
     pub fn new(device: &Device) -> Self {
-        let none = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("no depth"),
-            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
         Self {
             blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("rain areas"),
@@ -202,7 +172,7 @@ impl AreaPass {
                 mapped_at_creation: false,
             }),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            none: none.create_view(&Default::default()),
+            none: bind::nothing(&device.device),
             pipelines: Recent::new(),
             bound: None,
         }

@@ -12,6 +12,7 @@ use crate::{
     fog::{FogUniform, FogVariant},
     gpu::{
         Device, Layer,
+        bind::{self, Slot},
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
@@ -121,62 +122,22 @@ pub(super) struct Composite {
     reads_samples: bool,
 }
 
-fn texture_entry(binding: u32, multisampled: bool) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled,
-        },
-        count: None,
-    }
-}
-
 fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
-    let [color, depth] = sampling.multisampled();
-    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("frame"),
-        entries: &[
-            uniform(0, size_of::<FrameUniform>()),
-            texture_entry(1, color),
-            texture_entry(2, depth),
-            texture_entry(3, false),
-            uniform(4, size_of::<FogUniform>()),
-            texture_entry(5, false),
-            uniform(6, size_of::<GroundUniform>()),
-            texture_entry(7, false),
-            texture_entry(8, false),
-            texture_entry(9, false),
-            texture_entry(10, false),
-        ],
-    })
-}
-
-/// A 1 x 1 texture that stands for a depth or mask the host does not give.
-fn none(device: &wgpu::Device) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("none"),
-        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&Default::default())
+    let [color, depth] = sampling.multisampled().map(Slot::texels);
+    let slots = [
+        (0, Slot::Uniform(size_of::<FrameUniform>())),
+        (1, color),
+        (2, depth),
+        (3, Slot::Texels),
+        (4, Slot::Uniform(size_of::<FogUniform>())),
+        (5, Slot::Texels),
+        (6, Slot::Uniform(size_of::<GroundUniform>())),
+        (7, Slot::Texels),
+        (8, Slot::Texels),
+        (9, Slot::Texels),
+        (10, Slot::Texels),
+    ];
+    bind::layout(device, "frame", wgpu::ShaderStages::FRAGMENT, &slots)
 }
 
 impl Composite {
@@ -188,7 +149,7 @@ impl Composite {
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: Recent::new(),
-            none: none(&device.device),
+            none: bind::nothing(&device.device),
             reads_samples: multi,
         }
     }

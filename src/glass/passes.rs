@@ -11,7 +11,9 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device, KeptLayer, Layer, is_kept,
+        Device, KeptLayer, Layer,
+        bind::Slot,
+        is_kept,
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
@@ -51,32 +53,6 @@ pub(crate) struct GlassKit {
     sampler: wgpu::Sampler,
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
-}
-
-fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
-}
-
-pub(super) fn uniform_entry(has_dynamic_offset: bool, size: usize) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    }
 }
 
 fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
@@ -140,31 +116,24 @@ impl GlassKit {
     /// # Errors
     /// A missing shader file.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
-        let (uint, float) = (wgpu::TextureSampleType::Uint, |filterable| wgpu::TextureSampleType::Float { filterable });
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            let desc = wgpu::BindGroupLayoutDescriptor { label: Some("glass"), entries };
-            device.device.create_bind_group_layout(&desc)
+        let layout = |slots: &[(u32, Slot)]| {
+            crate::gpu::bind::layout(&device.device, "glass", wgpu::ShaderStages::FRAGMENT, slots)
         };
         let step_layout = layout(&[
-            uniform_entry(true, size_of::<StepUniform>()),
-            texture_entry(1, uint),
-            texture_entry(2, uint),
-            texture_entry(3, uint),
+            (0, Slot::DynamicUniform(size_of::<StepUniform>())),
+            (1, Slot::Words),
+            (2, Slot::Words),
+            (3, Slot::Words),
         ]);
-        let shrink_layout = layout(&[texture_entry(0, float(false))]);
+        let shrink_layout = layout(&[(0, Slot::Texels)]);
         let lens_layout = layout(&[
-            uniform_entry(false, size_of::<LensUniform>()),
-            texture_entry(1, uint),
-            texture_entry(2, float(false)),
-            texture_entry(3, float(true)),
-            texture_entry(4, float(true)),
-            wgpu::BindGroupLayoutEntry {
-                binding: 5,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                count: None,
-            },
-            texture_entry(6, float(false)),
+            (0, Slot::Uniform(size_of::<LensUniform>())),
+            (1, Slot::Words),
+            (2, Slot::Texels),
+            (3, Slot::Filtered),
+            (4, Slot::Filtered),
+            (5, Slot::Sampler),
+            (6, Slot::Texels),
         ]);
         let cells = |shader, entry| cells_pipeline(device, (shader, entry), &step_layout, &[]);
         let shrink = |factor: u32, encoded: f64| {

@@ -2,13 +2,14 @@
 
 use super::{
     SIZES,
-    passes::{self, bind, buffer, uniform_entry},
+    passes::{self, bind, buffer},
     reach::NODES,
 };
 use crate::{
     error::Result,
     gpu::{
         Device,
+        bind::Slot,
         pass::{self, FullscreenDesc},
     },
     surroundings::{Around, Told, layout as around_layout},
@@ -49,11 +50,10 @@ impl MappedKit {
     /// # Errors
     /// A missing shader file.
     pub fn new(device: &Device, step_layout: &wgpu::BindGroupLayout) -> Result<Self> {
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            let desc = wgpu::BindGroupLayoutDescriptor { label: Some("glass below maps"), entries };
-            device.device.create_bind_group_layout(&desc)
+        let layout = |slots: &[(u32, Slot)]| {
+            crate::gpu::bind::layout(&device.device, "glass below maps", wgpu::ShaderStages::FRAGMENT, slots)
         };
-        let layouts = [layout(&[uniform_entry(false, size_of::<PaneUniform>())]), layout(&[])];
+        let layouts = [layout(&[(0, Slot::Uniform(size_of::<PaneUniform>()))]), layout(&[])];
         let reach = pass::fullscreen(
             device,
             &FullscreenDesc {

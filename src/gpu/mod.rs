@@ -5,6 +5,7 @@
 //! `wgpu` objects and never ask whose they are.
 
 // wgpu builds its OpenGL backend for Apple hosts only round another library; there the backend is Metal.
+pub(crate) mod bind;
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod gl;
 pub mod pass;

@@ -1,7 +1,11 @@
 //! A picture that stands in for a window's image where that can only be drawn to (OpenGL): the effects read and copy
 //! what is drawn so far, and only the finished picture goes to the window.
 
-use super::{Device, pass};
+use super::{
+    Device,
+    bind::{self, Slot},
+    pass,
+};
 use crate::error::Result;
 
 /// A texture like the window's image, and its way there.
@@ -32,19 +36,8 @@ impl StandIn {
             usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("window stand-in"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            }],
-        });
+        let layout =
+            bind::layout(&device.device, "window stand-in", wgpu::ShaderStages::FRAGMENT, &[(0, Slot::Texels)]);
         let view = texture.create_view(&Default::default());
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("window stand-in"),

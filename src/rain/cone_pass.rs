@@ -10,6 +10,7 @@ use crate::{
     error::Result,
     gpu::{
         Device,
+        bind::{self, Slot},
         pass::{FullscreenDesc, fullscreen},
     },
     surroundings::Around,
@@ -149,29 +150,14 @@ impl ConeKind {
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-    let block = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: wgpu::BufferSize::new(size_of::<ConeUniform>() as u64),
-    };
-    let texture = |view_dimension| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension,
-        multisampled: false,
-    };
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("cones"),
-        entries: &[
-            entry(0, block),
-            entry(1, texture(wgpu::TextureViewDimension::D2)),
-            entry(2, sampler),
-            entry(3, texture(wgpu::TextureViewDimension::D2Array)),
-            entry(4, sampler),
-        ],
-    })
+    let slots = [
+        (0, Slot::Uniform(size_of::<ConeUniform>())),
+        (1, Slot::Filtered),
+        (2, Slot::Sampler),
+        (3, Slot::FilteredArray),
+        (4, Slot::Sampler),
+    ];
+    bind::layout(device, "cones", wgpu::ShaderStages::FRAGMENT, &slots)
 }
 
 fn group(

@@ -5,7 +5,13 @@ use super::{
     cull_pass::{compute_pipeline, group_entry, listed_pipeline},
     splash,
 };
-use crate::{error::Result, gpu::Device};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+    },
+};
 
 /// Bytes of a `Crown` of `shaders/rain/splash.wgsl`.
 const CROWN_BYTES: u64 = 48;
@@ -30,19 +36,7 @@ fn key(kind: Kind) -> usize {
 
 impl CrownPass {
     pub fn new(device: &wgpu::Device) -> Self {
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("crowns"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: false },
-                    has_dynamic_offset: false,
-                    min_binding_size: wgpu::BufferSize::new(CROWN_BYTES),
-                },
-                count: None,
-            }],
-        });
+        let layout = bind::layout(device, "crowns", wgpu::ShaderStages::COMPUTE, &[(0, Slot::Storage(CROWN_BYTES))]);
         let crowns = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("crowns"),
             size: CROWN_BYTES * u64::from(splash::MOST),

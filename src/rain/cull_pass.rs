@@ -15,6 +15,7 @@ use crate::{
     error::Result,
     gpu::{
         Device,
+        bind::{self, Slot},
         pass::{self, QuadsDesc},
     },
 };
@@ -78,45 +79,21 @@ fn room(device: &wgpu::Device, blocks: u64) -> u64 {
     (blocks * u64::from(BLOCK_DROPS) / 4).max(LEAST_ROOM).min(most)
 }
 
-fn buffer(binding: u32, ty: wgpu::BufferBindingType, size: u64) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: wgpu::BufferSize::new(size) },
-        count: None,
-    }
-}
-
 fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
-    let make = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-    };
-    let uniform = |binding, size: usize| buffer(binding, wgpu::BufferBindingType::Uniform, size as u64);
-    let storage = |binding, size| buffer(binding, wgpu::BufferBindingType::Storage { read_only: false }, size);
-    let list = [storage(0, BLOCK_BYTES), storage(1, STREAK_BYTES), storage(2, FOUND_BYTES)];
-    [
-        make(
-            "cull frame",
-            &[
-                uniform(0, size_of::<RainUniform>()),
-                uniform(7, COLUMNS_BYTES),
-                uniform(8, size_of::<LocalUniform>() - COLUMNS_BYTES),
-            ],
-        ),
-        make("cull", &list),
-        make("streaks", &list[..2]),
-    ]
+    let make = |label, slots: &[(u32, Slot)]| bind::layout(device, label, wgpu::ShaderStages::COMPUTE, slots);
+    let frame = [
+        (0, Slot::Uniform(size_of::<RainUniform>())),
+        (7, Slot::Uniform(COLUMNS_BYTES)),
+        (8, Slot::Uniform(size_of::<LocalUniform>() - COLUMNS_BYTES)),
+    ];
+    let list = [(0, Slot::Storage(BLOCK_BYTES)), (1, Slot::Storage(STREAK_BYTES)), (2, Slot::Storage(FOUND_BYTES))];
+    [make("cull frame", &frame), make("cull", &list), make("streaks", &list[..2])]
 }
 
 /// Layout of stepped drops: the camera's places in the shells' cells, and the states.
 pub(super) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("stepped"),
-        entries: &[
-            buffer(0, wgpu::BufferBindingType::Uniform, 16 * SHELLS as u64),
-            buffer(1, wgpu::BufferBindingType::Storage { read_only: true }, STATE_BYTES),
-        ],
-    })
+    let slots = [(0, Slot::Uniform(16 * SHELLS)), (1, Slot::StorageRead(STATE_BYTES))];
+    bind::layout(device, "stepped", wgpu::ShaderStages::COMPUTE, &slots)
 }
 
 impl CullPass {

@@ -11,6 +11,7 @@ use crate::{
     error::Result,
     gpu::{
         Device,
+        bind::{self, Slot},
         pass::{FullscreenDesc, fullscreen},
     },
 };
@@ -64,22 +65,10 @@ fn layer(grid: &wgpu::Texture, at: usize) -> wgpu::TextureView {
 impl OpenPass {
     /// `blocks` begin with the rain's, `cones` is theirs.
     pub fn new(device: &wgpu::Device, [blocks, cones]: [&wgpu::Buffer; 2], picture: wgpu::Extent3d) -> Self {
-        let sizes = [size_of::<RainUniform>(), size_of::<ConeUniform>()].map(|s| wgpu::BufferSize::new(s as u64));
-        let layouts = sizes.map(|size| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("open shares"),
-                entries: &[wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: size,
-                    },
-                    count: None,
-                }],
-            })
-        });
+        let sizes = [size_of::<RainUniform>(), size_of::<ConeUniform>()];
+        let layouts = sizes
+            .map(|size| bind::layout(device, "open shares", wgpu::ShaderStages::FRAGMENT, &[(0, Slot::Uniform(size))]));
+        let sizes = sizes.map(|s| wgpu::BufferSize::new(s as u64));
         let groups = [(blocks, 0), (cones, 1)].map(|(buffer, i)| {
             let block = wgpu::BufferBinding { buffer, offset: 0, size: sizes[i] };
             device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -16,7 +16,9 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device, KeptLayer, Layer, is_kept,
+        Device, KeptLayer, Layer,
+        bind::{self, Slot},
+        is_kept,
         pass::{self, QuadsDesc},
     },
     surroundings::{self, Around},
@@ -70,35 +72,14 @@ pub(crate) struct Drawn<'a> {
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-    let uniform = |binding, size: usize| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: all,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("rain"),
-        entries: &[
-            uniform(0, size_of::<RainUniform>()),
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: all,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled,
-                },
-                count: None,
-            },
-            uniform(3, size_of::<SplashUniform>()),
-            uniform(7, COLUMNS_BYTES),
-            uniform(8, size_of::<LocalUniform>() - COLUMNS_BYTES),
-        ],
-    })
+    let slots = [
+        (0, Slot::Uniform(size_of::<RainUniform>())),
+        (1, Slot::texels(multisampled)),
+        (3, Slot::Uniform(size_of::<SplashUniform>())),
+        (7, Slot::Uniform(COLUMNS_BYTES)),
+        (8, Slot::Uniform(size_of::<LocalUniform>() - COLUMNS_BYTES)),
+    ];
+    bind::layout(device, "rain", all, &slots)
 }
 
 /// The columns of [`LocalUniform`], which are a block of their own.
@@ -340,7 +321,7 @@ impl RainLayer {
             return;
         }
         let view = depth.map(Layer::view);
-        let none = self.none.get_or_insert_with(|| nothing(&device.device));
+        let none = self.none.get_or_insert_with(|| bind::nothing(&device.device));
         let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
             binding,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -365,21 +346,6 @@ impl RainLayer {
         });
         self.bound = Some((depth.map(Layer::kept), group));
     }
-}
-
-/// A texture that stands for a depth the host does not give.
-fn nothing(device: &wgpu::Device) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("no depth"),
-        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&Default::default())
 }
 
 fn pipeline(

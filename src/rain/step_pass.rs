@@ -10,7 +10,14 @@ use super::{
     passes::STARTS,
     uniforms::{Air, RainUniform, Shot},
 };
-use crate::{error::Result, gpu::Device, wind::WindGrid};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+    },
+    wind::WindGrid,
+};
 
 /// Bytes of one drop: place and word, velocity.
 pub(crate) const STATE_BYTES: u64 = 32;
@@ -45,53 +52,16 @@ pub(crate) struct Stepped<'a> {
     pub most: u32,
 }
 
-fn uniform(binding: u32, visibility: wgpu::ShaderStages, size: usize) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    }
-}
-
 /// Of the frame's blocks and of its own for the step, and of what draws them.
 fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
-    let compute = wgpu::ShaderStages::COMPUTE;
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: compute, ty, count: None };
-    let make = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-    };
-    [
-        make("step frame", &[uniform(0, compute, size_of::<RainUniform>())]),
-        make(
-            "step",
-            &[
-                uniform(0, compute, size_of::<StepUniform>()),
-                entry(
-                    1,
-                    wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: false },
-                        has_dynamic_offset: false,
-                        min_binding_size: wgpu::BufferSize::new(STATE_BYTES),
-                    },
-                ),
-                entry(
-                    2,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D3,
-                        multisampled: false,
-                    },
-                ),
-                entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            ],
-        ),
-        source_layout(device),
-    ]
+    let make = |label, slots: &[(u32, Slot)]| bind::layout(device, label, wgpu::ShaderStages::COMPUTE, slots);
+    let step = [
+        (0, Slot::Uniform(size_of::<StepUniform>())),
+        (1, Slot::Storage(STATE_BYTES)),
+        (2, Slot::FilteredVolume),
+        (3, Slot::Sampler),
+    ];
+    [make("step frame", &[(0, Slot::Uniform(size_of::<RainUniform>()))]), make("step", &step), source_layout(device)]
 }
 
 impl StepPass {

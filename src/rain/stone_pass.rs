@@ -5,6 +5,7 @@ use crate::{
     error::Result,
     gpu::{
         Device,
+        bind::{self, Slot},
         pass::{self, QuadsDesc},
     },
 };
@@ -49,19 +50,8 @@ impl StonePass {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("stones"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: wgpu::BufferSize::new(size_of::<StoneUniform>() as u64),
-                },
-                count: None,
-            }],
-        });
+        let slots = [(0, Slot::Uniform(size_of::<StoneUniform>()))];
+        let layout = bind::layout(device, "stones", wgpu::ShaderStages::VERTEX, &slots);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("stones"),
             layout: &layout,

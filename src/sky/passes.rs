@@ -11,6 +11,7 @@ use super::settings::SkySettings;
 use super::uniforms::{DimsUniform, JobUniform};
 use crate::error::Result;
 use crate::gpu::Device;
+use crate::gpu::bind::{self, Slot};
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 
 /// Format of every table.
@@ -56,45 +57,10 @@ pub(crate) fn uniform_buffer(device: &Device, label: &str, contents: &[u8]) -> w
     })
 }
 
-/// Layout entries in order: what a binding is, for fragment shaders.
-#[derive(Clone, Copy)]
-pub(crate) enum Slot {
-    Uniform,
-    DynamicUniform,
-    Table,
-    TableArray,
-    Sampler,
-}
-
 /// A layout of `slots`, numbered from 0.
 pub(crate) fn layout(device: &Device, label: &str, slots: &[Slot]) -> wgpu::BindGroupLayout {
-    let texture = |view_dimension| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension,
-        multisampled: false,
-    };
-    let buffer = |has_dynamic_offset| wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset,
-        min_binding_size: None,
-    };
-    let entries: Vec<_> = slots
-        .iter()
-        .enumerate()
-        .map(|(i, slot)| wgpu::BindGroupLayoutEntry {
-            binding: i as u32,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: match slot {
-                Slot::Uniform => buffer(false),
-                Slot::DynamicUniform => buffer(true),
-                Slot::Table => texture(wgpu::TextureViewDimension::D2),
-                Slot::TableArray => texture(wgpu::TextureViewDimension::D2Array),
-                Slot::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            },
-            count: None,
-        })
-        .collect();
-    device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+    let numbered: Vec<_> = (0..).zip(slots.iter().copied()).collect();
+    bind::layout(&device.device, label, wgpu::ShaderStages::FRAGMENT, &numbered)
 }
 
 /// A bind group of `resources`, numbered from 0.
@@ -167,9 +133,10 @@ impl Blocks {
 
 impl Builder {
     pub fn new(device: &Arc<Device>, settings: &SkySettings, passes: &[Pass]) -> Result<Self> {
-        use Slot::{DynamicUniform, Sampler, Table, Uniform};
-        let shared_layout = layout(device, "sky build", &[Uniform, Uniform, Uniform, Sampler, DynamicUniform]);
-        let tables_layout = layout(device, "sky build tables", &[Table; 6]);
+        let block = Slot::Uniform(0);
+        let shared = [block, block, block, Slot::Sampler, Slot::DynamicUniform(0)];
+        let shared_layout = layout(device, "sky build", &shared);
+        let tables_layout = layout(device, "sky build tables", &[Slot::Filtered; 6]);
         let mut pipelines: Vec<(Kind, wgpu::RenderPipeline)> = Vec::new();
         for pass in passes {
             if pipelines.iter().all(|(k, _)| *k != pass.kind) {
@@ -225,7 +192,7 @@ pub(crate) struct FadePasses {
 
 impl FadePasses {
     pub fn new(device: &Device, settings: &SkySettings) -> Result<Self> {
-        let layout = layout(device, "sky fade", &[Slot::Table]);
+        let layout = layout(device, "sky fade", &[Slot::Filtered]);
         let target = wgpu::ColorTargetState {
             format: TABLE_FORMAT,
             blend: Some(fade_blend()),
@@ -309,7 +276,7 @@ pub(crate) struct PartPass {
 
 impl PartPass {
     pub fn new(device: &Device) -> Result<Self> {
-        let layout = layout(device, "sky part", &[Slot::Table, Slot::Uniform]);
+        let layout = layout(device, "sky part", &[Slot::Filtered, Slot::Uniform(0)]);
         let add = wgpu::BlendComponent {
             src_factor: wgpu::BlendFactor::One,
             dst_factor: wgpu::BlendFactor::One,

@@ -3,12 +3,13 @@
 //! Waits for the GPU: for queries, programs and tests, not for frames.
 
 use super::observer::Observer;
-use super::passes::bind;
+use super::passes::{bind, layout};
 use super::settings::SkySettings;
 use super::tables::SkyTables;
 use super::volume::SkyVolume;
 use super::{Lamp, Planet};
 use crate::error::{Error, Result, check_range};
+use crate::gpu::bind::Slot;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 use crate::gpu::{Device, readback};
 
@@ -228,17 +229,5 @@ impl Probe {
 }
 
 fn question_layout(device: &Device) -> wgpu::BindGroupLayout {
-    device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("probe"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        }],
-    })
+    layout(device, "probe", &[Slot::Texels])
 }

@@ -6,7 +6,7 @@ use bytemuck::{Zeroable as _, bytes_of};
 
 use super::kit::Kit;
 use super::observer::{Lamp, Observer};
-use super::passes::{Slot, TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
+use super::passes::{TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
 use super::recipe::Name;
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
@@ -14,6 +14,7 @@ use super::tables::SkyTables;
 use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
 use crate::error::Result;
 use crate::gpu::Device;
+use crate::gpu::bind::Slot;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 
 /// Layers of a lamp: what is complete, and light scattered once by haze without its phase function.
@@ -65,10 +66,11 @@ pub(crate) struct ObserverLayouts {
 
 impl ObserverLayouts {
     pub fn new(device: &Device) -> Self {
-        use Slot::{Sampler, Table, Uniform};
+        use Slot::{Filtered, Sampler};
+        let block = Slot::Uniform(0);
         Self {
-            planet: layout(device, "sky of a planet", &[Uniform, Uniform, Table, Sampler, Table, Table, Uniform]),
-            observer: layout(device, "sky observer", &[Uniform]),
+            planet: layout(device, "sky of a planet", &[block, block, Filtered, Sampler, Filtered, Filtered, block]),
+            observer: layout(device, "sky observer", &[block]),
             view: SkyVolume::view_layout(device),
         }
     }
@@ -193,8 +195,9 @@ impl SkyVolume {
 
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
     pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
-        use Slot::{Sampler, Table, TableArray, Uniform};
-        layout(device, "sky view", &[Uniform, TableArray, TableArray, Table, Table, Sampler])
+        use Slot::{Filtered, FilteredArray, Sampler};
+        let slots = [Slot::Uniform(0), FilteredArray, FilteredArray, Filtered, Filtered, Sampler];
+        layout(device, "sky view", &slots)
     }
 
     /// The layout that this volume's group was made with.

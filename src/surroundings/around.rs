@@ -9,7 +9,10 @@ use super::{
     shelter::{MAX_PLANES, MAX_SHELTERS},
 };
 use crate::{
-    gpu::Device,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+    },
     scene::{HostLight, LightUniform, MAX_LIGHTS},
 };
 
@@ -82,30 +85,13 @@ impl Told<'_> {
 /// Layout of group 2 of drops and composition.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-    let block = |binding, size: usize| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: all,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size as u64),
-        },
-        count: None,
-    };
-    let table = wgpu::BindGroupLayoutEntry {
-        binding: 2,
-        visibility: all,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Uint,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("around"),
-        entries: &[block(0, SHELTER_BYTES), block(1, MAP_BYTES), table, block(3, LIGHT_BYTES)],
-    })
+    let slots = [
+        (0, Slot::Uniform(SHELTER_BYTES)),
+        (1, Slot::Uniform(MAP_BYTES)),
+        (2, Slot::Words),
+        (3, Slot::Uniform(LIGHT_BYTES)),
+    ];
+    bind::layout(device, "around", all, &slots)
 }
 
 impl Around {

@@ -7,6 +7,7 @@ use crate::{
     error::{Error, Result},
     gpu::{
         Device, Layer,
+        bind::{self, Slot},
         pass::{self, FullscreenDesc},
     },
     scene::DepthUniform,
@@ -58,38 +59,10 @@ pub(crate) struct OccluderMaps {
     list: Vec<Placed>,
 }
 
-fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
-}
-
 fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 2] {
-    let block = wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size_of::<MapUniform>() as u64),
-        },
-        count: None,
-    };
-    let make = |label, entries: &[_]| {
-        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-    };
-    let depth = wgpu::TextureSampleType::Float { filterable: false };
-    [
-        make("occluder map", &[block, texture_entry(1, depth)]),
-        make("occluder cells", &[texture_entry(0, wgpu::TextureSampleType::Uint)]),
-    ]
+    let make = |label, slots: &[(u32, Slot)]| bind::layout(device, label, wgpu::ShaderStages::FRAGMENT, slots);
+    let map = [(0, Slot::Uniform(size_of::<MapUniform>())), (1, Slot::Texels)];
+    [make("occluder map", &map), make("occluder cells", &[(0, Slot::Words)])]
 }
 
 fn pipeline(
