@@ -1,5 +1,5 @@
 // Rain on four nested cones about the camera; the model is explained in src/rain/cones.rs.
-// The entry points read the depth: cones_single.wgsl and cones_multi.wgsl.
+// The entry points read the depth: cones_view.wgsl.
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"

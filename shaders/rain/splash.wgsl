@@ -1,6 +1,6 @@
 // Splashes on what the host's picture shows: slots of a world-fixed grid in which drops land one after the other, as many
 // as the flux brings. Which slot splashes when follows from (seed, cell, slot, time).
-// The entry points read the depth: drops_single.wgsl and drops_multi.wgsl.
+// The entry points read the depth: drops_view.wgsl.
 //!include "common/facing.wgsl"
 //!include "rain/drops.wgsl"
 
@@ -316,7 +316,7 @@ struct ListedCrown {
     @location(2) lean_height_age: vec4f,
 }
 
-// Crowns that were made before (rain/crowns_single.wgsl and crowns_multi.wgsl).
+// Crowns that were made before (rain/crowns_view.wgsl).
 @vertex
 fn crown_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) slot: u32, listed: ListedCrown) -> CrownVarying {
     let more = listed.lean_height_age;

@@ -279,7 +279,8 @@ impl AreaPass {
     ) -> Result<wgpu::RenderPipeline> {
         let columns = &self.layouts[usize::from(kind.multi)];
         let make = || {
-            let module = device.shader(if kind.multi { "rain/shaft_multi.wgsl" } else { "rain/shaft_single.wgsl" })?;
+            let module =
+                device.shader(if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" })?;
             let composite = shared.composite()?;
             let [_, sky, _] = composite.layouts(Sampling::Single);
             let yes = |b: bool| f64::from(u8::from(b));

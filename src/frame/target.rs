@@ -263,9 +263,17 @@ impl Sampling {
         [self == Self::Multi, self != Self::Single]
     }
 
-    /// The shader of this kind among `[single, multi, resolved]`.
-    pub fn shader(self, names: [&'static str; 3]) -> &'static str {
-        names[self as usize]
+    /// Shader and entry point of the composition, and the gauge's.
+    pub fn shaders(self) -> [(&'static str, &'static str); 2] {
+        match self {
+            Self::Single => [("frame/composite_view.wgsl", "composite"), ("plan/gauge_view.wgsl", "gauge")],
+            Self::Multi => {
+                [("frame/composite_samples.wgsl:multi", "composite_samples"), ("plan/gauge_view.wgsl:multi", "gauge")]
+            }
+            Self::Resolved => {
+                [("frame/composite_view.wgsl:resolved", "composite"), ("plan/gauge_view.wgsl:resolved", "gauge")]
+            }
+        }
     }
 }
 

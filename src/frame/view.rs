@@ -443,11 +443,7 @@ impl View {
                 self.rain.streaks(&self.device, (frame, color.height(), exposure), (context, scene, rays))
             })
         {
-            let shader = variant.sampling.shader([
-                "plan/gauge_single.wgsl",
-                "plan/gauge_multi.wgsl",
-                "plan/gauge_resolved.wgsl",
-            ]);
+            let [_, (shader, _)] = variant.sampling.shaders();
             let (constants, layouts) = (variant.constants(), composite.layouts(variant.sampling));
             gauge.record(&self.device, to.encoder, (shader, &constants), &layouts, &groups)?;
             self.report.passes += 1;

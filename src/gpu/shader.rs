@@ -1,6 +1,7 @@
-//! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each, nothing else.
+//! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each.
 //!
-//! Variants come from `override` constants and entry points, never from a preprocessor. Every assembled shader is
+//! Variants come from `override` constants and entry points, and where a host's textures are of other types from another file in place of
+//! `common/host.wgsl`: `rain/drops_view.wgsl:multi` reads `common/host_multi.wgsl`. There is no preprocessor. Every assembled shader is
 //! validated by naga in a test ([`names`] lists them), and every uniform's offsets are compared with naga's
 //! ([`struct_layout`]).
 
@@ -19,7 +20,12 @@ fn source(name: &str) -> Option<&'static str> {
     table::SHADERS.binary_search_by_key(&name, |(n, _)| n).ok().map(|i| table::SHADERS[i].1)
 }
 
-/// The text of shader `name` with its includes put before it, each once, in order of first mention.
+/// What a variant has another of, and the names of variants.
+const HOST: &str = "common/host";
+#[cfg(test)]
+const VARIANTS: [&str; 2] = ["multi", "resolved"];
+
+/// The text of shader `name` with its includes put before it, each once, in order of first mention; of a variant after a colon.
 ///
 /// # Errors
 /// [`Status::Internal`] if a file is missing or includes form a cycle; the message names the chain.
@@ -34,7 +40,12 @@ pub fn assemble(name: &str) -> Result<String> {
 pub fn assemble_from(name: &str, lookup: &dyn Fn(&str) -> Option<String>) -> Result<String> {
     let mut done = Vec::new();
     let mut out = String::new();
-    append(name, lookup, &mut Vec::new(), &mut done, &mut out)?;
+    let (name, variant) = name.split_once(':').unwrap_or((name, ""));
+    let other = |n: &str| match n.strip_suffix(".wgsl") {
+        Some(HOST) if !variant.is_empty() => lookup(&format!("{HOST}_{variant}.wgsl")),
+        _ => lookup(n),
+    };
+    append(name, &other, &mut Vec::new(), &mut done, &mut out)?;
     Ok(out)
 }
 
@@ -130,10 +141,49 @@ mod tests {
 
     #[test]
     fn every_shader_assembles_and_validates() {
+        let mut variants = 0;
         for name in names() {
             let text = assemble(name).unwrap();
             validate(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
+            for variant in VARIANTS.iter().filter(|_| text.contains("// ---- common/host.wgsl")) {
+                let other = assemble(&format!("{name}:{variant}")).unwrap();
+                validate(&other).unwrap_or_else(|e| panic!("{name}:{variant}: {e}"));
+                assert!(other != text, "{name}:{variant}");
+                variants += 1;
+            }
         }
+        assert!(variants >= 16, "{variants}");
+    }
+
+    #[test]
+    fn a_variant_reads_another_file_and_one_that_is_missing_is_named() {
+        let set = [
+            ("a", "//!include \"common/host.wgsl\"\nA"),
+            ("common/host.wgsl", "one"),
+            ("common/host_multi.wgsl", "many"),
+        ];
+        let lines = |name| {
+            assemble_from(name, &files(&set)).map(|t| t.lines().filter(|l| !l.starts_with("//")).collect::<String>())
+        };
+        assert_eq!((lines("a").unwrap(), lines("a:multi").unwrap()), ("oneA".to_string(), "manyA".to_string()));
+        assert!(lines("a:odd").unwrap_err().message.contains("common/host.wgsl"));
+    }
+
+    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more.
+    #[test]
+    fn no_shader_reads_more_than_thirteen_textures() {
+        use wgpu::naga::{ImageClass, TypeInner, front::wgsl::parse_str};
+        let count = |name: &str| {
+            let module = parse_str(&assemble(name).unwrap()).unwrap();
+            let is_read = |inner: &TypeInner| match inner {
+                TypeInner::Image { class, .. } => !matches!(class, ImageClass::Storage { .. }),
+                _ => false,
+            };
+            module.global_variables.iter().filter(|(_, v)| is_read(&module.types[v.ty].inner)).count()
+        };
+        let (most, name) = names().map(|name| (count(name), name)).max().unwrap();
+        assert!(most <= 13, "{name}: {most}");
+        assert_eq!(count("frame/composite_view.wgsl"), most, "the count sees them");
     }
 
     type Type = wgpu::naga::Handle<wgpu::naga::Type>;

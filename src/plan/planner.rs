@@ -185,6 +185,18 @@ pub(crate) struct Present {
     pub together: ([usize; 2], StepWork),
 }
 
+impl Present {
+    /// Work of the picture if the host drew something everywhere.
+    fn most_work(&self) -> f64 {
+        let pixels = self.pixels as f64;
+        let work = |step: &StepWork| step.object * pixels + step.fixed;
+        let parts = self.parts.iter().filter(|p| p.is_there).flat_map(|p| &p.steps).map(work).sum::<f64>();
+        let ([a, b], step) = &self.together;
+        let together = if self.parts[*a].is_there && self.parts[*b].is_there { work(step) } else { 0.0 };
+        pixels + parts + together
+    }
+}
+
 /// What the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
     /// What the first steps of its part change at pixel number `pixel` of the gauge, at `ndc`, where the picture has this luminance
@@ -230,9 +242,11 @@ struct Gauging<U> {
     unseen: Option<U>,
 }
 
-/// Least and largest share of a build of the sky's tables with the default settings that one frame pays. Finer strips are
-/// not cut; and the largest keeps a frame of 640 x 360 within half as much again on the software driver.
+/// Least share of a build of the sky's tables with the default settings that one frame pays, since finer strips are not cut, and the
+/// share that it pays where there is time.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
+/// Where that is less than this share of a picture's own work, it pays so much: no frame takes half as much again.
+const SLICE: f64 = 0.3;
 
 /// A part changes a pixel by no more than this in a frame while it fades, and takes at least and at most so many frames.
 const FADE_STEP: f64 = 0.005;
@@ -244,6 +258,8 @@ pub(crate) struct Planner<U> {
     asked: Asked,
     /// Work of building the sky's default tables, in pixels with none of the parts.
     rebuild: f64,
+    /// Work of the last picture with everything, in the same units; 0 before the first.
+    work: f64,
     gauge: Option<Gauge>,
     choices: Choices,
     governor: Governor,
@@ -262,6 +278,7 @@ impl<U: Unseen> Planner<U> {
     pub fn new(parts: &'static [Part], rebuild: f64) -> Self {
         let mut planner = Self {
             rebuild,
+            work: 0.0,
             budget: Budget::default(),
             asked: Asked::default(),
             gauge: None,
@@ -347,6 +364,7 @@ impl<U: Unseen> Planner<U> {
     /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
         let mut pure = pure;
+        self.work = present.most_work();
         if self.budget.gauges() {
             self.frames = self.frames.saturating_add(1);
             pure |= self.last.replace(*here).is_some_and(|last| last.is_cut(here));
@@ -455,7 +473,8 @@ impl<U: Unseen> Planner<U> {
         let frame = self.governor.ms(&self.choices.all.without(self.absent()));
         let spare = self.budget.milliseconds.zip(frame).map(|(budget, ms)| budget - ms);
         let whole = self.governor.ms(&Amount { pixels: self.rebuild, ..Amount::default() });
-        let share = spare.zip(whole).map_or(SHARE.1, |(spare, whole)| (spare / whole).clamp(SHARE.0, SHARE.1));
+        let most = (SLICE * self.work / self.rebuild).clamp(SHARE.1, 1.0);
+        let share = spare.zip(whole).map_or(most, |(spare, whole)| (spare / whole).clamp(SHARE.0, most));
         share as f32
     }
 

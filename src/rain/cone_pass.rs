@@ -80,7 +80,7 @@ impl ConePass {
             *slot = Some(fullscreen(
                 device,
                 &FullscreenDesc {
-                    shader: if kind.multi { "rain/cones_multi.wgsl" } else { "rain/cones_single.wgsl" },
+                    shader: if kind.multi { "rain/cones_view.wgsl:multi" } else { "rain/cones_view.wgsl" },
                     entry: "cones_fragment",
                     layouts: &[frame, &self.layout, around],
                     targets: &[wgpu::ColorTargetState {

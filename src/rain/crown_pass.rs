@@ -65,7 +65,7 @@ impl CrownPass {
         let [multi, areas, maps] = kind;
         let make = &mut self.makes[key(kind)];
         if make.is_none() {
-            let shader = if multi { "rain/crowns_multi.wgsl" } else { "rain/crowns_single.wgsl" };
+            let shader = if multi { "rain/crowns_view.wgsl:multi" } else { "rain/crowns_view.wgsl" };
             let flag = |name, on| (name, f64::from(u8::from(on)));
             let constants = [flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(&self.layout), Some(around)];

@@ -301,7 +301,7 @@ pub(super) fn listed_pipeline(
     ([vertex, fragment], attributes, bytes): ([&str; 2], &[wgpu::VertexAttribute], u64),
     (multi, has_depth): (bool, bool),
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
+    let module = device.shader(if multi { "rain/drops_view.wgsl:multi" } else { "rain/drops_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     Ok(pass::quads(
         device,

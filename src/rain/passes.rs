@@ -355,7 +355,7 @@ fn pipeline(
     (multi, has_depth, maps): (bool, bool, bool),
     areas: bool,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(if multi { "rain/drops_multi.wgsl" } else { "rain/drops_single.wgsl" })?;
+    let module = device.shader(if multi { "rain/drops_view.wgsl:multi" } else { "rain/drops_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     // Mixtures take each column by itself: what lies over what is in their order.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];

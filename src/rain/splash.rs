@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn offsets_are_those_of_the_shader() {
         shader::assert_layout!(
-            "rain/drops_single.wgsl",
+            "rain/drops_view.wgsl",
             "SplashUniform",
             SplashUniform,
             [cell, place, side, life, slots, cells, tick, part, share, ground, reach, depth_grain, sizes]

@@ -102,7 +102,7 @@ fn pipeline(
     vertex: &str,
     (multi, has_depth, maps): Depth,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(if multi { "rain/stones_multi.wgsl" } else { "rain/stones_single.wgsl" })?;
+    let module = device.shader(if multi { "rain/stones_view.wgsl:multi" } else { "rain/stones_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     let near = [("MAPS", f64::from(u8::from(maps)))];
     Ok(pass::quads(

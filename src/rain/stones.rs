@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn offsets_are_those_of_the_shader() {
         shader::assert_layout!(
-            "rain/stones_single.wgsl",
+            "rain/stones_view.wgsl",
             "StoneUniform",
             StoneUniform,
             [

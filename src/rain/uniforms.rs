@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn offsets_are_those_of_the_shader() {
         shader::assert_layout!(
-            "rain/drops_single.wgsl",
+            "rain/drops_view.wgsl",
             "RainUniform",
             RainUniform,
             [

@@ -1,8 +1,9 @@
-// The gauge over a host's resolved picture, whose depth has several samples a pixel: the first stands for them.
+// The gauge over a host's picture; where that has several samples a pixel, the first stands for them.
+//!include "common/host.wgsl"
 //!include "plan/gauge.wgsl"
 
-@group(0) @binding(1) var host_color: texture_2d<f32>;
-@group(0) @binding(2) var host_depth: texture_multisampled_2d<f32>;
+@group(0) @binding(1) var host_color: HostColor;
+@group(0) @binding(2) var host_depth: HostDepth;
 @group(0) @binding(3) var host_mask: texture_2d<f32>;
 
 override HAS_DEPTH: bool = true;

@@ -1,5 +1,5 @@
-// The crowns of all slots, once each: before a host's picture with several samples a pixel.
-//!include "rain/drops_multi.wgsl"
+// The crowns of all slots, once each, before a host's picture.
+//!include "rain/drops_view.wgsl"
 
 @group(1) @binding(0) var<storage, read_write> crowns: array<Crown>;
 

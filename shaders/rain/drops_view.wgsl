@@ -1,7 +1,8 @@
-// Drops before a host's picture with several samples a pixel: its first stands for them.
+// Drops before a host's picture; where that has several samples a pixel, the first stands for them.
+//!include "common/host.wgsl"
 //!include "rain/splash.wgsl"
 
-@group(0) @binding(1) var host_depth: texture_multisampled_2d<f32>;
+@group(0) @binding(1) var host_depth: HostDepth;
 
 override HAS_DEPTH: bool = true;
 

@@ -1,5 +1,5 @@
-// Stones before a host's picture with several samples a pixel: its first stands for them.
-//!include "rain/drops_multi.wgsl"
+// Stones before a host's picture.
+//!include "rain/drops_view.wgsl"
 //!include "rain/stones.wgsl"
 
 @vertex

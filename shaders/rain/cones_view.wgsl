@@ -1,7 +1,8 @@
-// Rain on cones before a host's picture with one sample a pixel.
+// Rain on cones before a host's picture; where that has several samples a pixel, the first stands for them.
+//!include "common/host.wgsl"
 //!include "rain/cones.wgsl"
 
-@group(0) @binding(1) var host_depth: texture_2d<f32>;
+@group(0) @binding(1) var host_depth: HostDepth;
 
 override HAS_DEPTH: bool = true;
 
