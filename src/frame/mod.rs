@@ -10,6 +10,7 @@ mod froxels;
 mod lens;
 mod light;
 mod measure;
+mod picture;
 mod pipelines;
 mod planned;
 mod rain;

@@ -6,6 +6,7 @@
 //! [`Plan`] says what was chosen and why, and the error to expect; [`Prediction`] holds that against what was. A plan can be
 //! saved and pinned elsewhere ([`View::save_plan`](crate::frame::View::save_plan)).
 
+mod budget;
 mod choice;
 pub mod difference;
 pub mod estimate;
@@ -18,11 +19,12 @@ mod saved;
 mod search;
 mod work;
 
+pub use budget::{Budget, Wish};
 pub use difference::{Difference, difference};
 pub use estimate::Estimate;
 pub use governor::GaveWay;
 pub use parts::{Part, Reason, StepWork};
-pub use planner::{Budget, PartPlan, Plan, Prediction, Wish};
 pub(crate) use planner::{PartNow, Planner, Present, Situation, Unseen};
+pub use planner::{PartPlan, Plan, Prediction};
 pub(crate) use saved::{Settings, read, write};
 pub use work::{Listed, Price, Units, Work};

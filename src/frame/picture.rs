@@ -1,0 +1,99 @@
+//! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
+
+use super::{
+    Frame, View,
+    froxels::Froxels,
+    measure::Recording,
+    target::{can_copy, color_copy, is_copy_of},
+};
+use crate::{
+    error::Result,
+    gpu::{KeptLayer, Layer, is_kept},
+};
+
+/// The textures of one bind group: it is made anew only when the host hands over others.
+#[derive(PartialEq)]
+pub(super) struct Bound {
+    color: KeptLayer,
+    depth: Option<KeptLayer>,
+    mask: Option<KeptLayer>,
+    surface_classes: Option<KeptLayer>,
+    normals: Option<KeptLayer>,
+    own: OwnViews,
+}
+
+/// The drops before the picture, water and surface of the host's terrain.
+pub(super) type OwnViews = [Option<wgpu::TextureView>; 3];
+
+impl View {
+    /// Bytes of GPU memory the view holds for itself.
+    pub(super) fn bytes(&self) -> u64 {
+        let copy = self.copy.as_ref().map_or(0, |c| {
+            let texel = u64::from(c.format().block_copy_size(None).unwrap_or(4));
+            texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
+        });
+        copy + self.froxels.as_ref().map_or(0, Froxels::bytes)
+            + self.rain.bytes()
+            + self.glass.as_ref().map_or(0, |g| g.bytes())
+    }
+
+    /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
+    pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
+        let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
+        let fits = self.copy.as_ref().is_some_and(|c| match &reading {
+            Some(reading) => c == reading,
+            None => is_copy_of(c, color),
+        });
+        if !fits {
+            // The old one is bound there.
+            self.bound = None;
+            self.copy = Some(reading.unwrap_or_else(|| color_copy(&self.device.device, color)));
+            self.report.bytes = self.bytes();
+        }
+        Ok(!fits)
+    }
+
+    /// Brings the colour copy up to date with all that was recorded.
+    pub(super) fn take_picture(&mut self, color: Layer<'_>, to: &mut Recording<'_>) -> Result<()> {
+        self.hold_copy(color.texture)?;
+        if !can_copy(color.texture) {
+            to.flush();
+            return self.device.refresh(color.texture);
+        }
+        if let Some(copy) = &self.copy {
+            color.copy(to.encoder, copy);
+        }
+        Ok(())
+    }
+
+    /// Makes the bind group anew if the host's textures are others than last time.
+    pub(super) fn bind(&mut self, frame: &Frame<'_>, color: Layer<'_>, own: OwnViews) -> Result<()> {
+        let same = self.bound.as_ref().is_some_and(|(b, ..)| {
+            color == b.color
+                && is_kept(frame.depth_layer(), b.depth.as_ref())
+                && is_kept(frame.mask_layer(), b.mask.as_ref())
+                && is_kept(frame.classes_layer(), b.surface_classes.as_ref())
+                && is_kept(frame.normals_layer(), b.normals.as_ref())
+                && b.own == own
+        });
+        if same {
+            return Ok(());
+        }
+        let Some(copy) = &self.copy else { return Ok(()) };
+        let blocks = [&self.uniform, &self.fog, &self.ground];
+        let group =
+            self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
+        let target = color.view();
+        let kept = |layer: Option<Layer<'_>>| layer.map(Layer::kept);
+        let bound = Bound {
+            color: color.kept(),
+            depth: kept(frame.depth_layer()),
+            mask: kept(frame.mask_layer()),
+            surface_classes: kept(frame.classes_layer()),
+            normals: kept(frame.normals_layer()),
+            own,
+        };
+        self.bound = Some((bound, group, target));
+        Ok(())
+    }
+}
