@@ -1,4 +1,5 @@
-//! Rooms and arrows: which room of `src/` and which folder of `shaders/` uses which, held against the table of ARCHITECTURE.md.
+//! Rooms and arrows: which room of `src/` and which folder of `shaders/` uses which, held against the table of ARCHITECTURE.md. And how
+//! long functions are.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -170,4 +171,47 @@ fn arrows_and_circles_are_found() {
     assert_eq!(circle(&Arrows::from([arrow("a", "b"), arrow("b", "c")])), None);
     let round = Arrows::from([arrow("a", "b"), arrow("b", "c"), arrow("c", "b")]);
     assert_eq!(circle(&round), Some(vec!["b".to_string(), "c".to_string()]));
+}
+
+/// Functions of a file by their first lines' indentation: name and number of lines.
+fn functions(text: &str) -> Vec<(String, usize)> {
+    let mut open: Option<(String, usize, usize)> = None;
+    let mut found = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let indent = line.len() - line.trim_start().len();
+        let code = line.trim_start();
+        let before = ["pub ", "pub(super) ", "pub(crate) ", "pub(in crate::capi) ", "const ", "unsafe "];
+        let before = before.into_iter().chain(["extern \"C\" ", "extern \"system\" "]);
+        let begins = before.fold(code, |rest, word| rest.strip_prefix(word).unwrap_or(rest)).starts_with("fn ");
+        if begins && open.is_none() && !code.ends_with(['}', ';']) {
+            let after = code.split("fn ").nth(1).unwrap_or("");
+            let name = after.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            open = Some((name, i, indent));
+        } else if let Some((name, start, at)) = &open
+            && indent == *at
+            && code == "}"
+        {
+            found.push((name.clone(), i - start + 1));
+            open = None;
+        }
+    }
+    found
+}
+
+#[test]
+fn functions_fit_a_screen() {
+    let mut count = 0;
+    for (_, path) in files("src", "rs").into_iter().filter(|(_, path)| !path.ends_with("tests.rs")) {
+        let text = read(&path);
+        let code = text.split("#[cfg(test)]\nmod tests").next().expect("a first part");
+        let most = if path.ends_with("frame/view.rs") { 60 } else { 80 };
+        for (name, lines) in functions(code) {
+            assert!(lines <= most, "{}: {name} has {lines} lines", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 1000, "{count} functions found");
+    let two =
+        functions("impl A {\n    pub fn a(\n    ) {\n        b();\n    }\n}\n\nunsafe extern \"C\" fn c() {\n}\n");
+    assert_eq!(two, [("a".to_string(), 4), ("c".to_string(), 2)]);
 }

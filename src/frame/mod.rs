@@ -6,6 +6,7 @@
 mod areas;
 mod check;
 mod composite;
+mod draw;
 mod froxels;
 mod lens;
 mod light;

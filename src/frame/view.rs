@@ -8,28 +8,27 @@ use std::{
 use super::{
     Frame, FrameFlags,
     check::rays,
-    composite::Variant,
+    draw::Shot,
     froxels::{FrameTextures, Froxels},
     measure::{Effect, Recording, Report},
     picture::Bound,
     pipelines::Pipelines,
-    planned::{self, AIR, FOG, RAIN, SKY, situation},
+    planned,
     rain::Rain,
     surface,
-    target::{ColorSpace, Sampling, Stages, can_be_apart, can_copy},
-    uniform::{FrameUniform, uniform},
+    target::{Stages, can_be_apart, can_copy},
+    uniform::FrameUniform,
     unit::UnitWatch,
 };
 use crate::{
     context::{Context, Scene},
     error::{Error, Result},
-    fog::{FogKind, FogUniform, FogVariant},
+    fog::FogUniform,
     glass::Glass,
-    gpu::{Device, Layer},
+    gpu::Device,
     ground::GroundUniform,
     plan::Planner,
     rain::{RainSettings, Streaks},
-    scene::ViewRays,
     sky::SkyVolume,
     surroundings::Around,
 };
@@ -47,15 +46,15 @@ pub struct View {
     pub(super) sky: SkyVolume,
     pub(super) froxels: Option<Froxels>,
     pub(super) rain: Rain,
-    around: Around,
+    pub(super) around: Around,
     pub(super) planner: Planner<Streaks>,
-    planned_for: Option<u64>,
-    light_scale: f32,
-    unit: UnitWatch,
+    pub(super) planned_for: Option<u64>,
+    pub(super) light_scale: f32,
+    pub(super) unit: UnitWatch,
     pub(super) recorded: Stages,
     pub(super) report: Report,
     /// What the last measured call took, its wait for earlier work included.
-    last_call: Option<Duration>,
+    pub(super) last_call: Option<Duration>,
 }
 
 impl View {
@@ -277,7 +276,9 @@ impl View {
             self.prepare_lens(context, frame, &scene, to)?;
         }
         self.rain.veiled = self.recorded.with(asked).has(Stages::MEDIUM);
-        if let Some(rays) = rays {
+        if let (Some(rays), Some(color)) = (rays, frame.color_layer()) {
+            let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
+            let at = Shot { context, frame, scene: &scene, rays: &rays, color, exposure };
             // The glass lies before the tone curve, where the target can hold the picture between them.
             let mut lens = self.shows_lens(stages);
             let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
@@ -292,7 +293,7 @@ impl View {
                     self.draw_lens(frame, false, to)?;
                     lens = false;
                 }
-                self.draw(context, frame, part, &scene, &rays, to)?;
+                self.draw(&at, part, to)?;
             }
             if lens {
                 self.draw_lens(frame, stages.has(Stages::TONE), to)?;
@@ -312,151 +313,6 @@ impl View {
         let drawn = self.sky.prepare(to.encoder, &tables, &scene.observer(pure))?;
         to.ends(Effect::SkyView, drawn)?;
         self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
-        Ok(())
-    }
-
-    fn draw(
-        &mut self,
-        context: &Context,
-        frame: &Frame<'_>,
-        stages: Stages,
-        scene: &Scene,
-        rays: &ViewRays,
-        to: &mut Recording<'_>,
-    ) -> Result<()> {
-        let Some(layer) = frame.color_layer() else { return Ok(()) };
-        let color = layer.texture;
-        let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
-        let stages = if tone { stages } else { stages.without(Stages::TONE) };
-        let fog = scene.fog_model(context.fog_law(), context.seed(), context.planet_radius_m())?;
-        let mut variant = Variant {
-            stages: stages.without(Stages::PREPARE.with(Stages::LENS)),
-            format: color.format(),
-            samples: color.sample_count(),
-            sampling: Sampling::of(color, frame.depth),
-            has_depth: frame.depth.is_some(),
-            has_mask: frame.mask.is_some(),
-            has_classes: frame.surface_classes.is_some(),
-            has_normals: frame.normals.is_some(),
-            // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
-            fog: (fog.kind != FogKind::Clear)
-                .then(|| if self.device.caps().software { fog.variant() } else { FogVariant::ALL }),
-            depth_kinds: rays.depth_kinds(),
-            march: context.marches_sky(),
-            terrain: false,
-            around: Default::default(),
-            air: true,
-            sky: true,
-        };
-        if variant.stages == Stages(0) {
-            return Ok(());
-        }
-        let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
-        self.report.exposure = exposure;
-        let situation = situation(frame, scene);
-        if self.planned_for != Some(frame.frame_id) {
-            self.planned_for = Some(frame.frame_id);
-            let rain = variant.stages.has(Stages::PARTICLES) && self.rain.is_planned();
-            let parts = [
-                variant.has_depth && variant.stages.has(Stages::MEDIUM),
-                variant.fog.is_some() && variant.stages.has(Stages::MEDIUM),
-                variant.stages.has(Stages::BACKGROUND),
-                rain,
-            ];
-            let pixels = u64::from(color.width()) * u64::from(color.height());
-            let drops = if rain { self.rain.drops(&self.device, scene) } else { 0 };
-            let present = planned::present(parts, pixels, 1 + u32::from(scene.moon.matters), drops);
-            let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
-            self.planner.begin(&self.device, &situation, &present, pure);
-            self.report.prediction = self.planner.prediction();
-        }
-        let [air, fog_drawn, sky] = [AIR, FOG, SKY].map(|part| self.planner.drawn(part, 0));
-        let drawn = [air, fog_drawn, sky, 1.0];
-        self.rain.follow([1, 0].map(|rung| self.planner.drawn(RAIN, rung)));
-        let drops = self.rain.draws().then(|| self.rain.layer(&self.device, color).clone());
-        if drops.is_none() {
-            variant.stages = variant.stages.without(Stages::PARTICLES);
-        }
-        let [water, terrain] = context.terrain_views(variant.stages.has(Stages::SURFACE));
-        self.hold_copy(color)?;
-        self.bind(frame, layer, [drops, water, terrain])?;
-        let mut block = uniform(frame, scene, rays, color, exposure, context, (tone, drawn));
-        if self.rain.shows() {
-            (block.drops, block.drawn[3]) = self.rain.hidden(&self.device, context, scene);
-        }
-        block.compositions = self.planner.compositions(self.rain.is_planned());
-        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
-        if variant.fog.is_some() {
-            self.device.queue.write_buffer(&self.fog, 0, bytemuck::bytes_of(&fog.uniform()));
-        }
-        if variant.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            let near = self.rain.slowest_and_reach(&self.device, scene);
-            let told = surface::around(context, scene, frame, near, exposure)?;
-            self.around.follow(&self.device, &told);
-            if variant.stages.has(Stages::SURFACE) {
-                variant.around = told.present();
-                variant.terrain = context.ground_grid().is_some();
-            }
-        }
-        if variant.stages.has(Stages::PARTICLES) {
-            let (shared, blocks) = ((&self.device, &*self.shared), [&self.uniform, &self.fog]);
-            let constants = variant.reduced(drawn).veil_constants();
-            let layer = (&mut *to.encoder, frame, color);
-            let over = self.rain.draw_areas(shared, layer, (context, scene), (blocks, &self.sky), &constants)?;
-            let at = (context, scene, rays);
-            let with = (exposure, over, &self.around);
-            self.report.rain = self.rain.draw(&self.device, (&mut *to.encoder, frame, color), at, with)?;
-            self.report.passes += 1 + u32::from(over);
-        }
-        if variant.stages.has(Stages::SURFACE) {
-            let block = surface::uniform(frame, color, context, scene, &fog)?;
-            self.device.queue.write_buffer(&self.ground, 0, bytemuck::bytes_of(&block));
-        }
-        self.take_picture(layer, to)?;
-        if variant.stages.has(Stages::MEDIUM) {
-            let white = scene.ground.total_lux / std::f64::consts::PI;
-            self.unit.watch(&self.device, to.encoder, frame, (white, self.recorded.has(Stages::BACKGROUND)));
-        }
-        let Some((_, group, target)) = &self.bound else { return Ok(()) };
-        let mut composite = self.shared.composite()?;
-        // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
-        let least = if self.device.caps().software { variant.reduced(drawn) } else { variant };
-        let pipeline = composite.pipeline(&self.device, least)?;
-        let groups = [group, self.sky.bind_group(), self.around.bind_group()];
-        crate::gpu::pass::draw(to.encoder, "composite", pipeline, &groups, target);
-        self.report.passes += 1;
-        if variant.stages.has(Stages::MEDIUM)
-            && let Some(gauge) = self.planner.due(&situation, || {
-                self.rain.streaks(&self.device, (frame, color.height(), exposure), (context, scene, rays))
-            })
-        {
-            let [_, (shader, _)] = variant.sampling.shaders();
-            let (constants, layouts) = (variant.constants(), composite.layouts(variant.sampling));
-            gauge.record(&self.device, to.encoder, (shader, &constants), &layouts, &groups)?;
-            self.report.passes += 1;
-        }
-        drop(composite);
-        to.ends(Effect::of(variant.stages), true)?;
-        self.light_scale = match frame.color_space {
-            ColorSpace::SceneLinear => (1.0 / (exposure * frame.cd_m2_per_unit)) as f32,
-            ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,
-        };
-        if let (Some(froxels), true) = (&mut self.froxels, stages.has(Froxels::STAGE)) {
-            let areas = self.rain.veiling_areas(&self.device, frame, (context, scene), [&self.uniform, &self.fog]);
-            let own = areas.map(|(_, group)| [group, self.sky.bind_group()]);
-            // That of areas has no colour in it.
-            let several = frame.depth_layer().is_some_and(Layer::is_multisampled);
-            let sampling = match areas {
-                Some(_) if several => Sampling::Multi,
-                Some(_) => Sampling::Single,
-                None => variant.sampling,
-            };
-            let variant = (sampling, variant.fog.is_some(), variant.march);
-            let groups = (areas.map(|(layout, _)| layout), own.as_ref().map_or(&groups[..], |g| &g[..]));
-            froxels.draw(&self.device, &self.shared, to.encoder, variant, groups)?;
-            self.report.passes += 1;
-            to.ends(Effect::Veil, true)?;
-        }
         Ok(())
     }
 }

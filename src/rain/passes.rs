@@ -153,6 +153,30 @@ impl RainLayer {
             .1
     }
 
+    /// Makes stones and cones ready, and what keeps rain off these.
+    fn prepare_far(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        drawn: &Drawn<'_>,
+        (picture, kind): (wgpu::Extent3d, (bool, bool, bool)),
+        cone_kind: ConeKind,
+    ) -> Result<()> {
+        let frame = [&self.layouts[usize::from(kind.0)], &self.around];
+        if let Some(stones) = &drawn.stones {
+            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
+        }
+        if let Some(block) = drawn.cones {
+            let cones = self.cones.get_or_insert_with(|| ConePass::new(device));
+            cones.prepare(device, block, frame, cone_kind)?;
+            if cone_kind.sheltered {
+                let told = (&self.blocks, &self.around, drawn.around);
+                cones.shelter(device, encoder, told, (picture, drawn.maps))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Draws the drops for a picture like `color` with the host's `depth`, and where there is depth their splashes.
     ///
     /// # Errors
@@ -175,18 +199,7 @@ impl RainLayer {
         let cone_kind = ConeKind { multi, has_depth: depth.is_some(), sheltered, areas };
         let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
         let over = (drawn.over, drawn.around.bind_group());
-        let frame = [&self.layouts[usize::from(multi)], &self.around];
-        if let Some(stones) = &drawn.stones {
-            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
-        }
-        if let Some(block) = drawn.cones {
-            let cones = self.cones.get_or_insert_with(|| ConePass::new(device));
-            cones.prepare(device, block, frame, cone_kind)?;
-            if sheltered {
-                let told = (&self.blocks, &self.around, drawn.around);
-                cones.shelter(device, encoder, told, (color.size(), drawn.maps))?;
-            }
-        }
+        self.prepare_far(device, encoder, drawn, (color.size(), kind), cone_kind)?;
         if drawn.rain.shells == 0 {
             self.draw_into(encoder, over, |pass, layer| {
                 if drawn.cones.is_some() {
@@ -209,6 +222,7 @@ impl RainLayer {
                 .zip([["rain_vertex", "rain_fragment"], ["splash_vertex", "crown_fragment"]])
             {
                 if slot.is_none() {
+                    let frame = [&self.layouts[usize::from(multi)], &self.around];
                     *slot = Some(pipeline(device, frame, entries, kind, areas)?);
                 }
             }

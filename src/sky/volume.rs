@@ -229,10 +229,9 @@ impl SkyVolume {
         let mut lit = observer.lamps.iter().flatten().filter(|l| l.is_lit());
         let lamps: [Option<&Lamp>; LAMPS] = std::array::from_fn(|_| lit.next());
         let lamps = || lamps.iter().flatten().copied();
-        let (place, busy) = (observer.altitude_m, tables.is_busy());
         let mu_s: [Option<f64>; LAMPS] = std::array::from_fn(|i| lamps().nth(i).map(|l| l.toward[2]));
         let drawn = match tables.shown().cloned() {
-            Some(shown) => self.follow(encoder, tables, &shown, (place, mu_s, observer.exact, busy))?,
+            Some(shown) => self.follow(encoder, tables, &shown, observer, mu_s)?,
             None => false,
         };
         let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
@@ -262,11 +261,13 @@ impl SkyVolume {
         encoder: &mut wgpu::CommandEncoder,
         tables: &SkyTables,
         shown: &TableSet,
-        (altitude_m, mu_s, exact, busy): (f64, [Option<f64>; LAMPS], bool, bool),
+        observer: &Observer,
+        mu_s: [Option<f64>; LAMPS],
     ) -> Result<bool> {
+        let altitude_m = observer.altitude_m;
         let serves = |drawn: &Option<Drawn>, mu_s: f64| {
-            let step = if busy { SUN_STEP.1 } else { SUN_STEP.0 };
-            drawn.filter(|d| match exact {
+            let step = if tables.is_busy() { SUN_STEP.1 } else { SUN_STEP.0 };
+            drawn.filter(|d| match observer.exact {
                 true => d.altitude_m == altitude_m && d.mu_s == mu_s,
                 false => {
                     (d.altitude_m - altitude_m).abs() <= 2e-3 * altitude_m.abs() + 1e-2 && (d.mu_s - mu_s).abs() <= step
