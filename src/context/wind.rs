@@ -78,13 +78,39 @@ impl Context {
         Ok(self.blowing(time_s)?.velocity_m_s().extend(0.0))
     }
 
-    /// How far the wind has carried the air between two moments, m: the difference of [`Context::wind_displacement`], and
-    /// before what the timeline knows the wind of its first moment.
-    pub(crate) fn carried(&self, from_s: f64, to_s: f64) -> DVec3 {
-        let at = |t: f64| self.wind.blowing(&self.timeline, self.drifted, t);
-        let known_s = from_s.max(self.timeline.known_from_s()).min(to_s);
-        let first = at(known_s);
-        let since = at(to_s).drift.displacement_m - first.drift.displacement_m;
+    /// The wind that carries the air, up to a moment.
+    ///
+    /// # Errors
+    /// For times as [`Context::conditions_at`].
+    pub(crate) fn carrying_until(&self, time_s: f64) -> Result<Carrying<'_>> {
+        Ok(Carrying { context: self, time_s, now: self.blowing(time_s)? })
+    }
+}
+
+/// The wind that carries the air, up to a moment: worked out once for all that asks since when.
+pub(crate) struct Carrying<'a> {
+    context: &'a Context,
+    time_s: f64,
+    now: Blowing,
+}
+
+impl Carrying<'_> {
+    /// [`Context::wind_displacement`] then.
+    pub fn displacement_m(&self) -> DVec3 {
+        self.now.drift.displacement_m.extend(0.0)
+    }
+
+    /// [`Context::carrying_wind`] then.
+    pub fn velocity_m_s(&self) -> DVec3 {
+        self.now.velocity_m_s().extend(0.0)
+    }
+
+    /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its first one.
+    pub fn since(&self, from_s: f64) -> DVec3 {
+        let c = self.context;
+        let known_s = from_s.max(c.timeline.known_from_s()).min(self.time_s);
+        let first = c.wind.blowing(&c.timeline, c.drifted, known_s);
+        let since = self.now.drift.displacement_m - first.drift.displacement_m;
         (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
     }
 }

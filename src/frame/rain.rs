@@ -375,9 +375,10 @@ impl Rain {
         let (classes, mut local) = self.falling_here(device, scene);
         let shot = self.shot(frame, color.height(), (scene, rays));
         let c = &scene.conditions;
+        let wind = context.carrying_until(context.time_s())?;
         let air = Air {
-            displacement_m: context.wind_displacement(context.time_s())?,
-            velocity_m_s: context.carrying_wind(context.time_s())?,
+            displacement_m: wind.displacement_m(),
+            velocity_m_s: wind.velocity_m_s(),
             time_s: context.time_s(),
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
@@ -393,7 +394,7 @@ impl Rain {
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
-        let carried = |from, to| context.carried(from, to);
+        let carried = |from| wind.since(from);
         let cones = (wet && self.has_cones(context)).then(|| {
             let there = self.falling_at(device, scene);
             local.iter_mut().for_each(|l| l.set_cones(there.extinction_per_m));

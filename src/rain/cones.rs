@@ -93,11 +93,11 @@ fn frame(axis: DVec3) -> (DVec3, DVec3) {
     (turn * DVec3::X, turn * DVec3::Y)
 }
 
-/// What has carried a set since its birth: displacement of the air from the first moment (s) to the second, m.
-pub(crate) type Carried<'a> = &'a dyn Fn(f64, f64) -> DVec3;
+/// How far the wind has carried the air since a moment (s), m.
+pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
 impl ConeUniform {
-    /// For a camera in the air; `carried` answers how far the wind has gone between two moments.
+    /// For a camera in the air; `carried` answers how far the wind has gone since a moment.
     pub fn new(seed: u32, classes: &Classes, shot: &Shot<'_>, air: &Air, carried: Carried<'_>) -> Self {
         let mean = Mean::of(classes);
         let fall = DVec3::Z * mean.fall_m_s;
@@ -125,7 +125,7 @@ impl ConeUniform {
                 let turns = air.time_s / life + 0.5 * f64::from(p);
                 let age = turns - turns.floor();
                 let since = age * life;
-                let moved = carried(air.time_s - since, air.time_s) - (fall + shot.velocity_m_s) * since;
+                let moved = carried(air.time_s - since) - (fall + shot.velocity_m_s) * since;
                 let chance = random3([seed, (2 * j as u32) | p | 0x7000_0000, turns.floor() as i64 as u32]);
                 let share = 1.0 - (2.0 * age - 1.0).abs();
                 let [x, y] = [chance[0], chance[1]].map(|r| f64::from(r) / 4_294_967_296.0);

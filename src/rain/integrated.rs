@@ -79,7 +79,7 @@ impl StepUniform {
         shot: &Shot<'_>,
         air: &Air,
         left: Option<Left>,
-        carried: &dyn Fn(f64, f64) -> DVec3,
+        carried: &dyn Fn(f64) -> DVec3,
         around: Option<Around<'_>>,
         capacity: u32,
     ) -> Option<Self> {
@@ -93,7 +93,7 @@ impl StepUniform {
         }
         let steps = (dt / STEP_S).ceil().clamp(1.0, MOST_STEPS);
         let blows = match left {
-            Some(l) if dt > 0.0 => carried(l.time_s, air.time_s) / dt,
+            Some(l) if dt > 0.0 => carried(l.time_s) / dt,
             _ => air.velocity_m_s,
         };
         let places = |p: DVec3| {

@@ -45,7 +45,7 @@ pub(crate) struct Stepped<'a> {
     pub air: &'a Air,
     /// Nothing of earlier frames may show.
     pub anew: bool,
-    pub carried: &'a dyn Fn(f64, f64) -> glam::DVec3,
+    pub carried: &'a dyn Fn(f64) -> glam::DVec3,
     /// The grid, and the camera's place in cells of it.
     pub around: Option<(&'a Arc<WindGrid>, glam::DVec3)>,
     /// Drops of all shells that there is room for.

@@ -218,7 +218,7 @@ fn a_lamp_above_wet_paving_has_its_image_below_it_by_fresnels_law_and_none_on_dr
         let (sin, cos) = elevation.to_radians().sin_cos();
         // The water's middle mirrors the lamp; the eye is one metre from it, the lamp two.
         let eye = at + DVec3::new(0.0, -cos, sin);
-        let position_m = at + 2.0 * DVec3::new(0.02, cos, sin);
+        let position_m = at + 2.0 * DVec3::new(0.0, cos, sin);
         let lamp = HostLight {
             position_m,
             direction: -DVec3::Z,

@@ -81,7 +81,7 @@ impl Bench {
             shot: &shot,
             air: &air,
             anew: false,
-            carried: &|from, to| wind * (to - from),
+            carried: &|from| wind * (time_s - from),
             around: grid.map(|g| (g, g.cells_at(position_m, glam::DMat3::IDENTITY))),
             most: self.most,
         };
