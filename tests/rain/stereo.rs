@@ -25,7 +25,7 @@ const SHIFT: u32 = 6;
 fn eyes(head: DVec3) -> [Camera; 2] {
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
     [-1.0, 1.0].map(|side| {
-        let eye = head - DVec3::X * (0.5 * side * APART_M);
+        let eye = head + DVec3::X * (0.5 * side * APART_M);
         let mut camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 0.9, width / height, NEAR_M);
         camera.projection.z_axis.x = -side * f64::from(SHIFT) / width;
         camera
