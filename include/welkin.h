@@ -2468,7 +2468,7 @@ typedef struct wk_conditions {
     const void *next;
     /** Total extinction at station height and 550 nm, 1/m. */
     double extinction_per_m;
-    /** Meteorological optical range at station height, m. */
+    /** Meteorological optical range at station height, m; at most 1e9, as without any air. */
     double visibility_m;
     /** Air temperature at 2 m, degrees Celsius. */
     double temperature_c;

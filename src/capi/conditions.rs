@@ -37,7 +37,7 @@ pub struct wk_conditions {
     pub next: *const c_void,
     /// Total extinction at station height and 550 nm, 1/m.
     pub extinction_per_m: f64,
-    /// Meteorological optical range at station height, m.
+    /// Meteorological optical range at station height, m; at most 1e9, as without any air.
     pub visibility_m: f64,
     /// Air temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,

@@ -334,9 +334,10 @@ impl Falling {
 }
 
 impl Conditions {
-    /// Meteorological optical range at station height, m: ln 20 / [`Conditions::extinction_per_m`].
+    /// Meteorological optical range at station height, m: ln 20 / [`Conditions::extinction_per_m`], and 1e9 where less than that takes
+    /// light, as without any air.
     pub fn visibility_m(&self) -> f64 {
-        LN_20 / self.extinction_per_m
+        (LN_20 / self.extinction_per_m).min(1e9)
     }
 
     /// The cloud layers that are there, in slot order (low, middle, high classes).

@@ -1,7 +1,10 @@
 //! Whatever weather is accepted, everything that a host can ask for has an answer, and a frame can be drawn of it.
 
 use glam::DVec3;
-use welkin::context::{Context, GivenDirection, RainSurface};
+use welkin::{
+    context::{Context, GivenDirection, RainSurface},
+    weather::{Overrides, Weather, derive_with},
+};
 
 use crate::{
     host::{Dice, Host},
@@ -100,6 +103,20 @@ fn every_random_weather_answers() {
         }
     }
     report(count, &faults);
+}
+
+#[test]
+fn without_any_air_the_visibility_is_a_number() {
+    let none = Some(0.0);
+    let overrides = Overrides {
+        aerosol_extinction_per_m: none,
+        fog_extinction_per_m: none,
+        precipitation_extinction_per_m: none,
+        rayleigh_density_ratio: none,
+        ..Overrides::default()
+    };
+    let conditions = derive_with(&Weather::default(), &overrides).unwrap();
+    assert_eq!((conditions.extinction_per_m, conditions.visibility_m()), (0.0, 1e9));
 }
 
 /// Each number at both of its ends, alone and with each other at both of its.
