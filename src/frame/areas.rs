@@ -172,7 +172,7 @@ impl AreaPass {
                 mapped_at_creation: false,
             }),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            none: bind::nothing(&device.device),
+            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             pipelines: Recent::new(),
             bound: None,
         }

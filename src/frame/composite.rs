@@ -149,7 +149,7 @@ impl Composite {
             layout_sky: SkyVolume::view_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: Recent::new(),
-            none: bind::nothing(&device.device),
+            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             reads_samples: multi,
         }
     }

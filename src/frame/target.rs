@@ -1,7 +1,10 @@
 //! What a host hands over to be drawn into: colour, depth, mask, and how to read them.
 
 use super::{Frame, uniform::is_float};
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    gpu::check_depth_format,
+};
 
 /// What the numbers in the host's colour texture mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -112,21 +115,7 @@ pub(super) fn can_copy(color: &wgpu::Texture) -> bool {
 /// # Errors
 /// As [`check_color`].
 pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
-    use wgpu::TextureFormat as F;
-    let format = texture.format();
-    if !matches!(
-        format,
-        F::Depth16Unorm
-            | F::Depth24Plus
-            | F::Depth24PlusStencil8
-            | F::Depth32Float
-            | F::Depth32FloatStencil8
-            | F::R32Float
-    ) {
-        return Err(Error::unsupported(format!(
-            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
-        )));
-    }
+    check_depth_format(texture.format())?;
     if (texture.width(), texture.height()) != (color.width(), color.height()) {
         return Err(Error::range(
             "depth",

@@ -80,14 +80,14 @@ pub(crate) fn layout(
 }
 
 /// A texture of one texel that stands for one that the host does not give: bound, not read.
-pub(crate) fn nothing(device: &wgpu::Device) -> wgpu::TextureView {
+pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("nothing"),
         size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });

@@ -1,5 +1,7 @@
 //! One layer of a host's image: what a frame draws into and reads.
 
+use crate::error::{Error, Result};
+
 /// One layer of a texture; a plain texture has layer 0 alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer<'a> {
@@ -57,4 +59,26 @@ pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> boo
         (None, None) => true,
         _ => false,
     }
+}
+
+/// Refuses a format whose depth shaders cannot read.
+///
+/// # Errors
+/// [`crate::Status::Unsupported`] naming those that they can.
+pub(crate) fn check_depth_format(format: wgpu::TextureFormat) -> Result<()> {
+    use wgpu::TextureFormat as F;
+    if !matches!(
+        format,
+        F::Depth16Unorm
+            | F::Depth24Plus
+            | F::Depth24PlusStencil8
+            | F::Depth32Float
+            | F::Depth32FloatStencil8
+            | F::R32Float
+    ) {
+        return Err(Error::unsupported(format!(
+            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
+        )));
+    }
+    Ok(())
 }

@@ -23,5 +23,5 @@ mod shared;
 mod stand_in;
 mod x11;
 pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};
-pub(crate) use layer::{KeptLayer, Layer, is_kept};
+pub(crate) use layer::{KeptLayer, Layer, check_depth_format, is_kept};
 pub use shared::Shared;

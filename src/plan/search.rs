@@ -1,8 +1,8 @@
 //! Which steps down to take: those that save most work within a tolerance, or those that are missed least in the time.
 //!
-//! A handful of steps is searched whole. Of more, sets are tried from the least work upwards while the trials are few, since the
-//! first that keeps the tolerance is then the best; else steps are taken one by one from the few best sets so far, and exchanged while
-//! that saves more. Trials grow with the square of the number of steps.
+//! A handful of steps is searched whole. Of more, sets are tried from the least work upwards, a limited number of them: the first that
+//! keeps the tolerance is the best. If none did, steps are added one at a time to the few best sets, and then exchanged as long as that
+//! saves more. The number of trials grows with the square of the number of steps.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 

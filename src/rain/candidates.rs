@@ -4,8 +4,8 @@ use super::{RainModel, RainSettings, STATE_BYTES, source::SourceLod};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Streaks and splashes of rain: each drop near the camera by itself, or cones that stand for them, or all rain as a veil that is the
-/// fog's. How much it matters: particles, of the weights in the machinery trainer's thesis.
+/// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so that all rain is
+/// extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.
 pub const RAIN: Part =
     Part { name: "rain", rungs: &["drops", "cones", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 

@@ -335,7 +335,7 @@ impl RainLayer {
             return;
         }
         let view = depth.map(Layer::view);
-        let none = self.none.get_or_insert_with(|| bind::nothing(&device.device));
+        let none = self.none.get_or_insert_with(|| bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm));
         let block = |binding, offset: usize, size: usize| wgpu::BindGroupEntry {
             binding,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {

@@ -96,17 +96,7 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 
 impl Around {
     pub fn new(device: &wgpu::Device) -> Self {
-        let none = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("no map"),
-            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R8Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let none = none.create_view(&Default::default());
+        let none = bind::nothing(device, wgpu::TextureFormat::R8Uint);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("around"),
             size: STARTS[3] as u64,

@@ -8,6 +8,7 @@ use crate::{
     gpu::{
         Device, Layer,
         bind::{self, Slot},
+        check_depth_format,
         pass::{self, FullscreenDesc},
     },
     scene::DepthUniform,
@@ -134,21 +135,7 @@ impl Table {
 
 /// Refuses a texture that is no map, by name.
 fn check_depth(depth: &wgpu::Texture) -> Result<()> {
-    use wgpu::TextureFormat as F;
-    let format = depth.format();
-    if !matches!(
-        format,
-        F::Depth16Unorm
-            | F::Depth24Plus
-            | F::Depth24PlusStencil8
-            | F::Depth32Float
-            | F::Depth32FloatStencil8
-            | F::R32Float
-    ) {
-        return Err(Error::unsupported(format!(
-            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
-        )));
-    }
+    check_depth_format(depth.format())?;
     let (least, most) = OCCLUDER_MAP_TEXELS;
     for (name, v) in [("depth.width", depth.width()), ("depth.height", depth.height())] {
         if !(least..=most).contains(&v) {

@@ -11,15 +11,11 @@ use crate::{
     egl::{Api, Window},
     host::Host,
     images::{framebuffer, image_of, texture as image},
+    painter::{CORNERS, program},
 };
 
 /// Samples a texel this often along either side.
 const FINE: u32 = 4;
-
-const CORNERS: &str = "
-void main() {
-    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}";
 
 /// What the host's fragment shader writes: of the texture as it is filtered, or how it looks by the published functions.
 const SAMPLED: &str = "colour = texture(ground, uv);";
@@ -27,33 +23,18 @@ const LOOK: &str = "WelkinGround w = welkin_ground(ground, uv); colour = vec4(w.
 const MATERIAL: &str = "WelkinGround w = welkin_ground(ground, uv);
     colour = vec4(welkin_wet_albedo(vec3(0.1, 0.5, 0.0), w).xy, welkin_film(w));";
 
-fn program(gl: &glow::Context, api: Api, writes: &str) -> glow::Program {
-    let head = if matches!(api, Api::Es(..)) {
-        "#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D;\n"
-    } else {
-        "#version 330\n"
-    };
+fn looking(gl: &glow::Context, api: Api, writes: &str) -> glow::Program {
     let mut text = std::ptr::null();
-    // SAFETY: live pointers; the host's context is current.
-    unsafe {
+    // SAFETY: live pointers.
+    let snippet = unsafe {
         ok(wk_get_ground_snippet(WK_SHADING_GLSL, &mut text));
-        let snippet = std::ffi::CStr::from_ptr(text).to_str().unwrap();
-        let fragment = format!(
-            "{head}uniform sampler2D ground;\nuniform vec2 size;\nout vec4 colour;\n{snippet}\nvoid main() {{\n    \
-             vec2 uv = gl_FragCoord.xy / size;\n    {writes}\n}}"
-        );
-        let program = gl.create_program().unwrap();
-        for (kind, text) in [(glow::VERTEX_SHADER, format!("{head}{CORNERS}")), (glow::FRAGMENT_SHADER, fragment)] {
-            let shader = gl.create_shader(kind).unwrap();
-            gl.shader_source(shader, &text);
-            gl.compile_shader(shader);
-            assert!(gl.get_shader_compile_status(shader), "{}", gl.get_shader_info_log(shader));
-            gl.attach_shader(program, shader);
-        }
-        gl.link_program(program);
-        assert!(gl.get_program_link_status(program), "{}", gl.get_program_info_log(program));
-        program
-    }
+        std::ffi::CStr::from_ptr(text).to_str().unwrap()
+    };
+    let fragment = format!(
+        "uniform sampler2D ground;\nuniform vec2 size;\nout vec4 colour;\n{snippet}\nvoid main() {{\n    \
+         vec2 uv = gl_FragCoord.xy / size;\n    {writes}\n}}"
+    );
+    program(gl, matches!(api, Api::Es(..)), CORNERS, &fragment)
 }
 
 /// Draws what `writes` says of the texture, `fine` pixels a texel along either side; rows from the south.
@@ -63,7 +44,7 @@ fn drawn(host: &Host, api: Api, from: &wk_ground_texture, fine: u32, writes: &st
     let mut pixels = vec![[0.0_f32; 4]; (width * height) as usize];
     // SAFETY: the host's context is current, names and sizes are live.
     unsafe {
-        let program = program(gl, api, writes);
+        let program = looking(gl, api, writes);
         let out = gl.create_texture().unwrap();
         gl.bind_texture(glow::TEXTURE_2D, Some(out));
         gl.tex_storage_2d(glow::TEXTURE_2D, 1, glow::RGBA32F, width, height);

@@ -22,7 +22,8 @@ pub fn depth_of_row(y: u32) -> f32 {
     if below > 0.0 { (NEAR_M * below / EYE_M) as f32 } else { 0.0 }
 }
 
-const CORNERS: &str = "
+/// A triangle over the whole picture.
+pub const CORNERS: &str = "
 void main() {
     gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
 }";
@@ -59,9 +60,14 @@ pub struct Painter {
     vertices: glow::VertexArray,
 }
 
-fn program(gl: &glow::Context, es: bool, vertex: &str, fragment: &str) -> glow::Program {
-    let head = if es { "#version 300 es\nprecision highp float;\n" } else { "#version 330\n" };
-    // SAFETY: the painter's context is current.
+/// A program of the host's, in the context that is current.
+pub fn program(gl: &glow::Context, es: bool, vertex: &str, fragment: &str) -> glow::Program {
+    let head = if es {
+        "#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D;\n"
+    } else {
+        "#version 330\n"
+    };
+    // SAFETY: the host's context is current.
     unsafe {
         let program = gl.create_program().unwrap();
         for (kind, text) in [(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)] {

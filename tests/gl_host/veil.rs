@@ -13,12 +13,8 @@ use crate::{
     egl::{Api, Window},
     host::Host,
     images::{framebuffer, image_of},
+    painter::{CORNERS, program},
 };
-
-const CORNERS: &str = "
-void main() {
-    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}";
 
 const GLASS: &str = "
 uniform sampler2D veil_light;
@@ -36,29 +32,6 @@ void main() {
     vec3 light = welkin_veil(veil_light, veil_through, uv, far_m * length(ray), through);
     colour = vec4(glass.rgb * through + light * light_scale, glass.a);
 }";
-
-fn program(gl: &glow::Context, api: Api) -> glow::Program {
-    let head = if matches!(api, Api::Es(..)) {
-        "#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D;\n"
-    } else {
-        "#version 330\n"
-    };
-    let fragment = format!("{head}{}{GLASS}", snippet(WK_SHADING_GLSL));
-    // SAFETY: the host's context is current.
-    unsafe {
-        let program = gl.create_program().unwrap();
-        for (kind, text) in [(glow::VERTEX_SHADER, format!("{head}{CORNERS}")), (glow::FRAGMENT_SHADER, fragment)] {
-            let shader = gl.create_shader(kind).unwrap();
-            gl.shader_source(shader, &text);
-            gl.compile_shader(shader);
-            assert!(gl.get_shader_compile_status(shader), "{}", gl.get_shader_info_log(shader));
-            gl.attach_shader(program, shader);
-        }
-        gl.link_program(program);
-        assert!(gl.get_program_link_status(program), "{}", gl.get_program_info_log(program));
-        program
-    }
-}
 
 /// Blends the glass over the canvas.
 fn draw_glass(gl: &glow::Context, program: glow::Program, canvas: &Canvas, veil: &wk_frame_textures, far_m: f64) {
@@ -154,7 +127,8 @@ fn glass_by_the_published_shader_is_what_welkin_draws_before_an_opaque_thing() {
         let host = Host::new(api, Window::None, mode);
         let gl = &host.gl;
         let device = device(&host);
-        let program = program(gl, api);
+        let fragment = format!("{}{GLASS}", snippet(WK_SHADING_GLSL));
+        let program = program(gl, matches!(api, Api::Es(..)), CORNERS, &fragment);
         for (rain, space) in CASES {
             let scene = scene(device, rain);
             let mut id = 0;
