@@ -38,7 +38,7 @@ use super::{
 };
 use crate::{
     error::Status,
-    frame::{Effect, Stages, View},
+    frame::{CostItem, Stages, View},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
@@ -388,7 +388,7 @@ pub unsafe extern "C" fn wk_view_get_costs(
         let count = out("out_count", out_count)?;
         let room = Room::new("costs", "cost_size", costs, capacity, cost_size)?;
         let found = object.lock().report().costs;
-        let effects: &[Effect] = if found.is_some() { &Effect::ALL } else { &[] };
+        let effects: &[CostItem] = if found.is_some() { &CostItem::ALL } else { &[] };
         // SAFETY: `count` was checked and is the caller's.
         unsafe { count.write(effects.len() as u32) };
         if capacity > 0 {

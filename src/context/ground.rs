@@ -9,9 +9,10 @@ use super::Context;
 use crate::{
     error::{Result, Status},
     ground::{
-        GroundWater, SurfaceClass,
+        GroundHeld, GroundWater, SurfaceClass,
         water::{Forcing, STEP_S, depth_at_mm},
     },
+    moment::Moment,
     scene::WorldKind,
     weather::SurfaceCover,
 };
@@ -194,7 +195,7 @@ impl Context {
     pub(crate) fn ground_cover_at(&self, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.ground_cover(reported);
         let weather = self.timeline.at(self.time_s);
-        let here = self.with_areas(position, self.time_s, weather).precipitation;
+        let here = self.over().at_place(position, self.time_s, weather).precipitation;
         if here == weather.precipitation {
             return cover;
         }
@@ -203,6 +204,17 @@ impl Context {
             wetness: cover.wetness.max(kept.0 * (1.0 - cover.ice)),
             puddles: cover.puddles.max(kept.1 * (1.0 - cover.ice)),
             ..cover
+        }
+    }
+
+    /// What a camera sees of the ground.
+    pub(crate) fn ground_held(&self, now: &Moment<'_>) -> GroundHeld<'_> {
+        GroundHeld {
+            cover: self.ground_cover_at(now.eye, now.scene.conditions.surface),
+            hollows: &self.hollows,
+            terrain: self.drawn_terrain(),
+            has_wet_terrain: self.has_wet_terrain(),
+            surface_class: self.surface_class,
         }
     }
 

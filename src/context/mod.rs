@@ -5,7 +5,6 @@
 
 mod air;
 mod areas;
-mod fog;
 mod ground;
 mod ground_texture;
 mod lights;
@@ -22,6 +21,7 @@ mod update;
 mod wind;
 
 use std::{
+    cell::OnceCell,
     path::PathBuf,
     sync::{Arc, Mutex},
 };
@@ -29,11 +29,10 @@ use std::{
 use glam::DVec3;
 
 pub use crate::moment::{GroundLight, Light, Scene};
+use crate::moment::{Moment, OwnRain, Region, WeatherOver};
 pub use ground::{GroundAt, GroundModel};
 pub use queries::{Between, LightAt};
-pub(crate) use rain::PaneAt;
 pub use rain::{RainAt, RainOn, RainSurface};
-use sky::FollowedSky;
 pub use terrain::GroundCell;
 pub(crate) use update::UPDATE_TIME;
 
@@ -45,13 +44,13 @@ use crate::{
     light::{Exposure, ToneCurve},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     sky::{
-        Planet, SkySettings,
+        FollowedSky, Planet, SkySettings,
         ephemeris::Ephemeris,
         sun::{Utc, direction},
     },
     surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     weather::{Conditions, Overrides, Timeline, Weather, derive, derive_with, timeline::MAX_TIME_S},
-    wind::{Drift, Wind, WindGrid},
+    wind::{Drift, Wind, WindGrid, WindOver},
 };
 
 /// How to make a context.
@@ -120,7 +119,7 @@ impl GivenDirection {
 pub struct Context {
     device: Arc<Device>,
     shared: Arc<Shared>,
-    sky: Mutex<FollowedSky>,
+    sky: Arc<Mutex<FollowedSky>>,
     /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
     color: [[f64; 3]; 3],
     desc: ContextDesc,
@@ -132,7 +131,7 @@ pub struct Context {
     given_moon: Option<GivenDirection>,
     fog_law: Option<Law>,
     shelters: Vec<Shelter>,
-    areas: Vec<areas::KeptArea>,
+    areas: Vec<Region>,
     maps: Option<Box<OccluderMaps>>,
     lights: Vec<HostLight>,
     wind_grid: Option<Arc<WindGrid>>,
@@ -165,12 +164,13 @@ impl Context {
         desc.exposure.validate()?;
         crate::sky::sun::sun_position(desc.utc_at_zero, &desc.world.origin)?;
         let timeline = Timeline::new(derive(&Weather::default())?);
-        let sky = Mutex::new(FollowedSky::new(
+        let sky = FollowedSky::new(
             &device,
             &*shared.get(|| Ok(crate::sky::SkyLibrary::default()))?,
             &desc.sky,
             desc.cache_dir.clone(),
-        )?);
+        )?;
+        let sky = Arc::new(Mutex::new(sky));
         let color = lights::color_columns(&desc.planet);
         let hollows = Hollows::new(desc.seed);
         Ok(Self {
@@ -331,11 +331,6 @@ impl Context {
         outcome
     }
 
-    /// The maps of what keeps rain off.
-    pub(crate) fn occluder_maps(&self) -> Option<&OccluderMaps> {
-        self.maps.as_deref()
-    }
-
     /// The host's lamps, in place of those before: they light what Welkin draws in their beams (today rain). A moving lamp is
     /// set anew every frame.
     ///
@@ -442,17 +437,39 @@ impl Context {
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn check_time(&self, time_s: f64) -> Result<()> {
-        check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
-        let from = self.timeline.known_from_s();
-        if time_s < from {
-            return Err(Error::range("time_s", &format!("at least {from} s: what was before is forgotten"), time_s));
-        }
-        Ok(())
+        self.over().check_time(time_s)
     }
 
-    /// The weather at a time; before what the timeline knows, that of its first moment.
-    pub(crate) fn known_weather(&self, time_s: f64) -> Conditions {
-        self.timeline.at(time_s)
+    /// The weather over all places and times.
+    pub(crate) fn over(&self) -> WeatherOver<'_> {
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted };
+        WeatherOver { world: &self.desc.world, wind, regions: &self.areas }
+    }
+
+    /// What holds now at a camera that stands at `eye`, which the host calls `name`.
+    ///
+    /// # Errors
+    /// As [`Context::scene_at`].
+    pub(crate) fn moment(&self, name: &str, eye: DVec3) -> Result<Moment<'_>> {
+        let scene = self.scene_named(name, eye, self.time_s)?;
+        let weather = self.over();
+        Ok(Moment {
+            eye,
+            time_s: self.time_s,
+            seed: self.desc.seed,
+            tone: self.desc.tone,
+            exposure: self.desc.exposure,
+            planet_radius_m: self.desc.planet.bottom_radius_m,
+            weather,
+            here: weather.at_place(eye, self.time_s, scene.conditions),
+            own_rain: if self.areas.is_empty() { OwnRain::NONE } else { self.own_rain(&scene.conditions) },
+            shelters: &self.shelters,
+            maps: self.maps.as_deref(),
+            lamps: &self.lights,
+            wind_grid: self.wind_grid.as_ref(),
+            carried: OnceCell::new(),
+            scene,
+        })
     }
 
     fn weather_at(&self, time_s: f64) -> Result<Conditions> {

@@ -5,10 +5,10 @@
 
 use glam::DVec3;
 
-use super::{Context, GroundLight, Light, fog::fog_layer, lights::color_of};
+use super::{Context, GroundLight, Light, lights::color_of};
 use crate::{
     error::{Error, Result},
-    fog::{FogLayer, Viewpoint, koschmieder_visibility_m, transmittance_between},
+    fog::{FogLayer, Viewpoint, fog_layer, koschmieder_visibility_m, transmittance_between},
     sky::{
         LightTable, Sh9,
         reference::{medium::Medium, ray::Ray},

@@ -5,12 +5,10 @@ use glam::DVec3;
 use super::Context;
 use crate::{
     error::{Error, Result, check_range},
-    glass::{Reach, SIZES},
     rain::{
-        MAX_SHELTERS,
         drops::factor_in,
         ice::StoneSizes,
-        shelter::{Shelter, sheltered},
+        shelter::sheltered,
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
 };
@@ -50,9 +48,6 @@ pub struct RainAt {
 /// How far before a surface a drop is asked for the box that kept it off, m.
 const BEFORE_M: f64 = 0.05;
 
-/// How far a vehicle reaches before its windscreen at most, m.
-const VEHICLE_M: f64 = 3.0;
-
 /// A surface that rain may land on, or a window that it may come through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSurface {
@@ -64,39 +59,6 @@ pub struct RainSurface {
     pub velocity_m_s: DVec3,
     /// Its size, m^2, \[0, 1e6\].
     pub area_m2: f64,
-}
-
-/// A pane of glass and the eye behind it, in the host's world.
-pub(crate) struct PaneAt {
-    pub eye: DVec3,
-    /// Lower left of its bounds, and from there to the lower right and the upper left.
-    pub origin: DVec3,
-    pub along: DVec3,
-    pub up: DVec3,
-    /// Outwards, unit.
-    pub out: DVec3,
-    /// Of the air against the glass, m/s.
-    pub air_m_s: DVec3,
-}
-
-impl PaneAt {
-    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a tunnel goes on.
-    fn sits_in(&self, shelter: &Shelter) -> bool {
-        let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
-        // What both ways of a line from a point meet has the point in it: it is convex.
-        let before = self.at([0.5; 2]) + self.out * VEHICLE_M;
-        met(self.eye, self.out) && met(self.eye, -self.out) && !met(before, self.out)
-    }
-
-    /// The place so far, 0 to 1, to the right and up.
-    pub fn at(&self, [x, y]: [f64; 2]) -> DVec3 {
-        self.origin + self.along * x + self.up * y
-    }
-
-    /// Where drops are asked for what kept them off: at the lower left.
-    pub fn before(&self) -> DVec3 {
-        self.origin + self.out * BEFORE_M
-    }
 }
 
 /// What lands on a surface.
@@ -131,12 +93,12 @@ impl Context {
     fn drops_at(&self, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
         let place = self.desc.world.place_at("position", position)?.place;
         let c = self.weather_at(time_s)?;
-        let mut ice = self.with_areas(position, time_s, c).precipitation;
+        let mut ice = self.over().at_place(position, time_s, c).precipitation;
         if place.altitude_m > c.falling_top_m() {
             (ice.ice_pellets_mm_h, ice.hail_mm_h) = (0.0, 0.0);
         }
         let stones = StoneSizes::new(&ice, factor_in(&c.air, place.altitude_m));
-        Ok((self.sizes_at(position, time_s, &c)?, stones, self.carrying_wind(time_s)?))
+        Ok((self.over().sizes_at(position, time_s, &c)?, stones, self.carrying_wind(time_s)?))
     }
 
     /// What falls at `position` and simulation time `time_s`.
@@ -194,38 +156,6 @@ impl Context {
             drops_per_s: flux.drops_per_m2_s * surface.area_m2,
             ice_mm_h: ice.rate_mm_h,
             stones_per_s: ice.drops_per_m2_s * surface.area_m2,
-        })
-    }
-
-    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and the share
-    /// of the water on a pane that they bring.
-    pub(crate) fn drops_on_pane(&self, sizes: &DropSizes, pane: &PaneAt) -> [(DVec3, f64); SIZES] {
-        let to_enu = self.desc.world.frame_at(pane.origin).world_to_enu;
-        let (normal, air) = (to_enu * pane.out, to_enu * pane.air_m_s);
-        let known_s = self.time_s.max(self.timeline.known_from_s());
-        let wind = self.wind.blowing(&self.timeline, self.drifted, known_s).velocity_m_s().extend(0.0);
-        let middles = std::array::from_fn(|i| (i as f64 + 0.5) / SIZES as f64);
-        let mut drops = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| {
-            let falls = sizes.speed_m_s(d);
-            (to_enu.transpose() * (wind - DVec3::Z * falls), (falls * normal.z - air.dot(normal)).max(0.0) / falls)
-        });
-        let whole: f64 = drops.iter().map(|d| d.1).sum();
-        drops.iter_mut().for_each(|d| d.1 = if whole > 0.0 { d.1 / whole } else { 1.0 / SIZES as f64 });
-        drops
-    }
-
-    /// What boxes let through of such drops to each part of a pane now. The vehicle's own box is not asked.
-    pub(crate) fn reach_of_pane(&self, drops: &[(DVec3, f64); SIZES], pane: &PaneAt) -> Reach {
-        if self.shelters.is_empty() {
-            return Reach::ALL;
-        }
-        let mut own = [false; MAX_SHELTERS];
-        self.shelters.iter().zip(&mut own).for_each(|(b, own)| *own = pane.sits_in(b));
-        let others = || self.shelters.iter().zip(&own).filter(|(_, own)| !**own).map(|(b, _)| b);
-        Reach::of(|place| {
-            let before = pane.at(place) + pane.out * BEFORE_M;
-            let kept = drops.iter().filter(|(velocity, _)| others().any(|b| sheltered(b, before, *velocity)));
-            (1.0 - kept.map(|d| d.1).sum::<f64>()).max(0.0)
         })
     }
 }

@@ -7,13 +7,13 @@ use glam::DVec3;
 use super::{
     Context, GroundLight, Light, Scene,
     air::planet_under,
-    fog::through_fog,
     lights::{UnderClouds, color_of},
 };
 use crate::{
     error::Result,
+    falling::curtain,
+    fog::through_fog,
     light::luminance,
-    rain::curtain,
     scene::{LocalFrame, Place},
     sky::Planet,
     weather::{CloudLight, Conditions, slab_reflectance, smoothstep},

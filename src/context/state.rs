@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Context, ContextDesc, GivenDirection, GroundModel,
-    areas::KeptArea,
     ground::GroundState,
     saved_settings::{SavedSettings, Settings},
     terrain::HostGround,
@@ -19,6 +18,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status, check_range, toml_fault},
     ground::SurfaceClass,
+    moment::Region,
     scene::WorldKind,
     sky::sun::Utc,
     weather::Timeline,
@@ -44,7 +44,7 @@ struct Saved {
     settings: SavedSettings,
     ground: Option<GroundState>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    areas: Vec<KeptArea>,
+    areas: Vec<Region>,
     terrain: Option<SavedGround>,
     /// Number of the class of ground of which nothing else is said.
     #[serde(default, skip_serializing_if = "is_unspecified")]
@@ -149,7 +149,7 @@ struct Loaded {
     drifted: Drift,
     ground: Option<GroundState>,
     behind: Option<Box<Behind>>,
-    areas: Vec<KeptArea>,
+    areas: Vec<Region>,
     terrain: Option<Box<HostGround>>,
     surface_class: SurfaceClass,
     settings: Settings,

@@ -144,7 +144,7 @@ impl Context {
             return Ok(overs);
         }
         let places = overs.list.iter_mut().zip(&mut overs.evens);
-        for ((place, even), shaft) in places.zip(self.shafts_at(time_s, c)?) {
+        for ((place, even), shaft) in places.zip(self.over().shafts_at(time_s, c)?) {
             let (most, over_all) = held.whole.even(&shaft, &held.to_enu);
             let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
             *even = over_all;

@@ -5,10 +5,11 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Context, GivenDirection, MAX_TIME_S, areas::KeptArea};
+use super::{Context, GivenDirection, MAX_TIME_S};
 use crate::{
     error::{Error, Result, Status, check_range},
     fog::Law,
+    moment::Region,
     rain::Shelter,
     sky::sun::Utc,
 };
@@ -19,7 +20,7 @@ pub(crate) const UPDATE_TIME: Duration = Duration::from_millis(50);
 /// What decides the steps that an update has left for another call: all as it was when the update was called.
 pub(super) struct Behind {
     shelters: Vec<Shelter>,
-    areas: Vec<KeptArea>,
+    areas: Vec<Region>,
     given: [Option<GivenDirection>; 2],
     fog_law: Option<Law>,
     utc_at_zero: Utc,

@@ -13,7 +13,7 @@ use crate::{
 impl Context {
     fn blowing(&self, time_s: f64) -> Result<Blowing> {
         self.check_time(time_s)?;
-        Ok(self.wind.blowing(&self.timeline, self.drifted, time_s))
+        Ok(self.over().wind.at(time_s))
     }
 
     /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the station's altitude: who
@@ -76,41 +76,5 @@ impl Context {
     /// For times as [`Context::conditions_at`].
     pub fn carrying_wind(&self, time_s: f64) -> Result<DVec3> {
         Ok(self.blowing(time_s)?.velocity_m_s().extend(0.0))
-    }
-
-    /// The wind that carries the air, up to a moment.
-    ///
-    /// # Errors
-    /// For times as [`Context::conditions_at`].
-    pub(crate) fn carrying_until(&self, time_s: f64) -> Result<Carrying<'_>> {
-        Ok(Carrying { context: self, time_s, now: self.blowing(time_s)? })
-    }
-}
-
-/// The wind that carries the air, up to a moment: worked out once for all that asks since when.
-pub(crate) struct Carrying<'a> {
-    context: &'a Context,
-    time_s: f64,
-    now: Blowing,
-}
-
-impl Carrying<'_> {
-    /// [`Context::wind_displacement`] then.
-    pub fn displacement_m(&self) -> DVec3 {
-        self.now.drift.displacement_m.extend(0.0)
-    }
-
-    /// [`Context::carrying_wind`] then.
-    pub fn velocity_m_s(&self) -> DVec3 {
-        self.now.velocity_m_s().extend(0.0)
-    }
-
-    /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its first one.
-    pub fn since(&self, from_s: f64) -> DVec3 {
-        let c = self.context;
-        let known_s = from_s.max(c.timeline.known_from_s()).min(self.time_s);
-        let first = c.wind.blowing(&c.timeline, c.drifted, known_s);
-        let since = self.now.drift.displacement_m - first.drift.displacement_m;
-        (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
     }
 }

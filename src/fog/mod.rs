@@ -37,12 +37,14 @@
 pub mod candidates;
 pub mod laws;
 pub mod light;
+mod of_weather;
 pub mod patterns;
 pub mod phase;
 mod probe;
 pub mod queries;
 pub mod reference;
 mod uniforms;
+mod view;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -57,6 +59,9 @@ pub use queries::{
 };
 pub use reference::{FogKind, FogModel, FogSample};
 pub use uniforms::{FogUniform, FogVariant};
+
+pub(crate) use of_weather::{fog_layer, through_fog};
+pub(crate) use view::FogView;
 
 /// Contrast left at the meteorological optical range (WMO-No. 8).
 pub const CONTRAST_THRESHOLD: f64 = 0.05;

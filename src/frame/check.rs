@@ -2,14 +2,12 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{
-    Frame, View,
-    target::{Stages, can_copy, check_classes, check_color, check_depth, check_mask, check_normals},
-};
+use super::View;
 use crate::{
-    context::Scene,
     error::{Error, Result, Status},
+    moment::Scene,
     scene::{Camera, ViewRays},
+    stage::{Frame, Stages, can_copy, check_classes, check_color, check_depth, check_mask, check_normals},
 };
 
 /// The camera's rays in the local east-north-up, in which the shaders work.
@@ -62,7 +60,7 @@ impl View {
         if !can_copy(color) {
             self.reading(color)?;
         }
-        if color.sample_count() > 1 && !self.shared.composite()?.reads_samples() {
+        if color.sample_count() > 1 && !self.composite.lock()?.reads_samples() {
             return Err(Error::unsupported(
                 "color.samples above 1: this device cannot shade per sample; resolve first",
             ));
@@ -80,7 +78,7 @@ impl View {
                 return Err(Error::range(name, "another texture than color", "the same"));
             }
         }
-        self.check_lens(frame, stages)
+        self.effects.all().iter().try_for_each(|effect| effect.check(frame, stages))
     }
 
     /// Where `color` is read if wgpu cannot copy it.

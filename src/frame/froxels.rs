@@ -3,18 +3,14 @@
 //! Drawn only for views whose host asked for them. The mapping is that of `shaders/frame/froxels.wgsl` and of the
 //! published snippets.
 
-use std::sync::Arc;
-
-use super::{
-    pipelines::Pipelines,
-    target::{Sampling, Stages},
-};
 use crate::{
     error::Result,
     gpu::{
         Device,
         pass::{self, FullscreenDesc},
+        recent::Recent,
     },
+    stage::{Constant, Constants, Recording, Sampling, Stages},
 };
 
 /// Texels of one distance slice, and how many slices lie side by side and above each other.
@@ -38,12 +34,18 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.
 /// GLSL 3.30 text of the sampling functions.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
-/// The two textures and the pipeline that fills them.
+/// Shader, samples of the host's images, constants.
+type FroxelKind = (&'static str, Sampling, [Constant; 2]);
+
+/// Pipelines held for a view: with and without fog, and an effect's own, over one host's images.
+const MOST_PIPELINES: usize = 8;
+
+/// The two textures and the pipelines that fill them.
 pub(super) struct Froxels {
     pub light: wgpu::Texture,
     pub through: wgpu::Texture,
     views: [wgpu::TextureView; 2],
-    pipelines: [Option<wgpu::RenderPipeline>; 24],
+    pipelines: Recent<FroxelKind, wgpu::RenderPipeline, MOST_PIPELINES>,
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -66,44 +68,42 @@ impl Froxels {
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
-        Self { light, through, views, pipelines: [const { None }; 24] }
+        Self { light, through, views, pipelines: Recent::new() }
     }
 
     pub fn bytes(&self) -> u64 {
         2 * 8 * u64::from(TILE.0 * TILES.0 * TILE.1 * TILES.1)
     }
 
-    /// Fills the textures; `groups` are those of the composition, or where there are rain areas those of `areas`, its layout.
+    /// The shader that fills the textures where no effect has one of its own.
+    pub const SHADER: &'static str = "frame/froxels.wgsl";
+
+    /// Fills the textures by a shader for depth of so many samples, with the constants of what lies between.
     pub fn draw(
         &mut self,
-        device: &Arc<Device>,
-        shared: &Pipelines,
-        encoder: &mut wgpu::CommandEncoder,
-        (sampling, fog, march): (Sampling, bool, bool),
-        (areas, groups): (Option<&wgpu::BindGroupLayout>, &[&wgpu::BindGroup]),
+        to: &mut Recording<'_>,
+        (shader, sampling, between): (&'static str, Sampling, &Constants),
+        layouts: &[&wgpu::BindGroupLayout],
+        groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        let bits = [areas.is_some(), fog, march];
-        let at = bits.into_iter().fold(sampling as usize, |at, bit| 2 * at + usize::from(bit));
-        let slot = &mut self.pipelines[at];
-        if slot.is_none() {
-            let composite = shared.composite()?;
-            let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
-            let [frame, sky, around] = composite.layouts(sampling);
-            let (shader, layouts) = match areas {
-                Some(layout) => ("frame/froxels_areas.wgsl", &[layout, sky][..]),
-                None => ("frame/froxels.wgsl", &[frame, sky, around][..]),
-            };
-            let desc = FullscreenDesc {
-                shader,
-                entry: "froxels",
-                layouts,
-                targets: &[target.clone(), target],
-                constants: &[("FOG", f64::from(u8::from(fog))), ("SKY_MARCH", f64::from(u8::from(march)))],
-                samples: 1,
-            };
-            *slot = Some(pass::fullscreen(device, &desc)?);
-        }
-        let Some(pipeline) = slot else { return Ok(()) };
+        // The others would make a pipeline of many weathers.
+        let constants = ["FOG", "SKY_MARCH"].map(|name| (name, between.value(name)));
+        let device = to.device;
+        let pipeline = self.pipelines.get_or_make(
+            |made| *made == (shader, sampling, constants),
+            || {
+                let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+                let desc = FullscreenDesc {
+                    shader,
+                    entry: "froxels",
+                    layouts,
+                    targets: &[target.clone(), target],
+                    constants: &constants,
+                    samples: 1,
+                };
+                Ok(((shader, sampling, constants), pass::fullscreen(device, &desc)?))
+            },
+        )?;
         let attach = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -112,7 +112,7 @@ impl Froxels {
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
             })
         };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("froxels"),
             color_attachments: &[attach(&self.views[0]), attach(&self.views[1])],
             ..Default::default()

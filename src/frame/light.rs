@@ -58,7 +58,7 @@ impl Frame<'_> {
         } else {
             (&scene.sun, ground.sun_lux, &scene.moon, ground.moon_lux)
         };
-        let level = |light: &crate::context::Light| light.direction.z.max(0.0);
+        let level = |light: &crate::moment::Light| light.direction.z.max(0.0);
         let sky = [0, 1, 2].map(|i| ground.sky_lux[i] + rest[i] * level(other));
         let albedo = scene.planet.ground_albedo;
         let up = [0, 1, 2].map(|i| albedo[i] * (sky[i] + facing[i] * level(main)));

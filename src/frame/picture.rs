@@ -1,14 +1,10 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{
-    Frame, View,
-    froxels::Froxels,
-    measure::Recording,
-    target::{can_copy, color_copy, is_copy_of},
-};
+use super::{View, froxels::Froxels};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
+    stage::{Composition, Recording, Shot, can_copy, color_copy, is_copy_of},
 };
 
 /// The textures of one bind group: it is made anew only when the host hands over others.
@@ -19,11 +15,8 @@ pub(super) struct Bound {
     mask: Option<KeptLayer>,
     surface_classes: Option<KeptLayer>,
     normals: Option<KeptLayer>,
-    own: OwnViews,
+    own: [Option<wgpu::TextureView>; 3],
 }
-
-/// The drops before the picture, water and surface of the host's terrain.
-pub(super) type OwnViews = [Option<wgpu::TextureView>; 3];
 
 impl View {
     /// Bytes of GPU memory the view holds for itself.
@@ -32,9 +25,8 @@ impl View {
             let texel = u64::from(c.format().block_copy_size(None).unwrap_or(4));
             texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
         });
-        copy + self.froxels.as_ref().map_or(0, Froxels::bytes)
-            + self.rain.bytes()
-            + self.glass.as_ref().map_or(0, |g| g.bytes())
+        let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
+        copy + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
 
     /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
@@ -67,22 +59,22 @@ impl View {
     }
 
     /// Makes the bind group anew if the host's textures are others than last time.
-    pub(super) fn bind(&mut self, frame: &Frame<'_>, color: Layer<'_>, own: OwnViews) -> Result<()> {
+    pub(super) fn bind(&mut self, shot: &Shot<'_>, composition: &Composition) -> Result<()> {
+        let (frame, color, own) = (shot.frame, shot.color, &composition.textures);
         let same = self.bound.as_ref().is_some_and(|(b, ..)| {
             color == b.color
                 && is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())
                 && is_kept(frame.classes_layer(), b.surface_classes.as_ref())
                 && is_kept(frame.normals_layer(), b.normals.as_ref())
-                && b.own == own
+                && b.own == *own
         });
         if same {
             return Ok(());
         }
         let Some(copy) = &self.copy else { return Ok(()) };
-        let blocks = [&self.uniform, &self.fog, &self.ground];
-        let group =
-            self.shared.composite()?.bind(&self.device, blocks, copy, frame, own.each_ref().map(Option::as_ref));
+        let made = self.composite.lock()?.bind(&self.device, &self.uniform, copy, frame, composition);
+        let Some(group) = made else { return Ok(()) };
         let target = color.view();
         let kept = |layer: Option<Layer<'_>>| layer.map(Layer::kept);
         let bound = Bound {
@@ -91,7 +83,7 @@ impl View {
             mask: kept(frame.mask_layer()),
             surface_classes: kept(frame.classes_layer()),
             normals: kept(frame.normals_layer()),
-            own,
+            own: own.clone(),
         };
         self.bound = Some((bound, group, target));
         Ok(())

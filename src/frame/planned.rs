@@ -2,54 +2,28 @@
 
 use glam::DVec3;
 
-use super::{Frame, View};
+use super::View;
 use crate::{
-    context::Scene,
+    effects::{Effects, PARTS, together},
     error::{Error, Result, Status},
-    fog,
-    plan::{self, Budget, PartNow, Plan, Present, Price, Reason, Situation, parts::Part},
-    rain, sky,
+    moment::Scene,
+    plan::{self, Budget, Plan, Present, Reason, Situation},
+    stage::{Frame, Shot, Stages},
 };
 
-/// The parts of the weather that a picture may do with less of, in the order of every list of them.
-pub const PARTS: &[Part] = &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN];
-/// Their places in the list.
-pub(super) const AIR: usize = 0;
-pub(super) const FOG: usize = 1;
-pub(super) const SKY: usize = 2;
-pub(super) const RAIN: usize = 3;
-
-/// Which parts a picture has, its pixels, lamps and drops that are drawn one by one: what each part costs in it.
-pub(super) fn present(parts: [bool; 4], pixels: u64, lamps: u32, drops: u32) -> Present {
-    let mut present =
-        Present { pixels, together: ([AIR, FOG], sky::candidates::air_before_fog_work(lamps)), ..Present::default() };
-    let [cones, veil] = rain::candidates::rain_work(pixels, drops);
-    let works = [
-        [sky::candidates::air_work(lamps), Default::default()],
-        [fog::candidates::FOG_WORK, Default::default()],
-        [sky::candidates::sky_work(lamps), Default::default()],
-        [cones, veil],
-    ];
-    for ((to, is_there), work) in present.parts.iter_mut().zip(parts).zip(works) {
-        *to = PartNow { is_there, ..PartNow::default() };
-        to.steps[..2].copy_from_slice(&work);
+/// Which parts a picture of these stages has, and what each costs in it.
+pub(super) fn present(effects: &mut Effects, shot: &Shot<'_>, stages: Stages) -> Present {
+    let mut present = Present { pixels: shot.pixels(), together: together(&shot.now.scene), ..Present::default() };
+    for effect in effects.each() {
+        effect.parts(shot, stages, &mut |part, steps| {
+            if let Some(place) = PARTS.iter().position(|p| p.name == part.name) {
+                let now = &mut present.parts[place];
+                now.is_there = true;
+                now.steps[..steps.len()].copy_from_slice(steps);
+            }
+        });
     }
     present
-}
-
-/// Work of building the sky's default tables, in pixels of a sky with these settings.
-pub(super) fn rebuild_work(settings: &sky::SkySettings) -> f64 {
-    let (work, price) = (sky::candidates::work, Price::default());
-    work(&sky::SkySettings::default()).rebuild.at(&price) / work(settings).pixel.at(&price)
-}
-
-/// What a plan is saved with.
-fn saved_with(sky: &sky::SkySettings) -> plan::Settings<'_> {
-    plan::Settings {
-        model: sky.model.name(),
-        check_model: |name| sky::SkyModel::from_name(name).map(|_| ()),
-        numbers: sky.numbers().to_vec(),
-    }
 }
 
 /// What the planner compares pictures by.
@@ -93,7 +67,7 @@ impl View {
         if plan.parts.iter().any(|p| p.reason == Reason::NotGauged) {
             return Err(Error::new(Status::WrongOrder, "the plan is not made yet: this picture has not been gauged"));
         }
-        Ok(plan::write(PARTS, &plan.rungs(), &saved_with(self.sky.settings())))
+        Ok(plan::write(PARTS, &plan.rungs(), &self.effects.saved_with()))
     }
 
     /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]); the rest of the budget stays, and says what the
@@ -103,7 +77,7 @@ impl View {
     /// [`Status::Parse`] for what is no such plan or of another version, naming line and column or the field;
     /// [`Status::InvalidArgument`] naming the setting of the sky in which the view's context differs.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
-        let rungs = plan::read(plan, PARTS, &saved_with(self.sky.settings()))?;
+        let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();
         budget.wishes.resize(PARTS.len(), plan::Wish::default());
         budget.wishes.iter_mut().zip(rungs).for_each(|(wish, rung)| wish.rung = Some(rung));

@@ -9,8 +9,10 @@ use std::sync::{
     atomic::{AtomicU32, Ordering},
 };
 
-use super::{ColorSpace, Frame, target::can_copy};
-use crate::gpu::Device;
+use crate::{
+    gpu::Device,
+    stage::{ColorSpace, Frame, can_copy},
+};
 
 /// Rows looked at, spread over the picture.
 const ROWS: u32 = 8;

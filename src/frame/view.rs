@@ -6,48 +6,34 @@ use std::{
 };
 
 use super::{
-    Frame, FrameFlags,
     check::rays,
-    draw::Shot,
+    composite::SharedComposite,
+    draw::Call,
     froxels::{FrameTextures, Froxels},
-    measure::{Effect, Recording, Report},
     picture::Bound,
-    pipelines::Pipelines,
-    planned,
-    rain::Rain,
-    surface,
-    target::{Stages, can_be_apart, can_copy},
-    uniform::FrameUniform,
     unit::UnitWatch,
 };
 use crate::{
-    context::{Context, Scene},
+    context::Context,
+    effects::{Effects, PARTS, Unseen},
     error::{Error, Result},
-    fog::FogUniform,
-    glass::Glass,
     gpu::Device,
-    ground::GroundUniform,
     plan::Planner,
-    rain::{RainSettings, Streaks},
-    sky::SkyVolume,
+    stage::{CostItem, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart, can_copy},
     surroundings::Around,
 };
 
 /// One camera or projector channel. Exclusive: one thread at a time.
 pub struct View {
-    pub(super) device: Arc<Device>,
-    pub(super) shared: Arc<Pipelines>,
+    pub(crate) device: Arc<Device>,
+    pub(super) composite: Arc<SharedComposite>,
     pub(super) uniform: wgpu::Buffer,
-    pub(super) fog: wgpu::Buffer,
-    pub(super) ground: wgpu::Buffer,
     pub(super) copy: Option<wgpu::Texture>,
     pub(super) bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
-    pub(super) glass: Option<Box<Glass>>,
-    pub(super) sky: SkyVolume,
+    pub(crate) effects: Effects,
     pub(super) froxels: Option<Froxels>,
-    pub(super) rain: Rain,
     pub(super) around: Around,
-    pub(super) planner: Planner<Streaks>,
+    pub(super) planner: Planner<Unseen>,
     pub(super) planned_for: Option<u64>,
     pub(super) light_scale: f32,
     pub(super) unit: UnitWatch,
@@ -65,35 +51,26 @@ impl View {
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
-        let buffer = |label, size: usize| {
-            device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: size as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let (uniform, fog) = (buffer("frame", size_of::<FrameUniform>()), buffer("fog", size_of::<FogUniform>()));
-        let ground = buffer("ground", size_of::<GroundUniform>());
-        let shared = context.shared().get(|| Pipelines::new(&device))?;
-        let sky = SkyVolume::new(&*context.sky()?)?;
-        let planner = Planner::new(planned::PARTS, planned::rebuild_work(sky.settings()));
-        let rain = Rain::new(&device, RainSettings::default());
+        let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let composite = context.shared().get(|| SharedComposite::new(&device))?;
+        let effects = Effects::new(context)?;
+        let planner = Planner::new(PARTS, effects.rebuild_work());
         let around = Around::new(&device.device);
         device.check_made()?;
         drop(_entered);
         Ok(Self {
             device,
-            shared,
+            composite,
             uniform,
-            fog,
-            ground,
             copy: None,
             bound: None,
-            glass: None,
-            sky,
+            effects,
             froxels: None,
-            rain,
             around,
             planner,
             planned_for: None,
@@ -108,16 +85,6 @@ impl View {
     /// What the last frame took and showed.
     pub fn report(&self) -> &Report {
         &self.report
-    }
-
-    /// Sets how rain is drawn. Default: [`RainSettings::default`].
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
-    pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
-        settings.validate_on(&self.device)?;
-        self.rain.settings = settings;
-        Ok(())
     }
 
     /// Textures of air and fog for the host's own transparent shaders, filled by [`Stages::MEDIUM`] of every frame from
@@ -171,18 +138,16 @@ impl View {
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
         (self.bound, self.copy) = (None, None);
-        self.rain.forget_picture();
+        self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 
     /// Makes what the view needs of the picture's size, before anything of the frame is recorded: a large target is what memory
     /// may be too small for.
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
-        let (made, bytes) = (self.hold_copy(color)?, self.rain.bytes());
-        if stages.has(Stages::PARTICLES) && self.rain.draws() {
-            let _ = self.rain.layer(&self.device, color);
-        }
-        if made || self.rain.bytes() != bytes { self.device.check_made() } else { Ok(()) }
+        let (made, bytes) = (self.hold_copy(color)?, self.bytes());
+        self.effects.each().into_iter().for_each(|effect| effect.hold(&self.device, color, stages));
+        if made || self.bytes() != bytes { self.device.check_made() } else { Ok(()) }
     }
 
     fn record_and_submit(
@@ -213,7 +178,7 @@ impl View {
     pub(crate) fn add_hand_over(&mut self, start: Instant) {
         if let (Some(costs), Some(inside)) = (&mut self.report.costs, self.last_call) {
             let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;
-            costs.add(Effect::HandOver, ms);
+            costs.add(CostItem::HandOver, ms);
             costs.whole_ms += ms;
         }
     }
@@ -255,14 +220,13 @@ impl View {
         stages: Stages,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let scene = context.scene_named("frame.camera.position", frame.camera.position, context.time_s())?;
-        let rays = stages.draw().then(|| rays(frame, &scene)).transpose()?;
-        // What does not fall is not drawn, nor what is dry.
+        let now = context.moment("frame.camera.position", frame.camera.position)?;
+        let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
+        self.effects.gather(context, &now, frame, stages)?;
+        // What is not there is not drawn.
         let asked = stages;
-        self.rain.look(context, &scene, frame.camera.position)?;
-        let stages = if self.rain.shows() { stages } else { stages.without(Stages::PARTICLES) };
-        let stages = if surface::is_wet(frame, context, &scene) { stages } else { stages.without(Stages::SURFACE) };
-        let stages = if self.glass.is_some() { stages } else { stages.without(Stages::LENS) };
+        let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
+        let stages = Stages(stages.0 & there.0);
         let rays = rays.filter(|_| stages.draw());
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
@@ -272,47 +236,50 @@ impl View {
             self.hold_images(frame, stages)?;
         }
         if self.recorded == Stages(0) {
-            self.prepare(context, frame, &scene, to)?;
-            self.prepare_lens(context, frame, &scene, to)?;
+            let share = if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() };
+            let at = Prepare { frame, now: &now, share };
+            self.effects.each().into_iter().try_for_each(|effect| effect.prepare(&at, to))?;
         }
-        self.rain.veiled = self.recorded.with(asked).has(Stages::MEDIUM);
         if let (Some(rays), Some(color)) = (rays, frame.color_layer()) {
-            let exposure = frame.exposure.unwrap_or(context.exposure()).factor(scene.ground.adaptation_cd_m2);
-            let at = Shot { context, frame, scene: &scene, rays: &rays, color, exposure };
-            // The glass lies before the tone curve, where the target can hold the picture between them.
-            let mut lens = self.shows_lens(stages);
-            let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
-            let apart = can_be_apart(frame, stages);
-            let draws = match apart {
-                true if to.is_measured() => stages.each(),
-                true if lens => two([stages.without(Stages::TONE), Stages(stages.0 & Stages::TONE.0)]),
-                _ => two([stages, Stages(0)]),
-            };
-            for part in draws.into_iter().filter(|s| s.0 != 0) {
-                if lens && part == Stages::TONE {
-                    self.draw_lens(frame, false, to)?;
-                    lens = false;
-                }
-                self.draw(&at, part, to)?;
-            }
-            if lens {
-                self.draw_lens(frame, stages.has(Stages::TONE), to)?;
-            }
+            let exposure = frame.exposure.unwrap_or(now.exposure).factor(now.scene.ground.adaptation_cd_m2);
+            let veiled = self.recorded.with(asked).has(Stages::MEDIUM);
+            let device = &self.device.clone();
+            let call = Call { device, frame, now: &now, rays: &rays, color, exposure, veiled };
+            self.draw_all(&call, stages, to)?;
         }
         self.recorded = self.recorded.with(asked);
+        self.report.passes += to.passes;
+        self.report.tables_rebuilt += to.tables_rebuilt;
+        self.effects.all().iter().for_each(|effect| effect.report(&mut self.report));
+        self.report.bytes = self.bytes();
         Ok(())
     }
 
-    /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
-    fn prepare(&mut self, context: &Context, frame: &Frame<'_>, scene: &Scene, to: &mut Recording<'_>) -> Result<()> {
-        let mut tables = context.sky()?;
-        let pure = frame.flags.has(FrameFlags(FrameFlags::NO_HISTORY.0 | FrameFlags::CUT.0));
-        let share = if pure { 1.0 } else { self.planner.share_of_tables() };
-        let work = tables.follow(&self.device, to.encoder, &scene.planet, frame.frame_id, share)?;
-        to.ends(Effect::SkyTables, work)?;
-        let drawn = self.sky.prepare(to.encoder, &tables, &scene.observer(pure))?;
-        to.ends(Effect::SkyView, drawn)?;
-        self.report.tables_rebuilt += u32::from(work) + u32::from(drawn);
-        Ok(())
+    /// Draws the stages of a call in as few draws as give the picture.
+    fn draw_all(&mut self, call: &Call<'_>, stages: Stages, to: &mut Recording<'_>) -> Result<()> {
+        let frame = call.frame;
+        // A lens lies before the tone curve, where the target can hold the picture between them.
+        let mut lens = stages.has(Stages::LENS) && self.effects.all().iter().any(|effect| effect.has_lens());
+        let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
+        let draws = match can_be_apart(frame, stages) {
+            true if to.is_measured() => stages.each(),
+            true if lens => two([stages.without(Stages::TONE), Stages(stages.0 & Stages::TONE.0)]),
+            _ => two([stages, Stages(0)]),
+        };
+        for part in draws.into_iter().filter(|s| s.0 != 0) {
+            if lens && part == Stages::TONE {
+                self.draw_lens(call, false, to)?;
+                lens = false;
+            }
+            self.draw(call, part, to)?;
+        }
+        if lens { self.draw_lens(call, stages.has(Stages::TONE), to) } else { Ok(()) }
+    }
+
+    /// Draws what lies over the picture that the target holds; `toned` says that TONE has been over it in this call.
+    fn draw_lens(&mut self, call: &Call<'_>, toned: bool, to: &mut Recording<'_>) -> Result<()> {
+        self.take_picture(call.color, to)?;
+        let Some(copy) = &self.copy else { return Ok(()) };
+        self.effects.each().into_iter().try_for_each(|effect| effect.draw_lens(call.frame, copy, toned, to))
     }
 }

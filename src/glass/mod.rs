@@ -19,19 +19,21 @@
 mod geometry;
 pub mod laws;
 mod lens;
+mod pane;
 mod passes;
 pub mod reach;
 mod reach_pass;
 pub mod reference;
 mod state;
 pub mod step;
+mod view;
 
-pub(crate) use lens::LensFrame;
-pub(crate) use passes::GlassKit;
-pub(crate) use reach::SIZES;
-pub(crate) use reach_pass::{Mapped, PaneUniform};
+use lens::LensFrame;
+use reach::SIZES;
+use reach_pass::{Mapped, PaneUniform};
+use state::Glass;
 pub use state::GlassReport;
-pub(crate) use state::{Glass, Moment};
+pub(crate) use view::GlassView;
 
 use glam::DVec3;
 

@@ -21,10 +21,10 @@ use crate::{
 };
 
 /// What of the rain boxes let through to which part of the glass, and what the maps are that do, if there are any.
-type Reached<'a> = (Reach, Option<Mapped<'a>>);
+pub(super) type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
-/// What the weather and the frame say of a moment.
-pub(crate) struct Moment<'a> {
+/// What weather and frame come to at the glass at a moment.
+pub(super) struct AtGlass<'a> {
     pub time_s: f64,
     pub seed: u64,
     pub camera: &'a Camera,
@@ -81,7 +81,7 @@ fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
-fn acting(screen: &Windscreen, plane: &Plane, moment: &Moment<'_>, weather: &Conditions) -> Acting {
+fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Conditions) -> Acting {
     let up = moment.camera.rotation() * moment.up;
     // Steps of 50 m: a road's ups and downs must not cost new tables.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
@@ -140,7 +140,7 @@ impl Glass {
         device: &Device,
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
-        moment: &Moment<'_>,
+        moment: &AtGlass<'_>,
     ) -> Result<u32> {
         let plane = Plane::of_pane(&self.screen.pane, &moment.camera.projection)?;
         let (cell_m, size) = plane.lattice();
@@ -180,7 +180,7 @@ impl Glass {
         device: &Device,
         kit: &mut GlassKit,
         encoder: &mut wgpu::CommandEncoder,
-        moment: &Moment<'_>,
+        moment: &AtGlass<'_>,
         mapped: Option<&Mapped<'_>>,
     ) -> Result<u32> {
         self.last = Some((moment.time_s, self.screen));
@@ -193,7 +193,7 @@ impl Glass {
         &mut self,
         device: &Device,
         kit: &GlassKit,
-        moment: &Moment<'_>,
+        moment: &AtGlass<'_>,
         acts: &Acting,
         (now, size): (i64, [u32; 2]),
     ) {

@@ -272,7 +272,7 @@ pub(super) mod tests {
 
     /// Heights of a rough ground, m, in whole millimetres.
     pub(in super::super) fn rough(columns: usize, rows: usize, seed: u32) -> Vec<f32> {
-        let random = |i: usize| crate::rain::lattice::random3([i as u32, seed, 5])[0] as f32 / 4_294_967_296.0;
+        let random = |i: usize| crate::falling::random3([i as u32, seed, 5])[0] as f32 / 4_294_967_296.0;
         let smooth = |x: f32, y: f32| (x * 0.37).sin() * (y * 0.29 + 0.4).cos() * 0.3;
         let at = |i: usize| smooth((i % columns) as f32, (i / columns) as f32) + 0.2 * random(i);
         (0..columns * rows).map(|i| (at(i) * 1e3).round() * 1e-3).collect()

@@ -22,6 +22,7 @@ pub mod reference;
 pub(crate) mod terrain;
 pub(crate) mod texture;
 mod uniform;
+mod view;
 pub mod water;
 
 pub use class::SurfaceClass;
@@ -29,5 +30,7 @@ pub use grid::{GroundGrid, MAX_GRID_NODES};
 pub use hollows::Hollows;
 pub(crate) use hollows::pattern_axes;
 pub use texture::{GroundTexture, SNIPPET_GLSL, SNIPPET_WGSL};
-pub(crate) use uniform::{GroundUniform, Seen};
+pub(crate) use uniform::GroundUniform;
+use uniform::Seen;
+pub(crate) use view::{GroundHeld, GroundView};
 pub use water::GroundWater;

@@ -2,13 +2,114 @@
 //!
 //! A context works it out ([`crate::context::Context::scene_at`]); every effect reads it.
 
+mod regions;
+
+use std::{cell::OnceCell, sync::Arc};
+
 use glam::{DMat3, DVec3};
 
+pub(crate) use regions::{Region, WeatherOver};
+
 use crate::{
-    scene::Place,
-    sky::{Disc, Lamp, Observer, Planet},
+    error::Result,
+    light::{Exposure, ToneCurve},
+    planet::Planet,
+    scene::{HostLight, Place},
+    surroundings::{OccluderMaps, Shelter, Told},
     weather::Conditions,
+    wind::{Carrying, WindGrid},
 };
+
+/// What holds at a camera at a time, worked out once a view and call: every effect draws from it.
+pub(crate) struct Moment<'a> {
+    /// Place, lights, air and the weather there.
+    pub scene: Scene,
+    /// The camera in the host's world, m.
+    pub eye: DVec3,
+    /// Simulation time, s.
+    pub time_s: f64,
+    /// Seed of everything that chance decides.
+    pub seed: u64,
+    /// From luminance to the display.
+    pub tone: ToneCurve,
+    /// Exposure of frames that bring none.
+    pub exposure: Exposure,
+    /// Radius of the planet's ground, m.
+    pub planet_radius_m: f64,
+    /// The weather at other places and times.
+    pub weather: WeatherOver<'a>,
+    /// That at the camera, with what falls in its region.
+    pub here: Conditions,
+    /// What the fog's extinction has of the weather's rain.
+    pub own_rain: OwnRain,
+    /// What keeps rain off: the host's boxes, and its maps if there are any.
+    pub shelters: &'a [Shelter],
+    pub maps: Option<&'a OccluderMaps>,
+    /// The host's lamps.
+    pub lamps: &'a [HostLight],
+    /// The host's wind that varies in space.
+    pub wind_grid: Option<&'a Arc<WindGrid>>,
+    pub carried: OnceCell<Carrying<'a>>,
+}
+
+impl<'a> Moment<'a> {
+    /// The wind that carries the air, up to now.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub fn carrying(&self) -> Result<&Carrying<'a>> {
+        if let Some(carrying) = self.carried.get() {
+            return Ok(carrying);
+        }
+        let carrying = self.weather.carrying_until(self.time_s)?;
+        Ok(self.carried.get_or_init(|| carrying))
+    }
+
+    /// Whether any map of the host's shows anything.
+    pub fn has_maps(&self) -> bool {
+        self.maps.is_some_and(|m| m.ranges().is_some())
+    }
+
+    /// What the host has told of the world round the camera. `near`: fall speed of the slowest of what is drawn, m/s, and how far
+    /// off any of it is, m; `exposure`: what it is exposed by.
+    ///
+    /// # Errors
+    /// As [`Moment::carrying`].
+    pub fn told(&self, near: (f64, f64), exposure: f64) -> Result<Told<'_>> {
+        Ok(Told {
+            shelters: self.shelters,
+            maps: self.maps,
+            lights: self.lamps,
+            eye: self.eye,
+            to_enu: self.scene.world_to_enu,
+            time_s: self.time_s,
+            wind_m_s: self.carrying()?.velocity_m_s(),
+            slowest_m_s: near.0,
+            reach_m: near.1,
+            exposure,
+        })
+    }
+
+    /// Whether anything may keep rain off.
+    pub fn is_sheltered(&self) -> bool {
+        !self.shelters.is_empty() || self.has_maps()
+    }
+}
+
+/// What the fog's extinction has of the weather's own rain: how much, and its soft upper end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct OwnRain {
+    pub extinction_per_m: f64,
+    /// Altitude above which there is none, m.
+    pub top_m: f64,
+    /// Depth below it within which it sets in, m.
+    pub soft_m: f64,
+}
+
+impl OwnRain {
+    /// Where there is none.
+    pub const NONE: Self = Self { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
+}
 
 /// The sun or the moon as it stands over a place. Vectors are (east, north, up) there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,27 +197,8 @@ impl Scene {
         if self.ground.sun_lux[1] >= self.ground.moon_lux[1] { &self.sun } else { &self.moon }
     }
 
-    /// The sky's own view of this scene.
-    pub(crate) fn observer(&self, exact: bool) -> Observer {
-        let lamp = |light: &Light, disc| Lamp {
-            toward: light.direction.to_array(),
-            irradiance: light.spectrum,
-            angular_radius: light.angular_radius,
-            disc,
-        };
-        let moon = lamp(&self.moon, Disc::Moon { lit_from: self.moon_lit_from().to_array() });
-        Observer {
-            altitude_m: self.place.altitude_m.clamp(-1e4, 1e8),
-            lamps: [Some(lamp(&self.sun, Disc::Sun)), self.moon.matters.then_some(moon)],
-            refraction: 1.0,
-            exact,
-        }
-    }
-
-    /// The sun's direction as the moon's face sees it: in the plane of moon and bright limb, at the phase's angle.
-    fn moon_lit_from(&self) -> DVec3 {
-        let cos_phase = (2.0 * self.moon.lit - 1.0).clamp(-1.0, 1.0);
-        let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();
-        (self.moon.bright_limb * sin_phase - self.moon.direction * cos_phase).normalize()
+    /// Sun and moon, as far as they light the picture.
+    pub(crate) fn lamps(&self) -> u32 {
+        1 + u32::from(self.moon.matters)
     }
 }

@@ -24,7 +24,7 @@ pub use difference::{Difference, difference};
 pub use estimate::Estimate;
 pub use governor::GaveWay;
 pub use parts::{Part, Reason, StepWork};
-pub(crate) use planner::{PartNow, Planner, Present, Situation, Unseen};
 pub use planner::{PartPlan, Plan, Prediction};
+pub(crate) use planner::{Planner, Present, Situation, Unseen};
 pub(crate) use saved::{Settings, read, write};
 pub use work::{Listed, Price, Units, Work};

@@ -10,7 +10,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{DropLight, Shot, uniforms::Classes};
+use super::{DropLight, StreakCamera, uniforms::Classes};
 use crate::{
     light::luminance,
     plan::{Unseen, parts::MOST_RUNGS},
@@ -81,7 +81,7 @@ impl Streaks {
     /// For a camera and what it is told; the light is exposed, and passed through what the picture has been.
     pub fn new(
         (classes, wind_m_s): (&Classes, DVec3),
-        shot: &Shot<'_>,
+        shot: &StreakCamera<'_>,
         (light, tone): (DropLight, Tone),
         lamps: bool,
     ) -> Self {

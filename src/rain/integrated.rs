@@ -19,7 +19,7 @@ use super::{
     Classes,
     drops::GRAVITY_M_S2,
     lattice::{SHELLS, fraction, side_m},
-    uniforms::{Air, Shot},
+    uniforms::{Air, StreakCamera},
 };
 use crate::wind::{WindGrid, WindGridKind};
 
@@ -76,7 +76,7 @@ impl StepUniform {
     /// From what was `left` to now; none where there is nothing to step.
     pub fn new(
         classes: &Classes,
-        shot: &Shot<'_>,
+        shot: &StreakCamera<'_>,
         air: &Air,
         left: Option<Left>,
         carried: &dyn Fn(f64) -> DVec3,

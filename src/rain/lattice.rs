@@ -13,6 +13,7 @@
 use glam::DVec3;
 
 use super::Classes;
+pub use crate::falling::random3;
 pub(super) use crate::weather::smoothstep;
 
 /// Shells of the lattice.
@@ -50,19 +51,6 @@ pub fn fraction(x: f64, side: f64) -> u32 {
     let cells = x / side;
     // 2^32 itself would saturate.
     ((cells - cells.floor()) * 4_294_967_296.0) as u64 as u32
-}
-
-/// pcg3d (Jarzynski and Olano 2020), as `shaders/rain/hash.wgsl` has it.
-pub fn random3(key: [u32; 3]) -> [u32; 3] {
-    let [mut x, mut y, mut z] = key.map(|k| k.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    x = x.wrapping_add(y.wrapping_mul(z));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    [x, y, z] = [x, y, z].map(|v| v ^ (v >> 16));
-    x = x.wrapping_add(y.wrapping_mul(z));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    [x, y, z]
 }
 
 /// How far the lattice of one shell has come at a moment, in 2^-32 of its side.

@@ -8,14 +8,14 @@
 //! small or too far is the fog's extinction; under a rain area of its own ([`RainArea`]) it is a column of rain, whose
 //! drops fall thinned by the area's rim near the camera and as a veil beyond.
 
-mod area;
+mod area_pass;
 pub mod candidates;
 mod cone_pass;
 pub mod cones;
 pub mod contrast;
 mod crown_pass;
 mod cull_pass;
-pub(crate) mod curtain;
+mod ice_here;
 pub mod integrated;
 pub mod lattice;
 pub mod light;
@@ -31,25 +31,26 @@ mod step_pass;
 mod stone_pass;
 mod stones;
 mod uniforms;
+mod view;
 
+pub use crate::falling::area::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea};
 pub use crate::falling::{MAX_AREAS, drops, ice, sizes};
 pub use crate::surroundings::{
     MAX_OCCLUDER_MAPS, MAX_PLANES, MAX_SHELTERS, OccluderMap, Planes, Shelter, Taken, shelter,
 };
-pub use area::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea};
 pub use light::DropLight;
 pub use settings::{RainModel, RainSettings};
 
-pub(crate) use area::Shaft;
+pub(crate) use crate::falling::area::Shaft;
 pub(crate) use cones::ConeUniform;
 pub(crate) use contrast::Streaks;
-pub(crate) use curtain::WAVES;
 pub(crate) use local::{Local, LocalUniform};
 pub(crate) use passes::{Drawn, RainLayer};
-pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform, OwnRain};
+pub(crate) use shaft::{AreaField, BELOW_M, Column, ColumnUniform};
 pub(crate) use splash::Splashes;
 pub(crate) use step_pass::{STATE_BYTES, Stepped};
 pub(crate) use stone_pass::StoneDraw;
 pub use stones::Stones;
 pub use uniforms::Classes;
-pub(crate) use uniforms::{Air, RainUniform, Shot};
+use uniforms::{Air, RainUniform, StreakCamera};
+pub(crate) use view::RainView;

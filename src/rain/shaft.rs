@@ -10,11 +10,17 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     MAX_AREAS,
-    area::{MAX_CORNERS, Outline, Shaft},
-    curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
     lattice::{HIDDEN_M, smoothstep},
 };
-use crate::{light::sinc, scene::depth::RANGE_SKY_M};
+use crate::{
+    falling::{
+        area::{MAX_CORNERS, Outline, Shaft},
+        curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
+    },
+    light::sinc,
+    moment::OwnRain,
+    scene::depth::RANGE_SKY_M,
+};
 
 /// How far below the station's altitude columns reach, m: into the valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
@@ -27,16 +33,6 @@ const GAUSS: [(f64, f64); 4] = [
     (0.669_990_521_792_428_1, 0.326_072_577_431_273),
     (0.930_568_155_797_026_3, 0.173_927_422_568_727),
 ];
-
-/// What is drawn of the weather's own rain: the extinction in the fog, its soft upper end, and what drops have taken over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OwnRain {
-    pub extinction_per_m: f64,
-    /// Altitude above which there is none, m.
-    pub top_m: f64,
-    /// Depth below it within which it sets in, m.
-    pub soft_m: f64,
-}
 
 /// `Column` of `shaders/rain/area.wgsl`, which explains the fields.
 #[repr(C)]
@@ -247,7 +243,7 @@ impl Column {
         let (semi, corners, mut edges) = match &self.shaft.outline {
             Outline::Ellipse(semi) => (*semi, 0, [[0.0; 4]; MAX_CORNERS]),
             Outline::Polygon(e, count) => {
-                let row = |e: super::area::Edge| [e.normal.x as f32, e.normal.y as f32, e.offset as f32, 0.0];
+                let row = |e: crate::falling::area::Edge| [e.normal.x as f32, e.normal.y as f32, e.offset as f32, 0.0];
                 (DVec2::ONE, *count as u32, e.map(row))
             }
         };
@@ -278,7 +274,7 @@ impl Column {
 impl AreaField {
     /// No columns.
     pub fn empty() -> Self {
-        let own = OwnRain { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
+        let own = OwnRain::NONE;
         Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, near_m: HIDDEN_M, waves: [[0.0; 4]; WAVES] }
     }
 
@@ -383,10 +379,8 @@ impl AreaField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rain::{
-        AreaMotion, AreaShape, RainArea,
-        curtain::{self, COLUMN_LENGTHS_M},
-    };
+    use crate::falling::curtain::{self, COLUMN_LENGTHS_M};
+    use crate::rain::{AreaMotion, AreaShape, RainArea};
 
     /// The extinction that a column adds at a place, from its description alone.
     fn added(field: &AreaField, i: usize, p: DVec3, patterned: bool) -> f64 {

@@ -8,7 +8,7 @@ use super::{
     integrated::{Around, Left, StepUniform},
     lattice::SHELLS,
     passes::STARTS,
-    uniforms::{Air, RainUniform, Shot},
+    uniforms::{Air, RainUniform, StreakCamera},
 };
 use crate::{
     error::Result,
@@ -41,7 +41,7 @@ pub(crate) struct StepPass {
 /// What a frame steps by.
 pub(crate) struct Stepped<'a> {
     pub classes: &'a Classes,
-    pub shot: &'a Shot<'a>,
+    pub shot: &'a StreakCamera<'a>,
     pub air: &'a Air,
     /// Nothing of earlier frames may show.
     pub anew: bool,

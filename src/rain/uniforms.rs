@@ -85,7 +85,7 @@ impl Classes {
 }
 
 /// A camera among drops.
-pub(crate) struct Shot<'a> {
+pub(crate) struct StreakCamera<'a> {
     /// From camera-relative east-north-up to clip space.
     pub clip: DMat4,
     pub rays: &'a ViewRays,
@@ -111,7 +111,7 @@ pub(crate) struct Air {
 }
 
 impl RainUniform {
-    pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &Shot<'_>, air: &Air) -> Self {
+    pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &StreakCamera<'_>, air: &Air) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let moment = |s: usize| Moment::new(s, air.displacement_m, air.time_s);
         Self {

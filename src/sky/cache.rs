@@ -13,10 +13,10 @@ use bytemuck::{bytes_of, cast_slice};
 use super::Planet;
 use super::recipe::Name;
 use super::settings::SkySettings;
-use super::spectral::parts;
 use super::uniforms::{AirUniform, DimsUniform};
 use crate::error::{Error, Result, Status};
 use crate::gpu::shader;
+use crate::planet::spectral::parts;
 
 /// First bytes of a file; the digits are the version of its layout.
 const MAGIC: &[u8; 8] = b"WKSKY\x00\x01\n";

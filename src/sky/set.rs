@@ -14,10 +14,10 @@ use super::light::LightTable;
 use super::passes::{Table, uniform_buffer};
 use super::recipe::Name;
 use super::settings::{MOST_WAVELENGTHS, SkySettings};
-use super::spectral::parts;
 use super::uniforms::AirUniform;
 use crate::error::Result;
 use crate::gpu::Device;
+use crate::planet::spectral::parts;
 
 /// One planet's tables, and how observers and fades read them.
 pub(crate) struct TableSet {

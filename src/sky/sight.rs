@@ -3,11 +3,11 @@
 
 use std::f64::consts::PI;
 
-use super::planet::Planet;
 use super::reference::medium::Medium;
 use super::reference::ray::Ray;
 use super::reference::sun::{disc_strips, sun_transmittance};
 use crate::error::{Error, Result, check_range};
+use crate::planet::Planet;
 
 /// Contrast below which a black target is lost against the horizon sky by definition of the meteorological optical range
 /// (WMO).

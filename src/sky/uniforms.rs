@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::Planet;
 use super::settings::SkySettings;
-use super::spectral::Part;
+use crate::planet::spectral::Part;
 
 /// Tiles of the table of light: irradiance and six moments.
 pub(crate) const LIGHT_TILES: u32 = 7;

@@ -271,7 +271,7 @@ mod tests {
         };
         let (mut met, mut by_box_only) = (0, 0);
         for i in 0..3000u32 {
-            let random = |k: u32| f64::from(crate::rain::lattice::random3([i, k, 3])[0]) / 4_294_967_296.0;
+            let random = |k: u32| f64::from(crate::falling::random3([i, k, 3])[0]) / 4_294_967_296.0;
             let p = shape.center_m + (DVec3::new(random(0), random(1), random(2)) - 0.5) * DVec3::new(24.0, 24.0, 10.0);
             let velocity = DVec3::new(30.0 * random(3) - 15.0, 30.0 * random(4) - 15.0, -1.0 - 8.0 * random(5));
             let hit = sheltered(&shape, p, velocity);
@@ -296,7 +296,7 @@ mod tests {
     fn no_box_that_matters_is_left_out() {
         let (mut left_out, mut kept) = (0, 0);
         for i in 0..4000u32 {
-            let random = |k: u32| f64::from(crate::rain::lattice::random3([i, k, 7])[0]) / 4_294_967_296.0 - 0.5;
+            let random = |k: u32| f64::from(crate::falling::random3([i, k, 7])[0]) / 4_294_967_296.0 - 0.5;
             let at = |k: u32, size: f64| DVec3::new(random(k), random(k + 1), random(k + 2)) * size;
             let b = Shelter {
                 center_m: at(0, 120.0),

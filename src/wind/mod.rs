@@ -8,6 +8,7 @@
 //! [`Wind`] and a [`Drift`] answer for any time of a timeline in closed form: velocity, and its integral, the displacement.
 //! What the wind carries is moved by the displacement, never by velocity times time: then no change throws it.
 
+mod carrying;
 mod drift;
 mod grid;
 mod gusts;
@@ -16,6 +17,7 @@ mod tests;
 
 use glam::{DVec2, DVec3};
 
+pub(crate) use carrying::{Carrying, WindOver};
 use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};

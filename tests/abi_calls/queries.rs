@@ -341,7 +341,7 @@ fn costs_are_there_where_they_were_asked_for() {
         assert_eq!(wk_view_get_report(view, &mut report), WK_OK);
         assert!(report.has & WK_REPORT_HAS_MS != 0 && report.ms > 0.0);
         assert_eq!(wk_view_get_costs(view, null_mut(), 0, 0, &mut count), WK_OK, "{}", message());
-        let all = welkin::frame::Effect::ALL.len() as u32;
+        let all = welkin::frame::CostItem::ALL.len() as u32;
         assert_eq!(count, all);
         refused(
             wk_view_get_costs(view, costs.as_mut_ptr(), all - 1, size, &mut count),

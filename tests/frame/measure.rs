@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use welkin::{
     Status,
-    frame::{ColorSpace, Costs, Effect, Exposure, Frame, FrameFlags, Stages},
+    frame::{ColorSpace, CostItem, Costs, Exposure, Frame, FrameFlags, Stages},
 };
 
 use crate::host::{Host, camera};
@@ -22,7 +22,7 @@ fn measured(host: &mut Host, frame_id: u64, stages: Stages) -> Costs {
 }
 
 fn sum(costs: &Costs) -> f64 {
-    Effect::ALL.iter().map(|e| costs.ms(*e)).sum()
+    CostItem::ALL.iter().map(|e| costs.ms(*e)).sum()
 }
 
 #[test]
@@ -32,8 +32,8 @@ fn effects_add_up_to_the_whole_and_what_did_not_run_costs_nothing() {
     assert_eq!(host.view.report().costs, None, "nobody asked");
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
     let first = measured(&mut host, 1, Stages::ALL);
-    let ran = |costs: &Costs| Effect::ALL.into_iter().filter(|e| costs.ms(*e) > 0.0).collect::<Vec<_>>();
-    use Effect::{Background, Medium, SkyTables, SkyView, Tone, Veil};
+    let ran = |costs: &Costs| CostItem::ALL.into_iter().filter(|e| costs.ms(*e) > 0.0).collect::<Vec<_>>();
+    use CostItem::{Background, Medium, SkyTables, SkyView, Tone, Veil};
     assert_eq!(ran(&first), [SkyTables, SkyView, Background, Medium, Tone], "{first:?}");
     let second = measured(&mut host, 2, Stages::ALL);
     assert_eq!(ran(&second), [Background, Medium, Tone], "tables are kept: {second:?}");
@@ -95,7 +95,7 @@ fn a_measured_picture_is_the_same_to_rounding() {
         assert!(worst.clone().fold(0.0, f32::max) < step, "{format:?}: {}", worst.fold(0.0, f32::max));
         // Tone mapping of what eight bits cannot hold is not taken apart.
         let fused = format == wgpu::TextureFormat::Rgba8Unorm && space == ColorSpace::SceneLinear;
-        assert!(none.is_none() && (costs.unwrap().ms(Effect::Composition) > 0.0) == fused, "{format:?} {costs:?}");
+        assert!(none.is_none() && (costs.unwrap().ms(CostItem::Composition) > 0.0) == fused, "{format:?} {costs:?}");
     }
 }
 
@@ -104,9 +104,9 @@ fn calls_of_one_frame_are_added_and_a_new_frame_begins_anew() {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
     let prepared = measured(&mut host, 1, Stages::PREPARE);
     let background = measured(&mut host, 1, Stages::BACKGROUND);
-    assert_eq!(prepared.ms(Effect::SkyTables), background.ms(Effect::SkyTables));
-    assert!(background.ms(Effect::Background) > 0.0 && background.whole_ms > prepared.whole_ms);
-    assert_eq!(measured(&mut host, 2, Stages::BACKGROUND).ms(Effect::SkyTables), 0.0);
+    assert_eq!(prepared.ms(CostItem::SkyTables), background.ms(CostItem::SkyTables));
+    assert!(background.ms(CostItem::Background) > 0.0 && background.whole_ms > prepared.whole_ms);
+    assert_eq!(measured(&mut host, 2, Stages::BACKGROUND).ms(CostItem::SkyTables), 0.0);
 }
 
 #[test]

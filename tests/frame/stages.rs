@@ -4,7 +4,7 @@ use glam::DVec3;
 use welkin::{
     Status,
     context::GivenDirection,
-    frame::{Effect, Frame, FrameFlags, Stages},
+    frame::{CostItem, Frame, FrameFlags, Stages},
     scene::Camera,
 };
 
@@ -99,16 +99,16 @@ fn a_measured_frame_says_what_each_effect_cost() {
     };
     measured(2, Stages::ALL); // what is compiled at its first use
     let all = measured(3, Stages::ALL);
-    let sum: f64 = Effect::ALL.iter().map(|e| all.ms(*e)).sum();
+    let sum: f64 = CostItem::ALL.iter().map(|e| all.ms(*e)).sum();
     assert!((0.6..=1.1).contains(&(sum / all.whole_ms)), "{sum} of {} ms", all.whole_ms);
-    for effect in [Effect::Background, Effect::Medium, Effect::Tone] {
+    for effect in [CostItem::Background, CostItem::Medium, CostItem::Tone] {
         assert!(all.ms(effect) > 0.0, "{effect:?}");
     }
-    assert_eq!(all.ms(Effect::SkyTables), 0.0, "nothing changed");
+    assert_eq!(all.ms(CostItem::SkyTables), 0.0, "nothing changed");
     let sky = measured(4, Stages::BACKGROUND);
-    assert!(sky.ms(Effect::Background) > 0.0 && sky.ms(Effect::Medium) == 0.0 && sky.ms(Effect::Tone) == 0.0);
+    assert!(sky.ms(CostItem::Background) > 0.0 && sky.ms(CostItem::Medium) == 0.0 && sky.ms(CostItem::Tone) == 0.0);
     let both = measured(4, Stages::MEDIUM);
-    assert!(both.ms(Effect::Background) == sky.ms(Effect::Background) && both.ms(Effect::Medium) > 0.0);
+    assert!(both.ms(CostItem::Background) == sky.ms(CostItem::Background) && both.ms(CostItem::Medium) > 0.0);
     host.record(5, Stages::ALL).unwrap();
     assert!(host.view.report().costs.is_none());
     let mut encoder = host.device.device.create_command_encoder(&Default::default());

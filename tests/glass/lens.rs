@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 use welkin::{
     Status,
-    frame::{Effect, Frame, FrameFlags, Stages},
+    frame::{CostItem, Frame, FrameFlags, Stages},
     glass::{Pane, Windscreen, WiperArm, laws::radius_m, step::VOLUME_UNIT_M3},
     scene::{Camera, DepthKind, DepthMapping},
 };
@@ -231,5 +231,5 @@ fn one_call_equals_the_stages_one_by_one_and_costs_are_told() {
     for (a, b) in whole.iter().zip(&apart) {
         assert!((0..3).all(|c| (a[c] - b[c]).abs() < 2e-3), "{a:?} {b:?}");
     }
-    assert!(costs.unwrap().ms(Effect::Windscreen) > 0.0);
+    assert!(costs.unwrap().ms(CostItem::Windscreen) > 0.0);
 }

@@ -10,7 +10,7 @@ use crate::{
     rain::{
         DropLight,
         lattice::{self, Drop, SPEED_UNIT},
-        uniforms::{Air, Classes, Shot},
+        uniforms::{Air, Classes, StreakCamera},
     },
     scene::{Camera, DepthMapping, ViewRays},
     surroundings,
@@ -56,7 +56,7 @@ impl Bench {
         let camera = Camera::look_to(EYE, DVec3::Y, DVec3::Z, fov_rad, 1.5, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
         self.clip = camera.projection * DMat4::from_mat3(camera.rotation());
-        let shot = Shot {
+        let shot = StreakCamera {
             clip: self.clip,
             rays: &rays,
             height: 360,

@@ -62,7 +62,7 @@ impl Bench {
     fn step(&mut self, time_s: f64, position_m: DVec3, wind: DVec3, grid: Option<&Arc<WindGrid>>) {
         let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.9, 1.6, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
-        let shot = Shot {
+        let shot = StreakCamera {
             clip: DMat4::IDENTITY,
             rays: &rays,
             height: 100,

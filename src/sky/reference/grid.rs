@@ -123,7 +123,7 @@ pub fn azimuths(n: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::planet::Planet;
+    use crate::planet::Planet;
 
     #[test]
     fn coordinates_and_nodes_are_inverse() {

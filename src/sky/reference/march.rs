@@ -141,7 +141,7 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::planet::Planet;
+    use crate::planet::Planet;
 
     /// For gas alone the in-scattered share is 1 - T exactly.
     #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::sky::planet::Planet;
+use crate::planet::Planet;
 
 /// Number of media: gas, haze, ozone, always in this order.
 pub const MEDIA: usize = 3;

@@ -32,7 +32,7 @@ use self::solve::{Solver, haze_matters};
 use self::source::{Nodes, Source};
 use self::sun::{SunTable, disc_strips, scattered_once, sun_transmittance, with_phase};
 use crate::error::{Error, Result, check_range};
-use crate::sky::planet::Planet;
+use crate::planet::Planet;
 
 /// How many times light may have been scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -286,7 +286,7 @@ pub fn sun_hidden(medium: &Medium, altitude_m: f64, mu_s: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::planet::Planet;
+    use crate::planet::Planet;
 
     fn medium(radius_m: f64, scale_height_m: f64, top_m: f64) -> Medium {
         let mut p = Planet::earth();

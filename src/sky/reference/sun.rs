@@ -111,7 +111,7 @@ pub fn with_phase(medium: &Medium, nu: f64, gas: &[f64; 3], haze: &[f64; 3]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::planet::Planet;
+    use crate::planet::Planet;
 
     #[test]
     fn table_follows_quadrature() {

@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::planet::{FIELDS, Field, Planet, file_error};
+use super::{FIELDS, Field, Planet, file_error};
 use crate::error::{Error, Result, Status, shown};
 
 /// Parses and checks a whole planet file.

@@ -1,10 +1,8 @@
 //! Hail and ice pellets of a view: what falls round its camera, counted once.
 
-use glam::DVec3;
-
+use super::{RainModel, RainSettings, Stones, drops};
 use crate::{
-    context::{Context, Scene},
-    rain::{RainModel, RainSettings, Stones, drops},
+    moment::{Moment, Scene},
     weather::Falling,
 };
 
@@ -17,9 +15,9 @@ pub(super) struct Ice {
 }
 
 impl Ice {
-    /// Looks what falls at a camera, in rain areas too.
-    pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) {
-        let falling = context.with_areas(eye, context.time_s(), scene.conditions).precipitation;
+    /// Takes what falls at the camera.
+    pub fn gather(&mut self, now: &Moment<'_>) {
+        let falling = now.here.precipitation;
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }
 

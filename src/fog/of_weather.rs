@@ -4,14 +4,14 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{Light, Scene};
+use super::{
+    FogLayer, FogLight, FogModel, Law, MAX_EXTINCTION_PER_M, Patches, Phase, Profile, Viewpoint,
+    patterns::{CURTAIN_WAVES, Curtains},
+};
 use crate::{
     error::Result,
-    fog::{
-        FogLayer, FogLight, FogModel, Law, Patches, Phase, Profile, Viewpoint,
-        patterns::{CURTAIN_WAVES, Curtains},
-    },
-    rain::curtain,
+    falling::{curtain, liquid_share},
+    moment::{Light, Scene},
     scene::Place,
     weather::{Conditions, lifting, smoothstep},
 };
@@ -25,12 +25,12 @@ const LEAST_SHOWN: f64 = 1e-3;
 /// One layer holds both, so that a reported visibility is the drawn one at the station: rain or snow alone fills the air
 /// up to the lowest cloud; with fog, the denser of the two gives the shape, and both where they are about as dense. Patches go with
 /// the air: `drift_m` is how far the wind has carried it (east, north).
-pub fn fog_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
+pub(crate) fn fog_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let falling = c.precipitation.extinction_per_m;
     let rain = (falling > 0.0).then(|| FogLayer {
         // Under the deck that it falls from, light comes from all sides: where the drops send it does not show.
         phase: Phase::HenyeyGreenstein { g: 0.0 },
-        ..FogLayer::ground_fog(falling.min(crate::fog::MAX_EXTINCTION_PER_M), c.falling_top_m(), 100.0)
+        ..FogLayer::ground_fog(falling.min(MAX_EXTINCTION_PER_M), c.falling_top_m(), 100.0)
     });
     match (ground_layer(c, seed, drift_m), rain) {
         (Some(fog), Some(rain)) => Some(together(&fog, &rain)),
@@ -59,7 +59,7 @@ fn together(fog: &FogLayer, rain: &FogLayer) -> FogLayer {
     };
     let patches = fog.patches.map(|p| Patches { amount: p.amount * (1.0 - shape), ..p });
     FogLayer {
-        extinction_per_m: whole.min(crate::fog::MAX_EXTINCTION_PER_M),
+        extinction_per_m: whole.min(MAX_EXTINCTION_PER_M),
         angstrom: mix(fog.angstrom, rain.angstrom, part),
         albedo: [0, 1, 2].map(|i| mix(fog.albedo[i], rain.albedo[i], part)),
         profile,
@@ -122,7 +122,7 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     let albedo = crate::light::EARTH_WAVELENGTHS_NM
         .map(|nm| 1.0 - (absorbed * (nm / crate::light::EARTH_WAVELENGTHS_NM[1]).powf(exponent)).min(1.0));
     Some(FogLayer {
-        extinction_per_m: (f.extinction_per_m / inside).min(crate::fog::MAX_EXTINCTION_PER_M),
+        extinction_per_m: (f.extinction_per_m / inside).min(MAX_EXTINCTION_PER_M),
         angstrom: f.angstrom_exponent.clamp(-1.0, 4.0),
         albedo,
         profile,
@@ -137,7 +137,7 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
 }
 
 /// What the weather's low layer leaves of the light `above` it: sun, moon, and all else on level ground, lux.
-pub(super) fn through_fog(
+pub(crate) fn through_fog(
     c: &Conditions,
     place: &Place,
     [sun, moon]: [&Light; 2],
@@ -189,7 +189,7 @@ impl Scene {
     fn curtains(&self, layer: &FogLayer, seed: u64) -> Curtains {
         let falling = &self.conditions.precipitation;
         let variation = curtain::variation(falling);
-        let rain_per_m = falling.extinction_per_m * super::areas::liquid_share(falling);
+        let rain_per_m = falling.extinction_per_m * liquid_share(falling);
         // In so thin a rain they would not show.
         let shown = variation * rain_per_m * curtain::OWN_LENGTHS_M[1];
         if shown < LEAST_SHOWN || layer.extinction_per_m <= 0.0 {

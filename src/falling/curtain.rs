@@ -1,16 +1,16 @@
 //! The pattern of curtains in rain: steep waves that fall as the drops do, so that a ray's mean over them is a closed form and
-//! nothing flickers far away. Columns of rain areas have one each ([`super::shaft`]), the weather's own rain another, in the fog
+//! nothing flickers far away. Columns of rain areas have one each ([`crate::rain`]), the weather's own rain another, in the fog
 //! that is its extinction ([`crate::fog::patterns`]).
 
 use std::f64::consts::TAU;
 
-use super::lattice::{random3, smoothstep};
-use crate::weather::Falling;
+use super::random3;
+use crate::weather::{Falling, smoothstep};
 
 /// Waves of the pattern of columns.
 pub(crate) const WAVES: usize = 12;
 /// Height after which the pattern repeats, m.
-pub(super) const PERIOD_M: f64 = 4096.0;
+pub(crate) const PERIOD_M: f64 = 4096.0;
 /// Amplitude of each wave of columns.
 pub(crate) const AMOUNT: f64 = 0.2;
 /// Distances between which the pattern of columns comes up, m: drops round the camera know nothing of it.

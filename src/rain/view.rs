@@ -1,36 +1,33 @@
 //! The rain of a view: what it draws of what falls, from scene and camera.
 
-use std::sync::Arc;
-
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::{
-    ColorSpace, Frame, FrameFlags, RainReport, ToneCurve,
-    areas::{AreaPass, Columns},
-    pipelines::Pipelines,
-    stones::Ice,
-    surface::rounding,
+    Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel, RainSettings,
+    RainUniform, Splashes, Stepped, StoneDraw, StreakCamera, Streaks,
+    area_pass::{AreaPass, Columns},
+    candidates,
+    cones::{BANDS_M, CONES},
+    drops,
+    ice_here::Ice,
+    lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
+    splash,
 };
 use crate::{
-    context::{Context, Scene},
     error::Result,
+    falling::curtain,
     gpu::Device,
-    rain::{
-        Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel,
-        RainSettings, RainUniform, Shot, Splashes, Stepped, StoneDraw, Streaks,
-        cones::{BANDS_M, CONES},
-        curtain, drops,
-        lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
-        splash,
+    light::ToneCurve,
+    moment::{Moment, Scene},
+    stage::{
+        ColorSpace, Composition, Drawing, DrawnEffect, PutPart, RainReport, Recording, Report, Shot, Stages, Texture,
+        rounding,
     },
-    scene::ViewRays,
-    sky::SkyVolume,
-    surroundings::Around,
     weather::Falling,
 };
 
 /// What a view holds for its drops.
-pub(super) struct Rain {
+pub(crate) struct RainView {
     layer: RainLayer,
     pub settings: RainSettings,
     /// Shares of all that falls, and of the drops near the camera, that are drawn: the planner's.
@@ -41,9 +38,9 @@ pub(super) struct Rain {
     field: AreaField,
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
-    /// Whether the frame's fog, with the weather's own rain in it, lies before the picture.
-    pub veiled: bool,
     ice: Ice,
+    /// What was drawn last, and in which frame.
+    drawn: (u64, RainReport),
 }
 
 /// Rains whose drops are kept counted: more than the weather's and all areas'.
@@ -52,20 +49,7 @@ const COUNTED: usize = 32;
 /// Least share of a rain near a rim in what cones are made for.
 const LEAST_OF_CONES: f64 = 1e-2;
 
-/// What is drawn into: the frame's work, the frame, and its colour.
-pub(super) type To<'a, 'b> = (&'a mut wgpu::CommandEncoder, &'a Frame<'b>, &'a wgpu::Texture);
-
-/// Whether any map of the host's shows anything.
-pub(super) fn has_maps(context: &Context) -> bool {
-    context.occluder_maps().is_some_and(|m| m.ranges().is_some())
-}
-
-/// From camera-relative east-north-up to clip space.
-fn clip(frame: &Frame<'_>, scene: &Scene) -> DMat4 {
-    frame.camera.projection * DMat4::from_mat3(frame.camera.rotation() * scene.world_to_enu.transpose())
-}
-
-impl Rain {
+impl RainView {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self {
             layer: RainLayer::new(device),
@@ -73,24 +57,28 @@ impl Rain {
             shares: [1.0; 2],
             counted: Vec::new(),
             field: AreaField::empty(),
-            veiled: true,
             local: None,
             areas: None,
             ice: Ice::default(),
+            drawn: (u64::MAX, RainReport::default()),
         }
     }
 
-    /// Looks what there is for a camera in a scene: what falls round it, and columns further off.
-    pub fn look(&mut self, context: &Context, scene: &Scene, eye: DVec3) -> Result<()> {
+    /// Finds what falls around the camera, and which columns of rain are visible farther away.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub fn gather(&mut self, now: &Moment<'_>) -> Result<()> {
+        let scene = &now.scene;
         let falling = &scene.conditions.precipitation;
-        let at = (eye, &scene.world_to_enu, scene.place.altitude_m);
+        let at = (now.eye, &scene.world_to_enu, scene.place.altitude_m);
         self.field.columns.clear();
-        if context.rain_areas().len() > 0 {
-            let shafts = context.shafts_at(context.time_s(), &scene.conditions)?;
-            self.field.set(shafts, at, &context.own_rain(&scene.conditions), context.time_s());
+        if !now.weather.regions.is_empty() {
+            let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
+            self.field.set(shafts, at, &now.own_rain, now.time_s);
         }
-        self.local = Some(Local::new(falling, &self.field, at, REACH_M.max(self.reach(context))));
-        self.ice.look(context, scene, eye);
+        self.local = Some(Local::new(falling, &self.field, at, REACH_M.max(self.reach(now))));
+        self.ice.gather(now);
         Ok(())
     }
 
@@ -110,7 +98,7 @@ impl Rain {
     }
 
     /// How many drops are drawn round the camera.
-    pub fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
+    fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
         self.classes(device, scene, &scene.conditions.precipitation).per_shell * self.shells() as u32
     }
 
@@ -138,31 +126,22 @@ impl Rain {
         self.settings.model == RainModel::Automatic && self.rains()
     }
 
-    /// Draws so much of all rain, and so much of that near the camera drop by drop.
-    pub fn follow(&mut self, shares: [f32; 2]) {
+    /// Sets the drawn share of all rain, and the share of near rain drawn as single drops.
+    fn set_shares(&mut self, shares: [f32; 2]) {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
-    /// Bytes of GPU memory held.
-    pub fn bytes(&self) -> u64 {
-        self.layer.bytes()
-    }
-
-    /// Lets the picture's layer go.
-    pub fn forget_picture(&mut self) {
-        self.layer.forget_picture();
-    }
-
     /// The layer for a picture like `color`.
-    pub fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
+    fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
         self.layer.view(device, color.size())
     }
 
     /// What drops or cones of the weather's own rain hide where all are drawn, as an extinction (their discs: half of theirs,
     /// the rest is diffraction; times the contrast's gain), the distance up to which they do, and the share of it that is drawn.
-    pub fn hidden(&mut self, device: &Device, context: &Context, scene: &Scene) -> ([f32; 2], f32) {
+    fn hidden(&mut self, device: &Device, now: &Moment<'_>) -> ([f32; 2], f32) {
+        let scene = &now.scene;
         let falling = scene.conditions.precipitation;
-        let reach = self.reach(context);
+        let reach = self.reach(now);
         let most = self.settings.most_on(device);
         // Stones are rare: they hide as much as if they did within the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
@@ -174,17 +153,17 @@ impl Rain {
     }
 
     /// Whether there are cones: always, by choice, and beyond the drops where lamps light what the veil does not know of.
-    fn has_cones(&self, context: &Context) -> bool {
+    fn has_cones(&self, now: &Moment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
-            RainModel::Drops | RainModel::Integrated => !context.lights().is_empty(),
+            RainModel::Drops | RainModel::Integrated => !now.lamps.is_empty(),
             RainModel::Veil => false,
         }
     }
 
     /// Distance up to which what falls is drawn, m.
-    fn reach(&self, context: &Context) -> f64 {
-        if self.has_cones(context) { BANDS_M[CONES] } else { HIDDEN_M }
+    fn reach(&self, now: &Moment<'_>) -> f64 {
+        if self.has_cones(now) { BANDS_M[CONES] } else { HIDDEN_M }
     }
 
     /// Share of the near drops that is drawn one by one, the rest on cones.
@@ -205,7 +184,7 @@ impl Rain {
     }
 
     /// Fall speed of the slowest of what is drawn, m/s, and how far from the camera any of it is, m.
-    pub fn slowest_and_reach(&mut self, device: &Device, scene: &Scene) -> (f64, f64) {
+    fn slowest_and_reach(&mut self, device: &Device, scene: &Scene) -> (f64, f64) {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
         let reach = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
         // The smallest stones are a tenth slower than the smallest drops.
@@ -231,9 +210,10 @@ impl Rain {
     }
 
     /// Takes what is drawn as drops near the camera off the columns of rain areas, and gives them their pattern.
-    fn set_near(&mut self, device: &Device, context: &Context, scene: &Scene) {
+    fn set_near(&mut self, device: &Device, now: &Moment<'_>) {
+        let scene = &now.scene;
         let falling = scene.conditions.precipitation;
-        self.field.near_m = self.reach(context);
+        self.field.near_m = self.reach(now);
         // No veil gives way to more than all of it, which is twice what its drops' discs hide.
         let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
         self.field.own_near = share * self.near(device, scene, &falling);
@@ -242,43 +222,19 @@ impl Rain {
             let near = share * self.near(device, scene, &shaft.falling);
             self.field.columns[i].near = near * shaft.begun(scene.place.altitude_m);
         }
-        self.field.waves = curtain::waves(context.seed() as u32, curtain::COLUMN_LENGTHS_M);
-    }
-
-    /// The columns of rain areas as the veil of the host's own shaders needs them, if there are any.
-    pub fn veiling_areas(
-        &mut self,
-        device: &Device,
-        frame: &Frame<'_>,
-        (context, scene): (&Context, &Scene),
-        blocks: [&wgpu::Buffer; 2],
-    ) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
-        if self.field.columns.is_empty() {
-            return None;
-        }
-        self.set_near(device, context, scene);
-        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: true, constants: &[] };
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
-        pass.bound(device, &columns, blocks, frame.depth_layer())
+        self.field.waves = curtain::waves(now.seed as u32, curtain::COLUMN_LENGTHS_M);
     }
 
     /// Draws the columns of rain areas into the layer; whether there are any.
-    pub fn draw_areas(
-        &mut self,
-        (device, shared): (&Arc<Device>, &Pipelines),
-        (encoder, frame, color): To<'_, '_>,
-        (context, scene): (&Context, &Scene),
-        (blocks, sky): ([&wgpu::Buffer; 2], &SkyVolume),
-        constants: &[(&'static str, f64)],
-    ) -> Result<bool> {
+    fn draw_areas(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<bool> {
         if self.field.columns.is_empty() {
             return Ok(false);
         }
-        self.set_near(device, context, scene);
-        let columns = Columns { field: &self.field, scene, clip: clip(frame, scene), veiled: self.veiled, constants };
-        let target = self.layer.view(device, color.size());
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(device)));
-        pass.draw((device, shared), encoder, &columns, blocks, (sky, frame.depth_layer()), target)?;
+        self.set_near(to.device, shot.now);
+        let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: shot.veiled };
+        let target = self.layer.view(to.device, shot.color.texture.size());
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device)));
+        pass.draw(to, &columns, with, shot.frame.depth_layer(), target)?;
         Ok(true)
     }
 
@@ -326,64 +282,61 @@ impl Rain {
         mixture.map_or(base, |m| m.with(left.max(LEAST_OF_CONES), &base))
     }
 
-    fn shot<'a>(&self, frame: &Frame<'_>, height: u32, (scene, rays): (&Scene, &'a ViewRays)) -> Shot<'a> {
-        Shot {
-            clip: clip(frame, scene),
-            rays,
-            height,
-            y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
+    fn camera<'a>(&self, shot: &Shot<'a>) -> StreakCamera<'a> {
+        let scene = &shot.now.scene;
+        StreakCamera {
+            clip: shot.clip(),
+            rays: shot.rays,
+            height: shot.color.texture.height(),
+            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
             position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
-            velocity_m_s: scene.world_to_enu * frame.camera_velocity_m_s,
+            velocity_m_s: scene.world_to_enu * shot.frame.camera_velocity_m_s,
             exposure_s: self.settings.shutter_s,
             gain: self.settings.contrast_gain,
         }
     }
 
-    /// What streaks are worth in a picture so many pixels high, if the plan decides about them.
-    pub fn streaks(
-        &mut self,
-        device: &Device,
-        (frame, height, exposure): (&Frame<'_>, u32, f64),
-        (context, scene, rays): (&Context, &Scene, &ViewRays),
-    ) -> Option<Streaks> {
+    /// What streaks are worth in a picture, if the plan decides about them.
+    pub fn streaks(&mut self, shot: &Shot<'_>) -> Option<Streaks> {
         if !self.is_planned() {
             return None;
         }
-        let (classes, _) = self.falling_here(device, scene);
-        let wind = context.carrying_wind(context.time_s()).ok()?;
-        let tone: fn(f64) -> f64 = match (frame.color_space, context.tone_curve()) {
+        let (device, now) = (shot.device, shot.now);
+        let (classes, _) = self.falling_here(device, &now.scene);
+        let wind = now.carrying().ok()?.velocity_m_s();
+        let tone: fn(f64) -> f64 = match (shot.frame.color_space, now.tone) {
             (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
             (_, ToneCurve::Exponential) => |x| ToneCurve::Exponential.apply(x),
             (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
         };
-        let light = (DropLight::of(scene).exposed(exposure), tone);
-        let shot = self.shot(frame, height, (scene, rays));
-        Some(Streaks::new((&classes, wind), &shot, light, !context.lights().is_empty()))
+        let light = (DropLight::of(&now.scene).exposed(shot.exposure), tone);
+        Some(Streaks::new((&classes, wind), &self.camera(shot), light, !now.lamps.is_empty()))
     }
 
-    /// Draws the drops round the camera into the layer; answers what of them.
-    pub fn draw(
+    /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of them.
+    fn draw_near(
         &mut self,
-        device: &Arc<Device>,
-        (encoder, frame, color): To<'_, '_>,
-        (context, scene, rays): (&Context, &Scene, &ViewRays),
-        (exposure, over, told): (f64, bool, &Around),
+        shot: &Shot<'_>,
+        with: &Drawing<'_>,
+        over: bool,
+        to: &mut Recording<'_>,
     ) -> Result<RainReport> {
         if !self.falls_here() {
             return Ok(RainReport::default());
         }
+        let (device, now, frame, scene) = (to.device, shot.now, shot.frame, &shot.now.scene);
         let (classes, mut local) = self.falling_here(device, scene);
-        let shot = self.shot(frame, color.height(), (scene, rays));
+        let camera = self.camera(shot);
         let c = &scene.conditions;
-        let wind = context.carrying_until(context.time_s())?;
+        let wind = now.carrying()?;
         let air = Air {
             displacement_m: wind.displacement_m(),
             velocity_m_s: wind.velocity_m_s(),
-            time_s: context.time_s(),
+            time_s: now.time_s,
             extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
         };
         let mut block =
-            RainUniform::new(context.seed(), &classes, &DropLight::of(scene).exposed(exposure), &shot, &air);
+            RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(shot.exposure), &camera, &air);
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
@@ -395,33 +348,33 @@ impl Rain {
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
         let carried = |from| wind.since(from);
-        let cones = (wet && self.has_cones(context)).then(|| {
+        let cones = (wet && self.has_cones(now)).then(|| {
             let there = self.falling_at(device, scene);
             local.iter_mut().for_each(|l| l.set_cones(there.extinction_per_m));
-            let all = ConeUniform::new(block.seed, &there, &shot, &air, &carried);
+            let all = ConeUniform::new(block.seed, &there, &camera, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share * self.settings.contrast_gain)
         });
-        let around = context.wind_grid().map(|g| {
-            let to_enu = context.world().frame_at(g.origin).world_to_enu;
-            (g, g.cells_at(frame.camera.position, to_enu))
+        let around = now.wind_grid.map(|g| {
+            let to_enu = now.weather.world.frame_at(g.origin).world_to_enu;
+            (g, g.cells_at(now.eye, to_enu))
         });
         let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
             classes: &classes,
-            shot: &shot,
+            shot: &camera,
             air: &air,
-            anew: frame.flags.has(FrameFlags(FrameFlags::CUT.0 | FrameFlags::NO_HISTORY.0)),
+            anew: frame.is_pure(),
             carried: &carried,
             around,
-            most: self.settings.most_on(device),
+            most,
         });
         let drawn = Drawn {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
-            around: told,
-            maps: has_maps(context),
+            around: with.around,
+            maps: now.has_maps(),
             splash: &splashes.uniform(
-                (shot.position_m, height_m),
+                (camera.position_m, height_m),
                 air.time_s,
                 share * shown,
                 frame.depth.map_or([0.0; 2], rounding),
@@ -430,9 +383,9 @@ impl Rain {
             local: local.as_ref(),
             over,
             stones: stones
-                .map(|s| StoneDraw::new(&s, s.uniform(shot.position_m, height_m, air.displacement_m, air.time_s))),
+                .map(|s| StoneDraw::new(&s, s.uniform(camera.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        self.layer.draw(device, encoder, &drawn, color, frame.depth_layer())?;
+        self.layer.draw(device, to.encoder, &drawn, shot.color.texture, frame.depth_layer())?;
         let drops = block.shells > 0;
         Ok(RainReport {
             drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),
@@ -441,5 +394,83 @@ impl Rain {
             splashes_left_out_per_m2_s: if drops { splashes.left_out_per_m2_s } else { 0.0 },
             stones_left_out_per_m2_s: stones.map_or(0.0, |s| s.left_out_per_m2_s),
         })
+    }
+}
+
+impl DrawnEffect for RainView {
+    fn stages(&self) -> Stages {
+        if self.shows() { Stages::PARTICLES } else { Stages(0) }
+    }
+
+    fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
+        if stages.has(Stages::PARTICLES) && self.draws() {
+            let _ = self.layer(device, color);
+        }
+    }
+
+    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        if stages.has(Stages::PARTICLES) && self.is_planned() {
+            let drops = self.drops(shot.device, &shot.now.scene);
+            put(&candidates::RAIN, &candidates::rain_work(shot.pixels(), drops));
+        }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        self.set_shares([1, 0].map(|step| shot.share(&candidates::RAIN, step)));
+        to.block.drawn[3] = 1.0;
+        if self.shows() {
+            (to.block.drops, to.block.drawn[3]) = self.hidden(shot.device, shot.now);
+        }
+        if self.draws() {
+            let layer = self.layer(shot.device, shot.color.texture).clone();
+            to.set_texture(Texture::Before, Some(layer));
+        } else {
+            to.stages = to.stages.without(Stages::PARTICLES);
+        }
+        if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
+            to.near = self.slowest_and_reach(shot.device, &shot.now.scene);
+        }
+        Ok(())
+    }
+
+    /// Draws the layer before the picture: columns of rain areas, and what falls near the camera.
+    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if !with.composition.stages.has(Stages::PARTICLES) {
+            return Ok(());
+        }
+        let over = self.draw_areas(shot, with, to)?;
+        self.drawn = (shot.frame.frame_id, self.draw_near(shot, with, over, to)?);
+        to.passes += 1 + u32::from(over);
+        Ok(())
+    }
+
+    /// The columns of rain areas in the veil of the host's own shaders.
+    fn veil(
+        &mut self,
+        shot: &Shot<'_>,
+        with: &Drawing<'_>,
+    ) -> Option<(&'static str, wgpu::BindGroupLayout, wgpu::BindGroup)> {
+        if self.field.columns.is_empty() {
+            return None;
+        }
+        self.set_near(shot.device, shot.now);
+        let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: true };
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device)));
+        let (layout, group) = pass.bound(shot.device, &columns, with, shot.frame.depth_layer())?;
+        Some(("frame/froxels_areas.wgsl", layout, group))
+    }
+
+    fn bytes(&self) -> u64 {
+        self.layer.bytes()
+    }
+
+    fn report(&self, report: &mut Report) {
+        if self.drawn.0 == report.frame_id {
+            report.rain = self.drawn.1;
+        }
+    }
+
+    fn forget_picture(&mut self) {
+        self.layer.forget_picture();
     }
 }

@@ -8,7 +8,7 @@
 
 use std::sync::LazyLock;
 
-use super::planet::{DOBSON_UNIT_PER_M2, Planet, rayleigh_optical_depth};
+use super::{DOBSON_UNIT_PER_M2, Planet, rayleigh_optical_depth};
 use crate::{
     error::{Error, Result, check_range},
     light::luminance,

@@ -3,11 +3,13 @@
 //! A [`Planet`] is plain data. Everything that walks over its fields (range checks, the planet file, the hash that
 //! names cached tables) reads one list, `FIELDS`, so that a new field cannot be forgotten in one of them.
 
+mod file;
+pub mod spectral;
+
 use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use super::{planet_file, spectral};
 use crate::{
     error::{Error, Result, Status},
     light::EARTH_WAVELENGTHS_NM,
@@ -58,7 +60,7 @@ pub struct Planet {
     /// other triple; Welkin's own colours expect red, green, blue but any order is right for radiances.
     pub wavelengths_nm: [f64; 3],
     /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`.
-    /// Radiances are in W m^-2 sr^-1 nm^-1 with it; `sky::spectral` turns them into luminous colours. With 1 they
+    /// Radiances are in W m^-2 sr^-1 nm^-1 with it; [`spectral`] turns them into luminous colours. With 1 they
     /// are radiances per unit irradiance.
     pub solar_irradiance: [f64; 3],
     /// Half the angle that the sun's disc subtends, degrees, `[0, 10]`; 0 is a point.
@@ -233,7 +235,7 @@ impl Planet {
     /// kind; [`Status::InvalidArgument`] for a value that is not finite or out of range. The message names the key, its
     /// unit and the accepted range.
     pub fn from_toml(text: &str) -> Result<Self> {
-        planet_file::parse(text)
+        file::parse(text)
     }
 
     /// Writes the planet as a planet file that [`Planet::from_toml`] reads back bit for bit.

@@ -48,7 +48,7 @@ impl Stages {
     }
 
     /// Whether any of them may draw into the target.
-    pub(super) fn draw(self) -> bool {
+    pub(crate) fn draw(self) -> bool {
         self.without(Self::PREPARE) != Self(0)
     }
 
@@ -63,7 +63,7 @@ impl Stages {
     }
 
     /// The stages of this set that draw over the whole picture, one by one in their order; empty ones among them.
-    pub(super) fn each(self) -> [Self; 5] {
+    pub(crate) fn each(self) -> [Self; 5] {
         [Self::BACKGROUND, Self::SURFACE, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }
 
@@ -83,7 +83,7 @@ impl Stages {
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming the usage.
-pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
+pub(crate) fn check_color(texture: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     let format = texture.format();
     if !matches!(
@@ -106,7 +106,7 @@ pub(super) fn check_color(texture: &wgpu::Texture) -> Result<()> {
 }
 
 /// Whether wgpu can copy `color`; else its host copies it between submissions.
-pub(super) fn can_copy(color: &wgpu::Texture) -> bool {
+pub(crate) fn can_copy(color: &wgpu::Texture) -> bool {
     color.usage().contains(wgpu::TextureUsages::COPY_SRC)
 }
 
@@ -114,7 +114,7 @@ pub(super) fn can_copy(color: &wgpu::Texture) -> bool {
 ///
 /// # Errors
 /// As [`check_color`].
-pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     check_depth_format(texture.format())?;
     if (texture.width(), texture.height()) != (color.width(), color.height()) {
         return Err(Error::range(
@@ -137,7 +137,7 @@ pub(super) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
 ///
 /// # Errors
 /// As [`check_color`].
-pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
         return Err(Error::unsupported(format!(
@@ -152,7 +152,7 @@ pub(super) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
 ///
 /// # Errors
 /// As [`check_color`].
-pub(super) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+pub(crate) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Bgra8Unorm) {
         return Err(Error::unsupported(format!(
@@ -167,7 +167,7 @@ pub(super) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
 ///
 /// # Errors
 /// As [`check_color`].
-pub(super) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     let format = texture.format();
     if !matches!(format, F::Rgba8Unorm | F::Bgra8Unorm | F::Rgb10a2Unorm | F::Rgba16Float | F::Rgba32Float) {
@@ -191,7 +191,7 @@ fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Textur
 }
 
 /// A texture like the host's colour, to read while the host's is written.
-pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
+pub(crate) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::Texture {
     let mut usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     if color.sample_count() > 1 {
         usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
@@ -209,7 +209,7 @@ pub(super) fn color_copy(device: &wgpu::Device, color: &wgpu::Texture) -> wgpu::
 }
 
 /// Whether `copy` serves as [`color_copy`] of `color`.
-pub(super) fn is_copy_of(copy: &wgpu::Texture, color: &wgpu::Texture) -> bool {
+pub(crate) fn is_copy_of(copy: &wgpu::Texture, color: &wgpu::Texture) -> bool {
     copy.usage().contains(wgpu::TextureUsages::COPY_DST)
         && (copy.width(), copy.height()) == (color.width(), color.height())
         && copy.format() == color.format()
@@ -225,7 +225,7 @@ fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages)
 
 /// How many samples a pixel colour and depth have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Sampling {
+pub(crate) enum Sampling {
     /// One each.
     Single,
     /// Several: each is drawn with its own depth.
@@ -268,7 +268,18 @@ impl Sampling {
 
 /// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a
 /// display's steps.
-pub(super) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
+pub(crate) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
     !tone || frame.color.is_some_and(|c| is_float(c.format()))
+}
+
+/// Rounding of a depth format: absolute, and over the value. The rasteriser's own counts as two steps of a float.
+pub(crate) fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
+    use wgpu::TextureFormat as F;
+    let float = 2f64.powi(-22);
+    match depth.format() {
+        F::Depth16Unorm => [1.0 / 65_535.0, float],
+        F::Depth24Plus | F::Depth24PlusStencil8 => [1.0 / 16_777_215.0, float],
+        _ => [0.0, float],
+    }
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{pipelines::Pipelines, target::Sampling};
+use super::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS};
 use crate::{
-    context::Scene,
     error::Result,
+    falling::curtain::WAVES,
     gpu::{
         Device, KeptLayer, Layer,
         bind::{self, Slot},
@@ -15,8 +15,8 @@ use crate::{
         pass::{self, QuadsDesc},
         recent::Recent,
     },
-    rain::{AreaField, BELOW_M, Column, ColumnUniform, DropLight, MAX_AREAS, WAVES},
-    sky::SkyVolume,
+    moment::Scene,
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, yes},
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -58,9 +58,6 @@ struct Blocks {
 
 const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
-/// Name and value of an `override` constant.
-type Constant = (&'static str, f64);
-
 /// What decides which pipeline draws, beside the constants of the veil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kind {
@@ -83,10 +80,11 @@ pub(super) struct AreaPass {
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    // The block of what lies between is another room's: any size.
     let slots = [
-        (0, Slot::Uniform(size_of::<super::uniform::FrameUniform>())),
+        (0, Slot::Uniform(size_of::<FrameUniform>())),
         (1, Slot::texels(multisampled)),
-        (4, Slot::Uniform(size_of::<crate::fog::FogUniform>())),
+        (4, Slot::Uniform(0)),
         (7, Slot::Uniform(size_of::<ColumnsUniform>())),
         (8, Slot::Uniform(size_of::<ShaftUniform>())),
     ];
@@ -121,8 +119,6 @@ pub(super) struct Columns<'a> {
     pub clip: DMat4,
     /// Whether the fog, with the weather's own rain in it, lies before the picture.
     pub veiled: bool,
-    /// Of the veil before them.
-    pub constants: &'a [Constant],
 }
 
 impl Columns<'_> {
@@ -183,14 +179,14 @@ impl AreaPass {
         &mut self,
         device: &Device,
         columns: &Columns<'_>,
-        buffers: [&wgpu::Buffer; 2],
+        with: &Drawing<'_>,
         depth: Option<Layer<'_>>,
-    ) -> Option<(&wgpu::BindGroupLayout, &wgpu::BindGroup)> {
+    ) -> Option<(wgpu::BindGroupLayout, wgpu::BindGroup)> {
         let (blocks, _) = columns.blocks();
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
         let multi = depth.is_some_and(Layer::is_multisampled);
-        self.bind(device, buffers, depth, multi);
-        self.bound.as_ref().map(|(_, group)| (&self.layouts[usize::from(multi)], group))
+        self.bind(device, with, depth, multi);
+        self.bound.as_ref().map(|(_, group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
     }
 
     /// Draws the columns into the layer `target`, which is cleared first.
@@ -199,13 +195,14 @@ impl AreaPass {
     /// A missing shader file.
     pub fn draw(
         &mut self,
-        (device, shared): (&Arc<Device>, &Pipelines),
-        encoder: &mut wgpu::CommandEncoder,
+        to: &mut Recording<'_>,
         columns: &Columns<'_>,
-        [frame, fog]: [&wgpu::Buffer; 2],
-        (sky, depth): (&SkyVolume, Option<Layer<'_>>),
+        with: &Drawing<'_>,
+        depth: Option<Layer<'_>>,
         target: &wgpu::TextureView,
     ) -> Result<()> {
+        let (device, composition) = (to.device, with.composition);
+        let Some((tables_layout, tables)) = &composition.tables else { return Ok(()) };
         let (blocks, count) = columns.blocks();
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
         let kind = Kind {
@@ -214,10 +211,10 @@ impl AreaPass {
             overlaps: columns.field.columns.iter().any(|c| c.later != 0),
             polygons: blocks.columns.list.iter().any(|c| c.corners > 0),
         };
-        self.bind(device, [frame, fog], depth, kind.multi);
-        let pipeline = self.pipeline(device, shared, kind, columns.constants)?;
+        self.bind(device, with, depth, kind.multi);
+        let pipeline = self.pipeline(device, tables_layout, kind, composition.least.between.all())?;
         let Some((_, group)) = &self.bound else { return Ok(()) };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("rain areas"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: target,
@@ -233,13 +230,14 @@ impl AreaPass {
         if count > 0 {
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, group, &[]);
-            pass.set_bind_group(1, sky.bind_group(), &[]);
+            pass.set_bind_group(1, tables, &[]);
             pass.draw(0..4, 0..count);
         }
         Ok(())
     }
 
-    fn bind(&mut self, device: &Device, [frame, fog]: [&wgpu::Buffer; 2], depth: Option<Layer<'_>>, multi: bool) {
+    fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
+        let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
         if self.bound.as_ref().is_some_and(|(d, _)| is_kept(depth, d.as_ref())) {
             return;
         }
@@ -256,12 +254,12 @@ impl AreaPass {
             label: Some("rain areas"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 0, resource: with.block.as_entire_binding() },
                 wgpu::BindGroupEntry {
                     binding: 1,
                     resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(&self.none)),
                 },
-                wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 4, resource: between.as_entire_binding() },
                 block(7, 0, size_of::<ColumnsUniform>()),
                 block(8, SHAFT_AT, size_of::<ShaftUniform>()),
             ],
@@ -273,7 +271,7 @@ impl AreaPass {
     fn pipeline(
         &mut self,
         device: &Arc<Device>,
-        shared: &Pipelines,
+        tables: &wgpu::BindGroupLayout,
         kind: Kind,
         constants: &[Constant],
     ) -> Result<wgpu::RenderPipeline> {
@@ -281,9 +279,6 @@ impl AreaPass {
         let make = || {
             let module =
                 device.shader(if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" })?;
-            let composite = shared.composite()?;
-            let [_, sky, _] = composite.layouts(Sampling::Single);
-            let yes = |b: bool| f64::from(u8::from(b));
             let mut all = constants.to_vec();
             all.extend([
                 ("HAS_DEPTH", yes(kind.has_depth)),
@@ -296,7 +291,7 @@ impl AreaPass {
                     label: "rain areas",
                     vertex: (&module, "shaft_vertex", &[]),
                     fragment: (&module, "shaft_fragment", &all),
-                    layouts: &[Some(columns), Some(sky)],
+                    layouts: &[Some(columns), Some(tables)],
                     buffers: &[],
                     format: FORMAT,
                 },

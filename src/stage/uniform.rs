@@ -2,7 +2,7 @@
 
 use super::{ColorSpace, Frame};
 use crate::{
-    context::{Context, Scene},
+    moment::Moment,
     scene::{DepthUniform, ViewRays},
 };
 
@@ -34,22 +34,21 @@ pub(crate) struct FrameUniform {
 }
 
 /// Whether a format holds light and not the steps of a display.
-pub(super) fn is_float(format: wgpu::TextureFormat) -> bool {
+pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
     matches!(format, F::Rgba16Float | F::Rgba32Float | F::Rg11b10Ufloat)
 }
 
-/// The block of a frame.
-pub(super) fn uniform(
+/// The block of a frame before any effect has added to it: nothing is drawn of them. `tone` says that the whole picture is tone-mapped.
+pub(crate) fn uniform(
     frame: &Frame<'_>,
-    scene: &Scene,
+    now: &Moment<'_>,
     rays: &ViewRays,
     color: &wgpu::Texture,
     exposure: f64,
-    context: &Context,
-    (tone, drawn): (bool, [f32; 4]),
+    tone: bool,
 ) -> FrameUniform {
-    let format = color.format();
+    let (format, scene) = (color.format(), &now.scene);
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
     let plain_display = display && !is_float(format) && !format.is_srgb();
     let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
@@ -69,7 +68,7 @@ pub(super) fn uniform(
             ColorSpace::DisplaySrgb if format.is_srgb() => 1,
             ColorSpace::DisplaySrgb => 2,
         },
-        tone: context.tone_curve().shader_value(),
+        tone: now.tone.shader_value(),
         seed: frame.frame_id as u32,
         y_sign: if frame.origin_bottom_left { -1.0 } else { 1.0 },
         dither_step: if plain_display { step } else { 0.0 },
@@ -78,7 +77,7 @@ pub(super) fn uniform(
         direct_share: scene.brighter().direct_share as f32,
         encode: u32::from(encode),
         drops: [0.0; 2],
-        drawn,
+        drawn: [0.0; 4],
         compositions: 0,
         pad: [0; 3],
     }

@@ -8,10 +8,9 @@
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::lattice::smoothstep;
 use crate::{
     error::{Error, Result, check_range},
-    weather::{Falling, hydrometeors},
+    weather::{Falling, hydrometeors, smoothstep},
 };
 
 /// Most corners of a polygon.
@@ -201,13 +200,13 @@ fn twice_area(corners: &[[f64; 2]]) -> f64 {
 
 /// A side of a polygon: how deep inside of it a point lies is `normal . p + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     pub normal: DVec2,
     pub offset: f64,
 }
 
 impl Edge {
-    pub(super) fn depth(&self, p: DVec2) -> f64 {
+    pub(crate) fn depth(&self, p: DVec2) -> f64 {
         self.normal.dot(p) + self.offset
     }
 }
@@ -228,14 +227,14 @@ fn edges(corners: &[[f64; 2]]) -> [Edge; MAX_CORNERS] {
 
 /// A region about its centre, m to the right and ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Outline {
+pub(crate) enum Outline {
     Ellipse(DVec2),
     Polygon([Edge; MAX_CORNERS], usize),
 }
 
 impl Outline {
     /// How deep inside the border a point lies, m, negative outside: exact of a polygon, to first order of an ellipse.
-    pub(super) fn depth(&self, p: DVec2) -> f64 {
+    pub(crate) fn depth(&self, p: DVec2) -> f64 {
         match self {
             Self::Ellipse(semi) => {
                 let k = p / *semi;
@@ -254,7 +253,7 @@ pub(crate) struct Shaft {
     pub center: DVec3,
     /// Altitude of the place of `center`, m.
     pub center_altitude_m: f64,
-    pub(super) outline: Outline,
+    pub(crate) outline: Outline,
     /// The way to the right: unit vector (east, north).
     pub right: DVec2,
     pub rim_m: f64,
@@ -324,7 +323,7 @@ impl Shaft {
     }
 
     /// From east and north of the centre to right and ahead.
-    pub(super) fn turned(&self, plan: DVec2) -> DVec2 {
+    pub(crate) fn turned(&self, plan: DVec2) -> DVec2 {
         DVec2::new(plan.dot(self.right), plan.dot(self.right.perp()))
     }
 

@@ -5,15 +5,18 @@
 //! not), at the price of a wait. It holds the CPU's part and the driver's own hand-over, some tens of microseconds an effect on a
 //! GPU. Frames that are not measured submit once and wait for nothing.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
-use super::target::Stages;
+use super::Stages;
 use crate::{error::Result, gpu::Device, plan::Prediction};
 
 /// What a frame spends time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Effect {
+pub enum CostItem {
     /// Tables over the planet: built when the air changes.
     SkyTables = 0,
     /// The sky and the air as seen from the camera's height: built when height, sun or air change.
@@ -38,9 +41,9 @@ pub enum Effect {
     Windscreen = 10,
 }
 
-impl Effect {
+impl CostItem {
     /// Whose a draw of these stages is.
-    pub(super) fn of(stages: Stages) -> Self {
+    pub(crate) fn of(stages: Stages) -> Self {
         match stages {
             Stages::SURFACE => Self::Surface,
             Stages::BACKGROUND => Self::Background,
@@ -89,17 +92,17 @@ impl Effect {
 pub struct Costs {
     /// From the first call's beginning to the last one's end, less what lay between the calls.
     pub whole_ms: f64,
-    ms: [f64; Effect::ALL.len()],
+    ms: [f64; CostItem::ALL.len()],
 }
 
 impl Costs {
-    /// What `effect` cost, ms; 0 if it did not run.
-    pub fn ms(&self, effect: Effect) -> f64 {
-        self.ms[effect as usize]
+    /// What `item` cost, ms; 0 if it did not run.
+    pub fn ms(&self, item: CostItem) -> f64 {
+        self.ms[item as usize]
     }
 
-    pub(crate) fn add(&mut self, effect: Effect, ms: f64) {
-        self.ms[effect as usize] += ms;
+    pub(crate) fn add(&mut self, item: CostItem, ms: f64) {
+        self.ms[item as usize] += ms;
     }
 }
 
@@ -122,7 +125,7 @@ pub struct Report {
     pub costs: Option<Costs>,
     /// What the plan expects of the frame.
     pub prediction: Prediction,
-    /// What the host said that the weather took in it, ms ([`View::report_time`](super::View::report_time)).
+    /// What the host said that the weather took in it, ms ([`View::report_time`](crate::frame::View::report_time)).
     pub reported_ms: Option<f64>,
 }
 
@@ -154,15 +157,19 @@ struct Watch {
 }
 
 /// The encoder of one call, with a stopwatch if it is measured.
-pub(super) struct Recording<'a> {
-    device: &'a Device,
+pub(crate) struct Recording<'a> {
+    pub device: &'a Arc<Device>,
     pub encoder: &'a mut wgpu::CommandEncoder,
+    /// Full-screen draws recorded by this call so far.
+    pub passes: u32,
+    /// Tables built, refined or faded by this call.
+    pub tables_rebuilt: u32,
     watch: Option<Watch>,
 }
 
 impl<'a> Recording<'a> {
-    pub fn new(device: &'a Device, encoder: &'a mut wgpu::CommandEncoder) -> Self {
-        Self { device, encoder, watch: None }
+    pub fn new(device: &'a Arc<Device>, encoder: &'a mut wgpu::CommandEncoder) -> Self {
+        Self { device, encoder, passes: 0, tables_rebuilt: 0, watch: None }
     }
 
     /// Starts the stopwatch, once all earlier work of the queue is done.
@@ -186,15 +193,15 @@ impl<'a> Recording<'a> {
         self.device.submit(std::mem::replace(self.encoder, next));
     }
 
-    /// What was recorded since the last effect is `effect`'s: where it is measured, it is submitted and waited for. If
+    /// What was recorded since the last item is `item`'s: where it is measured, it is submitted and waited for. If
     /// it did not run, the time goes to nobody.
-    pub fn ends(&mut self, effect: Effect, ran: bool) -> Result<()> {
+    pub fn ends(&mut self, item: CostItem, ran: bool) -> Result<()> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         if ran {
             let next = self.device.device.create_command_encoder(&Default::default());
             let encoder = std::mem::replace(self.encoder, next);
             self.device.submit_and_wait(encoder)?;
-            watch.costs.add(effect, ms_since(watch.last));
+            watch.costs.add(item, ms_since(watch.last));
         }
         watch.last = Instant::now();
         Ok(())

@@ -1,0 +1,81 @@
+//! What a view draws of the fog: its block of numbers, and the constants of the composition.
+
+use super::{FogKind, FogModel, FogUniform, FogVariant, Law, candidates, reference::layer_depth_above};
+use crate::{
+    error::Result,
+    gpu::Device,
+    moment::Moment,
+    stage::{Block, Composition, DrawnEffect, PutPart, Shot, Stages, yes},
+};
+
+/// The fog of a view.
+pub(crate) struct FogView {
+    buffer: wgpu::Buffer,
+    model: Option<FogModel>,
+    /// What shaders must be able to draw of it, if there is any.
+    variant: Option<FogVariant>,
+    /// A software driver takes both ways of every branch.
+    software: bool,
+}
+
+impl FogView {
+    pub fn new(device: &Device) -> Self {
+        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("fog"),
+            size: size_of::<FogUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { buffer, model: None, variant: None, software: device.caps().software }
+    }
+
+    /// Takes the fog of a moment, by the host's `law` if it asked for one.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn gather(&mut self, now: &Moment<'_>, law: Option<&Law>) -> Result<()> {
+        let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?;
+        // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
+        self.variant =
+            (model.kind != FogKind::Clear).then(|| if self.software { model.variant() } else { FogVariant::ALL });
+        self.model = Some(model);
+        Ok(())
+    }
+
+    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
+    /// nothing.
+    pub fn depth_above(&self, altitude_m: f64) -> f64 {
+        match &self.model {
+            Some(m) if matches!(m.kind, FogKind::Slab | FogKind::Exponential) => layer_depth_above(m, altitude_m),
+            _ => 0.0,
+        }
+    }
+}
+
+impl DrawnEffect for FogView {
+    fn stages(&self) -> Stages {
+        if self.variant.is_some() { Stages::MEDIUM } else { Stages(0) }
+    }
+
+    fn parts(&mut self, _: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        if self.variant.is_some() && stages.has(Stages::MEDIUM) {
+            put(&candidates::FOG, &[candidates::FOG_WORK]);
+        }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let share = shot.share(&candidates::FOG, 0);
+        let least = self.variant.filter(|_| share > 0.0);
+        to.between("FOG", yes(self.variant.is_some()), yes(least.is_some()));
+        let whole = self.variant.unwrap_or(FogVariant::ALL).constants();
+        for ((name, whole), (_, least)) in whole.into_iter().zip(least.unwrap_or(FogVariant::ALL).constants()) {
+            to.between(name, whole, least);
+        }
+        to.block.drawn[1] = share;
+        to.set_block(Block::Between, &self.buffer);
+        if let (Some(model), true) = (&self.model, self.variant.is_some()) {
+            shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&model.uniform()));
+        }
+        Ok(())
+    }
+}

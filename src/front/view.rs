@@ -1,0 +1,51 @@
+//! What a host sets and asks of a view's effects.
+
+use crate::{
+    error::Result,
+    frame::View,
+    glass::{GlassReport, Windscreen, reference::Cells},
+    rain::RainSettings,
+};
+
+impl View {
+    /// Sets how rain is drawn. Default: [`RainSettings::default`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
+        settings.validate_on(&self.device)?;
+        self.effects.rain.settings = settings;
+        Ok(())
+    }
+
+    /// Sets the window that the view looks through; `None` takes it away. A host that drives, turns its head or wipes sets it
+    /// anew before each frame: the water stays on the glass while its size does. Unchanged after an error.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range.
+    pub fn set_windscreen(&mut self, screen: Option<&Windscreen>) -> Result<()> {
+        let device = self.device.clone();
+        // What goes with a window is freed in the host's context.
+        let _entered = if screen.is_none() { Some(device.enter()?) } else { None };
+        self.effects.glass.set(screen)
+    }
+
+    /// Water on the windscreen as of the last frame, or `None` without one. Reads it back and waits for the GPU: not for
+    /// every frame.
+    ///
+    /// # Errors
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn windscreen_report(&self) -> Result<Option<GlassReport>> {
+        let _entered = self.device.enter()?;
+        self.effects.glass.water(&self.device)
+    }
+
+    /// The cells of the windscreen's water, or `None` where it is dry; for tests and tools. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`View::windscreen_report`].
+    pub fn windscreen_cells(&self) -> Result<Option<Cells>> {
+        let _entered = self.device.enter()?;
+        self.effects.glass.cells(&self.device)
+    }
+}

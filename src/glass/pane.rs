@@ -1,0 +1,101 @@
+//! A pane of glass in the host's world: which drops come to it, and which of them the host's boxes keep off.
+
+use glam::{DMat3, DVec3};
+
+use super::{PaneUniform, Plane, Reach, SIZES, Windscreen};
+use crate::{
+    falling::sizes::{DropSizes, SMALLEST_MM, Weight},
+    moment::Moment,
+    scene::Camera,
+    surroundings::{MAX_SHELTERS, Shelter, shelter::sheltered},
+};
+
+/// How far before a surface a drop is asked for the box that kept it off, m.
+const BEFORE_M: f64 = 0.05;
+/// How far a vehicle reaches before its windscreen at most, m.
+const VEHICLE_M: f64 = 3.0;
+
+/// A pane of glass and the eye behind it, in the host's world.
+pub(super) struct PaneAt {
+    eye: DVec3,
+    /// Lower left of its bounds, and from there to the lower right and the upper left.
+    origin: DVec3,
+    along: DVec3,
+    up: DVec3,
+    /// Outwards, unit.
+    out: DVec3,
+    /// Of the air against the glass, m/s.
+    air_m_s: DVec3,
+}
+
+impl PaneAt {
+    /// A pane of a camera's.
+    pub fn new(camera: &Camera, plane: &Plane, screen: &Windscreen) -> Self {
+        let to_world = camera.rotation().transpose();
+        Self {
+            eye: camera.position,
+            origin: camera.position + to_world * plane.origin,
+            along: to_world * (plane.u * plane.size_m.x),
+            up: to_world * (plane.v * plane.size_m.y),
+            out: to_world * plane.out,
+            air_m_s: to_world * -screen.velocity_m_s,
+        }
+    }
+
+    /// Whether a box is the vehicle's own: it holds the eye and ends within [`VEHICLE_M`] before the glass, where a tunnel goes on.
+    fn sits_in(&self, shelter: &Shelter) -> bool {
+        let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
+        // What both ways of a line from a point meet has the point in it: it is convex.
+        let before = self.at([0.5; 2]) + self.out * VEHICLE_M;
+        met(self.eye, self.out) && met(self.eye, -self.out) && !met(before, self.out)
+    }
+
+    /// The place so far, 0 to 1, to the right and up.
+    fn at(&self, [x, y]: [f64; 2]) -> DVec3 {
+        self.origin + self.along * x + self.up * y
+    }
+
+    /// Drops of `sizes` that stand for as much of the falling water each: their velocities in the host's world now, and the share
+    /// of the water on the pane that they bring.
+    pub fn drops(&self, now: &Moment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
+        let over = &now.weather;
+        let to_enu = over.world.frame_at(self.origin).world_to_enu;
+        let (normal, air) = (to_enu * self.out, to_enu * self.air_m_s);
+        let known_s = now.time_s.max(over.timeline().known_from_s());
+        let wind = over.wind.at(known_s).velocity_m_s().extend(0.0);
+        let middles = std::array::from_fn(|i| (i as f64 + 0.5) / SIZES as f64);
+        let mut drops = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| {
+            let falls = sizes.speed_m_s(d);
+            (to_enu.transpose() * (wind - DVec3::Z * falls), (falls * normal.z - air.dot(normal)).max(0.0) / falls)
+        });
+        let whole: f64 = drops.iter().map(|d| d.1).sum();
+        drops.iter_mut().for_each(|d| d.1 = if whole > 0.0 { d.1 / whole } else { 1.0 / SIZES as f64 });
+        drops
+    }
+
+    /// What boxes let through of such drops to each part of the pane now. The vehicle's own box is not asked.
+    pub fn reach(&self, shelters: &[Shelter], drops: &[(DVec3, f64); SIZES]) -> Reach {
+        if shelters.is_empty() {
+            return Reach::ALL;
+        }
+        let mut own = [false; MAX_SHELTERS];
+        shelters.iter().zip(&mut own).for_each(|(b, own)| *own = self.sits_in(b));
+        let others = || shelters.iter().zip(&own).filter(|(_, own)| !**own).map(|(b, _)| b);
+        Reach::of(|place| {
+            let before = self.at(place) + self.out * BEFORE_M;
+            let kept = drops.iter().filter(|(velocity, _)| others().any(|b| sheltered(b, before, *velocity)));
+            (1.0 - kept.map(|d| d.1).sum::<f64>()).max(0.0)
+        })
+    }
+
+    /// The same for the maps' pass, from a camera at `eye` whose axes `to_enu` turns.
+    pub fn uniform(&self, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
+        let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
+        PaneUniform {
+            origin: row(self.origin + self.out * BEFORE_M - eye, 0.0),
+            along: row(self.along, 0.0),
+            up: row(self.up, 0.0),
+            drops: drops.map(|(velocity, share)| row(velocity, share)),
+        }
+    }
+}

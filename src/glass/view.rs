@@ -1,0 +1,166 @@
+//! A view's windscreen: what it keeps between frames, and how it is drawn in the stage LENS.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use super::{
+    Glass, GlassReport, LensFrame, Mapped, Plane, Reach, Windscreen,
+    pane::PaneAt,
+    passes::GlassKit,
+    reference::Cells,
+    state::{AtGlass, Reached},
+};
+use crate::{
+    error::{Error, Result, Status},
+    falling::{drops::factor_in, sizes::DropSizes},
+    gpu::{Device, Shared},
+    moment::Moment,
+    stage::{ColorSpace, Composition, CostItem, DrawnEffect, Frame, Prepare, Recording, Shot, Stages, is_float},
+    surroundings::Told,
+};
+
+/// The windscreen of a view, if it has one.
+pub(crate) struct GlassView {
+    shared: Arc<Shared>,
+    glass: Option<Box<Glass>>,
+}
+
+impl GlassView {
+    pub fn new(shared: &Arc<Shared>) -> Self {
+        Self { shared: shared.clone(), glass: None }
+    }
+
+    /// Sets the window that the view looks through; `None` takes it away.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    pub fn set(&mut self, screen: Option<&Windscreen>) -> Result<()> {
+        let Some(screen) = screen else {
+            self.glass = None;
+            return Ok(());
+        };
+        screen.validate()?;
+        match &mut self.glass {
+            Some(glass) => glass.set(*screen),
+            None => self.glass = Some(Box::new(Glass::new(*screen))),
+        }
+        Ok(())
+    }
+
+    /// Water on the glass, if there is a glass. Waits for the GPU.
+    ///
+    /// # Errors
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn water(&self, device: &Device) -> Result<Option<GlassReport>> {
+        self.glass.as_ref().map(|g| g.report(device)).transpose()
+    }
+
+    /// The cells of the water, or `None` where the glass is dry. Waits for the GPU.
+    ///
+    /// # Errors
+    /// As [`GlassView::water`].
+    pub fn cells(&self, device: &Device) -> Result<Option<Cells>> {
+        self.glass.as_ref().map_or(Ok(None), |g| g.cells(device))
+    }
+
+    /// What windscreens of the device are drawn with, made at its first use.
+    fn kit(&self, device: &Arc<Device>) -> Result<Arc<Mutex<GlassKit>>> {
+        self.shared.get(|| GlassKit::new(device).map(Mutex::new))
+    }
+}
+
+fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
+    kit.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked over a windscreen"))
+}
+
+/// What of the rain boxes and maps let through to a pane now.
+fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
+    if !now.is_sheltered() {
+        return Ok((Reach::ALL, None));
+    }
+    let known = now.weather.at_place(now.eye, now.time_s, now.weather.known(now.time_s));
+    let sizes = DropSizes::new(&known.precipitation, factor_in(&known.air, now.scene.place.altitude_m));
+    let pane = PaneAt::new(&frame.camera, plane, screen);
+    let drops = pane.drops(now, &sizes);
+    let mapped = now.has_maps().then(|| {
+        let told = Told { shelters: &[], lights: &[], ..now.told((1.0, 0.0), 1.0)? };
+        Ok(Mapped { told, pane: pane.uniform(&drops, (now.eye, now.scene.world_to_enu)) })
+    });
+    Ok((pane.reach(now.shelters, &drops), mapped.transpose()?))
+}
+
+impl DrawnEffect for GlassView {
+    fn stages(&self) -> Stages {
+        if self.glass.is_some() { Stages::LENS } else { Stages(0) }
+    }
+
+    fn check(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
+        let several = frame.color.is_some_and(|c| c.sample_count() > 1);
+        if several && stages.has(Stages::LENS) && self.glass.is_some() {
+            return Err(Error::unsupported(
+                "color.samples above 1 in the stage LENS with a windscreen: resolve first, then record LENS",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Brings the water on the glass to the frame's time.
+    fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if self.glass.is_none() {
+            return Ok(());
+        }
+        let kit = self.kit(to.device)?;
+        let Some(glass) = &mut self.glass else { return Ok(()) };
+        let (now, frame) = (at.now, at.frame);
+        let moment = AtGlass {
+            time_s: now.time_s,
+            seed: now.seed,
+            camera: &frame.camera,
+            up: now.scene.world_to_enu.transpose().z_axis,
+            altitude_m: now.scene.place.altitude_m,
+            weather: &|t| now.weather.at_place(now.eye, t, now.weather.known(t)),
+            reach: &|plane, screen| reached(now, frame, plane, screen),
+            cut: frame.is_pure(),
+        };
+        let passes = glass.advance(to.device, &mut *locked(&kit)?, to.encoder, &moment)?;
+        to.passes += passes;
+        to.ends(CostItem::Windscreen, passes > 0)
+    }
+
+    fn compose(&mut self, _: &Shot<'_>, _: &mut Composition) -> Result<()> {
+        Ok(())
+    }
+
+    fn has_lens(&self) -> bool {
+        self.glass.as_ref().is_some_and(|g| g.shows())
+    }
+
+    fn draw_lens(
+        &mut self,
+        frame: &Frame<'_>,
+        picture: &wgpu::Texture,
+        toned: bool,
+        to: &mut Recording<'_>,
+    ) -> Result<()> {
+        let Some(layer) = frame.color_layer().filter(|_| self.glass.is_some()) else { return Ok(()) };
+        let kit = self.kit(to.device)?;
+        let Some(glass) = &mut self.glass else { return Ok(()) };
+        let color = layer.texture;
+        let plain = !is_float(color.format()) && !color.format().is_srgb();
+        let toned = toned && frame.color_space == ColorSpace::SceneLinear;
+        let lens = LensFrame {
+            camera: &frame.camera,
+            picture,
+            mask: frame.mask_layer(),
+            target: layer,
+            encoded: plain && (toned || frame.color_space == ColorSpace::DisplaySrgb),
+            bottom_left: frame.origin_bottom_left,
+        };
+        let passes = glass.draw(to.device, &mut *locked(&kit)?, to.encoder, &lens)?;
+        to.passes += passes;
+        to.ends(CostItem::Windscreen, passes > 0)
+    }
+
+    fn bytes(&self) -> u64 {
+        self.glass.as_ref().map_or(0, |g| g.bytes())
+    }
+}

@@ -1,0 +1,148 @@
+//! What a view draws of the water on the ground: nothing while it is dry.
+
+use glam::DMat3;
+
+use super::{GroundGrid, GroundUniform, Hollows, Seen, SurfaceClass};
+use crate::{
+    error::Result,
+    gpu::Device,
+    moment::Moment,
+    scene::WorldKind,
+    stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
+    weather::SurfaceCover,
+};
+
+/// Largest number of a half float, with room for what follows.
+const MOST_UNITS: f64 = 6e4;
+
+/// What a context holds of the ground, as a camera sees it.
+pub(crate) struct GroundHeld<'a> {
+    /// What weather has done to the ground at the camera.
+    pub cover: SurfaceCover,
+    pub hollows: &'a Hollows,
+    /// The host's terrain, and what turns the host's axes at its origin.
+    pub terrain: Option<(&'a GroundGrid, DMat3)>,
+    /// Whether there is water on it.
+    pub has_wet_terrain: bool,
+    /// Of ground of which nothing else is said.
+    pub surface_class: SurfaceClass,
+}
+
+/// The ground of a view.
+pub(crate) struct GroundView {
+    buffer: wgpu::Buffer,
+    /// Of the frame, where there is any water on surfaces.
+    block: Option<GroundUniform>,
+    has_terrain: bool,
+    /// Water and surface of the host's terrain.
+    views: [Option<wgpu::TextureView>; 2],
+}
+
+impl GroundView {
+    pub fn new(device: &Device) -> Self {
+        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("ground"),
+            size: size_of::<GroundUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { buffer, block: None, has_terrain: false, views: [None, None] }
+    }
+
+    /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
+    /// to draw.
+    ///
+    /// # Errors
+    /// For a time that the weather does not know.
+    pub fn gather(
+        &mut self,
+        now: &Moment<'_>,
+        frame: &Frame<'_>,
+        held: &GroundHeld<'_>,
+        fog_depth: f64,
+    ) -> Result<bool> {
+        let glaze = glaze(now);
+        let wet = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
+        self.has_terrain = held.terrain.is_some();
+        self.block = None;
+        if let (true, Some(color), Some(_)) = (wet, frame.color, frame.depth) {
+            self.block = Some(uniform(now, (frame, color), held, glaze, fog_depth)?);
+        }
+        Ok(self.block.is_some())
+    }
+
+    /// Takes the textures of the host's terrain.
+    pub fn set_terrain(&mut self, views: [Option<wgpu::TextureView>; 2]) {
+        self.views = views;
+    }
+}
+
+impl DrawnEffect for GroundView {
+    fn stages(&self) -> Stages {
+        if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
+        let terrain = yes(drawn.is_some() && self.has_terrain);
+        to.constant("TERRAIN", terrain, terrain);
+        if let Some(block) = drawn {
+            shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(block));
+        }
+        to.set_block(Block::OnSurfaces, &self.buffer);
+        let [water, surface] = &self.views;
+        to.set_texture(Texture::OnGround, water.clone());
+        to.set_texture(Texture::Terrain, surface.clone());
+        Ok(())
+    }
+}
+
+/// Share of level ground under clear ice: as the freezing rain of the moment keeps it.
+fn glaze(now: &Moment<'_>) -> f64 {
+    let falling = &now.here.precipitation;
+    let falls = (falling.rain_mm_h + falling.drizzle_mm_h) * falling.freezing > 0.0;
+    if falls { now.here.surface.ice } else { 0.0 }
+}
+
+/// From the axes of the host's normals to east, north, up, and how its numbers are read: in normalised formats they are half the
+/// normal and a half.
+fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
+    let from_eye = now.scene.world_to_enu * frame.camera.rotation().transpose();
+    let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { now.scene.world_to_enu };
+    let signed = frame.normals.is_some_and(|n| is_float(n.format()));
+    (turned, if signed { [1.0, 0.0] } else { [2.0, -1.0] })
+}
+
+/// The block of `shaders/ground/uniform.wgsl`.
+fn uniform(
+    now: &Moment<'_>,
+    (frame, color): (&Frame<'_>, &wgpu::Texture),
+    held: &GroundHeld<'_>,
+    glaze: f64,
+    fog_depth: f64,
+) -> Result<GroundUniform> {
+    let (width, height) = (f64::from(color.width()), f64::from(color.height()));
+    let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
+    let seen = Seen {
+        scene: &now.scene,
+        cover: &held.cover,
+        falling: now.here.precipitation,
+        glaze,
+        hollows: held.hollows,
+        position: now.eye,
+        time_s: now.time_s,
+        curvature: match now.weather.world.kind {
+            WorldKind::Flat => 0.0,
+            WorldKind::Tangent | WorldKind::Ecef => 1.0 / (now.planet_radius_m + now.scene.place.altitude_m),
+        },
+        fog_depth,
+        pixel: [2.0 / width, down / height],
+        depth_rounding: frame.depth.map_or([0.0; 2], rounding),
+        most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,
+        terrain: held.terrain,
+        surface_class: held.surface_class,
+        normals: normals(frame, now),
+        wind_m_s: now.is_sheltered().then(|| now.carrying().map(|c| c.velocity_m_s())).transpose()?,
+    };
+    Ok(seen.uniform())
+}

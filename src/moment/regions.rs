@@ -1,0 +1,168 @@
+//! The weather over all places and times of a context: its timeline, its wind, and the regions that have rain of their own.
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    error::{Error, Result, check_range},
+    falling::{
+        area::{AreaMotion, RainArea, Shaft},
+        drops::factor_in,
+        sizes::DropSizes,
+    },
+    scene::WorldFrame,
+    weather::{Conditions, Falling, Timeline, timeline::MAX_TIME_S},
+    wind::{Carrying, WindOver},
+};
+
+/// A region with rain of its own, and what is known of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Region {
+    pub area: RainArea,
+    /// How far the wind had carried the air at the area's own time, m east and north: kept from when that time is past, for the
+    /// timeline forgets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub carried_m: Option<[f64; 2]>,
+}
+
+/// Height above the station for which the wind of a cloud stands, m: the highest that the profile knows.
+const CLOUD_WIND_M: f64 = 100.0;
+
+/// The weather of a context over places and times.
+#[derive(Clone, Copy)]
+pub(crate) struct WeatherOver<'a> {
+    pub world: &'a WorldFrame,
+    pub wind: WindOver<'a>,
+    pub regions: &'a [Region],
+}
+
+impl<'a> WeatherOver<'a> {
+    /// The weathers and the changes between them.
+    pub fn timeline(&self) -> &'a Timeline {
+        self.wind.timeline
+    }
+
+    /// The weather at a time outside of all regions; before what the timeline knows, that of its first moment.
+    pub fn known(&self, time_s: f64) -> Conditions {
+        self.timeline().at(time_s)
+    }
+
+    /// Refuses a time of which the weather is not known.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if it is not finite, out of range, or forgotten.
+    pub fn check_time(&self, time_s: f64) -> Result<()> {
+        check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let from = self.timeline().known_from_s();
+        if time_s < from {
+            return Err(Error::range("time_s", &format!("at least {from} s: what was before is forgotten"), time_s));
+        }
+        Ok(())
+    }
+
+    /// The wind that carries the air, up to a moment.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn carrying_until(&self, time_s: f64) -> Result<Carrying<'a>> {
+        self.check_time(time_s)?;
+        Ok(self.wind.carrying_until(time_s))
+    }
+
+    /// How far the wind had carried the air at the own time of a region, m east and north: nowhere at time 0, from which it is
+    /// counted, whatever the timeline has forgotten since.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn carried_until(&self, at_s: f64) -> Result<[f64; 2]> {
+        if at_s == 0.0 { Ok([0.0; 2]) } else { Ok(self.carrying_until(at_s)?.displacement_m().truncate().to_array()) }
+    }
+
+    /// The regions at a time, in their order; `c` is the weather then.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn shafts_at(self, time_s: f64, c: &Conditions) -> Result<impl Iterator<Item = Shaft> + 'a> {
+        let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+        let speed = c.wind.speed_m_s();
+        let shear = if speed > 0.0 { c.wind.speed_at_height_m_s(CLOUD_WIND_M) / speed } else { 1.0 };
+        let with_wind = self.regions.iter().any(|kept| kept.area.motion == AreaMotion::WithWind);
+        let drift = if with_wind { self.carrying_until(time_s)?.displacement_m().truncate() } else { DVec2::ZERO };
+        let ground_m = c.air.station_altitude_m;
+        let factor = factor_in(&c.air, ground_m);
+        Ok(self.regions.iter().enumerate().filter_map(move |(i, kept)| {
+            let (moved, cloud) = match kept.area.motion {
+                AreaMotion::WithWind => {
+                    let then = match kept.carried_m {
+                        Some(carried) => DVec2::from(carried),
+                        None => DVec2::from(self.carried_until(kept.area.at_s).ok()?),
+                    };
+                    (drift - then, wind * shear)
+                }
+                AreaMotion::Own(v) => (DVec2::from(v) * (time_s - kept.area.at_s), DVec2::from(v)),
+            };
+            let start = DVec3::from(kept.area.center_m);
+            let to_world = self.world.frame_at(start).world_to_enu.transpose();
+            let center = start + to_world * moved.extend(0.0);
+            let sizes = DropSizes::new(&kept.area.falling(), factor);
+            let median = sizes.speed_m_s(sizes.median_volume_diameter_mm());
+            // The drops fall through air that goes with the mean of the winds up there and at 10 m.
+            let column = cloud - wind * (0.5 * (1.0 + shear));
+            let altitude = self.world.frame_at(center).place.altitude_m;
+            Some(Shaft::new(&kept.area, i as u32, (center, altitude), (median, column), ground_m))
+        }))
+    }
+
+    /// The drops of rain and drizzle in the air of a place; `c` is the weather then.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn sizes_at(&self, position: DVec3, time_s: f64, c: &Conditions) -> Result<DropSizes> {
+        let local = self.world.frame_at(position);
+        let altitude_m = local.place.altitude_m;
+        let mut falling = c.precipitation;
+        if altitude_m > c.falling_top_m() {
+            (falling.rain_mm_h, falling.drizzle_mm_h) = (0.0, 0.0);
+        }
+        let factor = factor_in(&c.air, altitude_m);
+        let mut sizes = DropSizes::new(&falling, factor);
+        if self.regions.is_empty() {
+            return Ok(sizes);
+        }
+        for shaft in self.shafts_at(time_s, c)? {
+            let share = shaft.share_at(position, &local.world_to_enu, altitude_m);
+            if share > 0.0 {
+                sizes = sizes.covered(&DropSizes::new(&shaft.falling, factor), share, shaft.begun(altitude_m));
+            }
+        }
+        Ok(sizes)
+    }
+
+    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place.
+    pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
+        if self.regions.is_empty() {
+            return c;
+        }
+        let local = self.world.frame_at(position);
+        let Ok(shafts) = self.shafts_at(time_s, &c) else { return c };
+        let mut falling = c.precipitation;
+        for shaft in shafts {
+            let share = shaft.share_at(position, &local.world_to_enu, local.place.altitude_m);
+            falling = covered(&falling, &shaft.falling, share, shaft.begun(local.place.altitude_m));
+        }
+        Conditions { precipitation: falling, ..c }
+    }
+}
+
+/// Rates where `over` lies with a share over `falling`, of which the share `begun` has left its cloud.
+fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling {
+    let (kept, come) = (1.0 - share, share * begun);
+    let rain = falling.rain_mm_h * kept + over.rain_mm_h * come;
+    let showers = falling.rain_mm_h * falling.showers * kept + over.rain_mm_h * over.showers * come;
+    Falling {
+        rain_mm_h: rain,
+        drizzle_mm_h: falling.drizzle_mm_h * kept + over.drizzle_mm_h * come,
+        showers: if rain > 0.0 { (showers / rain).min(1.0) } else { falling.showers },
+        ..*falling
+    }
+}

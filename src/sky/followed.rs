@@ -1,0 +1,115 @@
+//! Tables of the sky that are led after the weather's air by parts, at most once a frame however many views there are.
+
+use std::{
+    ops::{Deref, DerefMut},
+    path::PathBuf,
+    sync::Arc,
+};
+
+use super::{LightTable, Planet, SkyLibrary, SkySettings, SkyTables};
+use crate::{error::Result, gpu::Device};
+
+/// Tables that follow the weather's air.
+pub(crate) struct FollowedSky {
+    tables: SkyTables,
+    cache: Option<PathBuf>,
+    /// The first planet, until its tables are in the cache.
+    first: Option<Planet>,
+    frame_id: Option<u64>,
+    light: Option<(u64, Arc<LightTable>)>,
+}
+
+impl FollowedSky {
+    pub fn new(
+        device: &Arc<Device>,
+        library: &SkyLibrary,
+        settings: &SkySettings,
+        cache: Option<PathBuf>,
+    ) -> Result<Self> {
+        let _entered = device.enter()?;
+        Ok(Self {
+            tables: SkyTables::of_library(library, device, settings)?,
+            cache,
+            first: None,
+            frame_id: None,
+            light: None,
+        })
+    }
+
+    /// With a cache, the first planet comes from it.
+    fn begin(&mut self, planet: &Planet) -> Result<()> {
+        match &self.cache {
+            Some(cache) if self.tables.planet().is_none() => self.tables.begin_with(planet, cache)?,
+            _ => return Ok(()),
+        }
+        self.first = Some(*planet).filter(|_| self.tables.planet().is_none());
+        Ok(())
+    }
+
+    /// With a cache, the tables of the first planet go into it once they are built. Later ones do not, since a changing
+    /// weather makes one after the other.
+    fn keep_first(&mut self) {
+        if let (Some(set), Some(first), Some(cache)) = (self.tables.shown_whole(), self.first, &self.cache)
+            && set.planet == first
+        {
+            self.tables.kit().keep(set, cache);
+            self.first = None;
+        }
+    }
+
+    /// Leads the tables after `planet` by as much work as `share` of a build with the default settings; a draft of them at the first frame, and whole with a
+    /// share of 1, where the picture may not depend on earlier ones. Says whether anything was built.
+    pub fn follow(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        planet: &Planet,
+        frame_id: u64,
+        share: f32,
+    ) -> Result<bool> {
+        if share < 1.0 && self.frame_id == Some(frame_id) {
+            return Ok(false);
+        }
+        self.frame_id = Some(frame_id);
+        self.begin(planet)?;
+        let share = if share < 1.0 { self.tables.paced(share) } else { share };
+        let progress = self.tables.update(encoder, planet, share)?;
+        self.keep_first();
+        device.check()?;
+        Ok(progress.work > 0.0)
+    }
+
+    /// The light of the tables as they are shown, read back once a revision; built for `planet` if nothing is yet.
+    pub fn light_table(&mut self, device: &Device, planet: &Planet) -> Result<Arc<LightTable>> {
+        self.begin(planet)?;
+        if self.tables.planet().is_none() {
+            let mut encoder = device.device.create_command_encoder(&Default::default());
+            self.tables.update(&mut encoder, planet, 1.0)?;
+            self.keep_first();
+            device.submit_and_wait(encoder)?;
+        }
+        let revision = self.tables.revision();
+        if let Some((read, light)) = &self.light
+            && *read == revision
+        {
+            return Ok(light.clone());
+        }
+        let light = Arc::new(self.tables.read_light()?);
+        self.light = Some((revision, light.clone()));
+        Ok(light)
+    }
+}
+
+impl DerefMut for FollowedSky {
+    fn deref_mut(&mut self) -> &mut SkyTables {
+        &mut self.tables
+    }
+}
+
+impl Deref for FollowedSky {
+    type Target = SkyTables;
+
+    fn deref(&self) -> &SkyTables {
+        &self.tables
+    }
+}

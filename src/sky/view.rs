@@ -1,0 +1,102 @@
+//! What a view draws of the sky and of clear air: its tables as seen from the camera's height.
+
+use std::sync::{Arc, Mutex};
+
+use glam::DVec3;
+
+use super::{Disc, FollowedSky, Lamp, Observer, SkyModel, SkySettings, SkyVolume, candidates};
+use crate::{
+    error::{Error, Result, Status},
+    moment::{Light, Scene},
+    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, yes},
+};
+
+/// The sky of a view.
+pub(crate) struct SkyView {
+    tables: Arc<Mutex<FollowedSky>>,
+    volume: SkyVolume,
+}
+
+impl SkyView {
+    /// Over the tables of a context.
+    ///
+    /// # Errors
+    /// A GPU fault.
+    pub fn new(tables: &Arc<Mutex<FollowedSky>>) -> Result<Self> {
+        let volume = SkyVolume::new(&**tables.lock().map_err(|_| poisoned())?)?;
+        Ok(Self { tables: tables.clone(), volume })
+    }
+
+    /// How the sky is drawn.
+    pub fn settings(&self) -> &SkySettings {
+        self.volume.settings()
+    }
+}
+
+fn poisoned() -> Error {
+    Error::new(Status::Poisoned, "an earlier call panicked while building the sky")
+}
+
+impl DrawnEffect for SkyView {
+    fn stages(&self) -> Stages {
+        Stages::BACKGROUND.with(Stages::MEDIUM)
+    }
+
+    /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
+    fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let mut tables = self.tables.lock().map_err(|_| poisoned())?;
+        let work = tables.follow(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
+        to.ends(CostItem::SkyTables, work)?;
+        let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;
+        to.ends(CostItem::SkyView, drawn)?;
+        to.tables_rebuilt += u32::from(work) + u32::from(drawn);
+        Ok(())
+    }
+
+    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        let lamps = shot.now.scene.lamps();
+        if shot.frame.depth.is_some() && stages.has(Stages::MEDIUM) {
+            put(&candidates::AIR, &[candidates::air_work(lamps)]);
+        }
+        if stages.has(Stages::BACKGROUND) {
+            put(&candidates::SKY, &[candidates::sky_work(lamps)]);
+        }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| shot.share(part, 0));
+        let march = yes(self.settings().model == SkyModel::BruteForce);
+        to.between("SKY_MARCH", march, march);
+        to.between("AIR", 1.0, yes(air > 0.0));
+        to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
+        (to.block.drawn[0], to.block.drawn[2]) = (air, sky);
+        to.tables = Some((self.volume.layout().clone(), self.volume.bind_group().clone()));
+        Ok(())
+    }
+}
+
+impl Observer {
+    /// A camera in a scene.
+    pub(crate) fn of(scene: &Scene, exact: bool) -> Self {
+        let lamp = |light: &Light, disc| Lamp {
+            toward: light.direction.to_array(),
+            irradiance: light.spectrum,
+            angular_radius: light.angular_radius,
+            disc,
+        };
+        let moon = lamp(&scene.moon, Disc::Moon { lit_from: moon_lit_from(&scene.moon).to_array() });
+        Self {
+            altitude_m: scene.place.altitude_m.clamp(-1e4, 1e8),
+            lamps: [Some(lamp(&scene.sun, Disc::Sun)), scene.moon.matters.then_some(moon)],
+            refraction: 1.0,
+            exact,
+        }
+    }
+}
+
+/// The sun's direction as the moon's face sees it: in the plane of moon and bright limb, at the phase's angle.
+fn moon_lit_from(moon: &Light) -> DVec3 {
+    let cos_phase = (2.0 * moon.lit - 1.0).clamp(-1.0, 1.0);
+    let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();
+    (moon.bright_limb * sin_phase - moon.direction * cos_phase).normalize()
+}

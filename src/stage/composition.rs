@@ -1,0 +1,149 @@
+//! What the effects add to the one full-screen draw of a call.
+
+use super::{FrameUniform, Stages};
+
+/// Name and value of an `override` constant.
+pub(crate) type Constant = (&'static str, f64);
+
+/// As the value of an `override` constant.
+pub(crate) fn yes(b: bool) -> f64 {
+    f64::from(u8::from(b))
+}
+
+/// Most constants that the effects may add.
+const MOST: usize = 32;
+
+/// A list of constants, without allocation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Constants {
+    list: [Constant; MOST],
+    count: usize,
+}
+
+impl Constants {
+    /// None.
+    pub const NONE: Self = Self { list: [("", 0.0); MOST], count: 0 };
+
+    /// Adds one. There is room for those of all effects.
+    pub fn push(&mut self, constant: Constant) {
+        debug_assert!(self.count < MOST, "room for {constant:?}");
+        if let Some(place) = self.list.get_mut(self.count) {
+            *place = constant;
+            self.count += 1;
+        }
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Constant] {
+        &self.list[..self.count]
+    }
+
+    /// Adds all of a list.
+    pub fn extend(&mut self, constants: &[Constant]) {
+        constants.iter().for_each(|c| self.push(*c));
+    }
+
+    /// The value of one, 0 where there is none of that name.
+    pub fn value(&self, name: &str) -> f64 {
+        self.all().iter().find(|c| c.0 == name).map_or(0.0, |c| c.1)
+    }
+}
+
+impl PartialEq for Constants {
+    fn eq(&self, other: &Self) -> bool {
+        self.all() == other.all()
+    }
+}
+
+/// Places for textures of the effects, which all that are drawn alike share. Their bindings are those of
+/// `shaders/frame/composite.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Texture {
+    /// A layer before the picture: colour with the exposure on it, and cover.
+    Before = 0,
+    /// What lies on the ground, by cells of the host's terrain.
+    OnGround = 1,
+    /// Heights and classes of the host's terrain.
+    Terrain = 2,
+}
+
+/// Places for blocks of the effects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Block {
+    /// Of what lies between the eye and a place.
+    Between = 0,
+    /// Of what lies on surfaces.
+    OnSurfaces = 1,
+}
+
+/// The constants of a pipeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pipeline {
+    /// Those that every shader has which draws through what lies between.
+    pub between: Constants,
+    /// Those of the composition alone.
+    pub composed: Constants,
+}
+
+impl Pipeline {
+    /// None.
+    pub const NONE: Self = Self { between: Constants::NONE, composed: Constants::NONE };
+}
+
+/// What the effects add to the composition.
+pub(crate) struct Composition {
+    /// Stages that are drawn; an effect takes out its own where there turns out to be nothing.
+    pub stages: Stages,
+    /// The frame's block.
+    pub block: FrameUniform,
+    /// Constants of a pipeline that can draw every part.
+    pub whole: Pipeline,
+    /// Those without the parts of which nothing is drawn now: cheaper than a branch on a software driver, which takes both ways.
+    pub least: Pipeline,
+    /// Buffers by [`Block`].
+    pub blocks: [Option<wgpu::Buffer>; 2],
+    /// Textures by [`Texture`].
+    pub textures: [Option<wgpu::TextureView>; 3],
+    /// Look-up tables of what lies behind and between (group 1), and their layout.
+    pub tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
+    /// Fall speed of the slowest of what is drawn near the camera, m/s, and how far off any of it is, m: for which shelters matter.
+    pub near: (f64, f64),
+}
+
+impl Composition {
+    /// With nothing of any effect.
+    pub fn new(stages: Stages, block: FrameUniform) -> Self {
+        Self {
+            stages,
+            block,
+            whole: Pipeline::NONE,
+            least: Pipeline::NONE,
+            blocks: [const { None }; 2],
+            textures: [const { None }; 3],
+            tables: None,
+            near: (1.0, 0.0),
+        }
+    }
+
+    /// Adds a constant of what lies between: its value where every part is drawn, and where only what shows now is.
+    pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.whole.between.push((name, whole));
+        self.least.between.push((name, least));
+    }
+
+    /// Adds a constant of the composition alone, likewise.
+    pub fn constant(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.whole.composed.push((name, whole));
+        self.least.composed.push((name, least));
+    }
+
+    /// Gives a block.
+    pub fn set_block(&mut self, place: Block, buffer: &wgpu::Buffer) {
+        self.blocks[place as usize] = Some(buffer.clone());
+    }
+
+    /// Gives a texture.
+    pub fn set_texture(&mut self, place: Texture, view: Option<wgpu::TextureView>) {
+        self.textures[place as usize] = view;
+    }
+}
