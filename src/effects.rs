@@ -1,21 +1,128 @@
-//! The list of effects: what a view holds of each, in the order in which they are run, and what each takes from its context.
+//! The list of effects: what a context holds of each, what a view holds of each, in the order in which they are run.
 //!
-//! This is the one place above their rooms that names them. A new effect adds a field here, its line in [`Effects::each`], what it
-//! gathers in [`Effects::gather`], and its parts in [`PARTS`].
+//! Beside the front room and the C boundary this is the one place above their rooms that names them. A new effect adds a field to
+//! [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], what it gathers in [`Effects::gather`], and its parts in
+//! [`PARTS`]; one with a state adds a field to [`Held`] likewise.
+
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex},
+};
 
 use crate::{
-    context::Context,
+    almanac::sun::Utc,
     error::Result,
-    fog::{self, FogUniform, FogView},
+    fog::{self, FogUniform, FogView, HeldFog},
     glass::GlassView,
-    gpu::Device,
-    ground::{GroundUniform, GroundView},
+    gpu::{Device, Shared},
+    ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
+    light::{Exposure, ToneCurve},
     moment::{Moment, Scene},
     plan::{self, Price, StepWork, parts::Part},
+    planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
-    sky::{self, SkyView, SkyVolume},
+    scene::WorldFrame,
+    sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     stage::{DrawnEffect, Frame, Shot, Stages},
+    world::{Couplings, HeldEffect, World},
 };
+
+/// Settings for a new context.
+#[derive(Clone, Debug)]
+pub struct ContextDesc {
+    /// How the host's world lies on the planet.
+    pub world: WorldFrame,
+    /// Air, ground and sun. Default the Earth.
+    pub planet: Planet,
+    /// Seed of everything that chance decides.
+    pub seed: u64,
+    /// Exposure of frames that bring none.
+    pub exposure: Exposure,
+    /// From luminance to the display.
+    pub tone: ToneCurve,
+    /// Universal time at simulation time 0. Default 2026-06-21 10:00 UTC.
+    pub utc_at_zero: Utc,
+    /// How the sky is drawn. Default the directional tables.
+    pub sky: SkySettings,
+    /// Where the wetness of the ground comes from. Default the weather of the moment.
+    pub ground: GroundModel,
+    /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet, settings
+    /// and weather reads them. What goes wrong with its files is logged, never an error. Default none.
+    pub cache_dir: Option<PathBuf>,
+}
+
+impl Default for ContextDesc {
+    fn default() -> Self {
+        Self {
+            world: WorldFrame::default(),
+            planet: Planet::earth(),
+            seed: 0,
+            exposure: Exposure::default(),
+            tone: ToneCurve::default(),
+            utc_at_zero: Utc(1_782_036_000.0),
+            sky: SkySettings::default(),
+            ground: GroundModel::default(),
+            cache_dir: None,
+        }
+    }
+}
+
+/// What the effects do to every world.
+pub(crate) const COUPLINGS: Couplings = Couplings { dim: fog::dim, own_rain: fog::own_rain };
+
+/// What a context holds of the effects for all its views.
+pub(crate) struct Held {
+    pub sky: Arc<Mutex<FollowedSky>>,
+    pub fog: HeldFog,
+    pub ground: HeldGround,
+}
+
+/// The same as it was loaded.
+pub(crate) struct LoadedHeld {
+    fog: HeldFog,
+    ground: LoadedGround,
+}
+
+impl Held {
+    /// Of a new context.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field of `desc`, or a GPU fault.
+    pub fn new(device: &Arc<Device>, shared: &Shared, desc: &ContextDesc) -> Result<Self> {
+        let library = shared.get(|| Ok(sky::SkyLibrary::default()))?;
+        let sky = FollowedSky::new(device, &library, &desc.sky, desc.cache_dir.clone())?;
+        Ok(Self {
+            sky: Arc::new(Mutex::new(sky)),
+            fog: HeldFog::default(),
+            ground: HeldGround::new(desc.ground, desc.seed),
+        })
+    }
+
+    /// Those that are led, saved and loaded.
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 2] {
+        [&mut self.fog, &mut self.ground]
+    }
+
+    /// The same to look at.
+    pub fn all(&self) -> [&dyn HeldEffect; 2] {
+        [&self.fog, &self.ground]
+    }
+
+    /// Takes what is theirs out of a saved state.
+    ///
+    /// # Errors
+    /// [`crate::Status::Parse`] naming what does not fit.
+    pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
+        Ok(LoadedHeld { fog: HeldFog::read(state)?, ground: self.ground.read(world, state)? })
+    }
+
+    /// Shows what was loaded, and leaves what was before in its place.
+    pub fn take_up(&mut self, world: &mut World, other: &mut LoadedHeld) {
+        std::mem::swap(&mut self.fog, &mut other.fog);
+        world.set.undimmed = self.fog.law.is_some();
+        self.ground.take_up(&mut other.ground);
+    }
+}
 
 /// The parts of the weather that a picture may do with less of, in the order of every list of them.
 pub const PARTS: &[Part] = &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN];
@@ -46,18 +153,17 @@ pub(crate) struct Effects {
 }
 
 impl Effects {
-    /// Those of a view of `context`.
+    /// Those of a view.
     ///
     /// # Errors
     /// A GPU fault.
-    pub fn new(context: &Context) -> Result<Self> {
-        let device = context.device();
+    pub fn new(device: &Arc<Device>, shared: &Arc<Shared>, held: &Held) -> Result<Self> {
         Ok(Self {
-            sky: SkyView::new(context.sky_tables())?,
+            sky: SkyView::new(&held.sky)?,
             fog: FogView::new(device),
             ground: GroundView::new(device),
             rain: RainView::new(device, RainSettings::default()),
-            glass: GlassView::new(context.shared()),
+            glass: GlassView::new(shared),
         })
     }
 
@@ -75,11 +181,17 @@ impl Effects {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
-    pub fn gather(&mut self, context: &Context, now: &Moment<'_>, frame: &Frame<'_>, stages: Stages) -> Result<()> {
-        self.fog.gather(now, context.fog_law())?;
+    pub fn gather(
+        &mut self,
+        (device, held): (&Arc<Device>, &Held),
+        (world, now): (&World, &Moment<'_>),
+        frame: &Frame<'_>,
+        stages: Stages,
+    ) -> Result<()> {
+        self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
-        let wet = self.ground.gather(now, frame, &context.ground_held(now), fog_depth)?;
-        self.ground.set_terrain(context.terrain_views(wet && stages.has(Stages::SURFACE)));
+        let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
+        self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
         self.rain.gather(now)
     }
 

@@ -5,6 +5,7 @@
 //! nouns and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
+pub mod almanac;
 pub mod candidates;
 pub mod capi;
 pub mod context;
@@ -28,5 +29,6 @@ mod stage;
 mod surroundings;
 pub mod weather;
 pub mod wind;
+mod world;
 
 pub use error::{Error, Result, Status};

@@ -22,9 +22,9 @@ use super::{
     status::*,
 };
 use crate::{
-    context::{GroundAt, GroundModel},
     error::Status,
     ground::SurfaceClass,
+    ground::{GroundAt, GroundModel},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));

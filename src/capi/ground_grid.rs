@@ -18,8 +18,8 @@ use super::{
     status::*,
 };
 use crate::{
-    context::GroundCell,
     error::{Error, Result, Status},
+    ground::GroundCell,
     ground::{GroundGrid, MAX_GRID_NODES, SurfaceClass},
 };
 

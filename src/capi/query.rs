@@ -23,8 +23,9 @@ use super::{
     status::*,
 };
 use crate::{
-    context::{Between, Context, GroundLight, Light, LightAt},
+    context::{Context, GroundLight, Light, LightAt},
     error::{Error, Result, Status},
+    fog::Between,
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_query.rs"));

@@ -18,8 +18,8 @@ use super::{
     status::*,
 };
 use crate::{
-    context::{RainAt, RainOn, RainSurface},
     error::{Result, Status},
+    rain::{RainAt, RainOn, RainSurface},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_wind.rs"));

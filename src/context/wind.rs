@@ -13,7 +13,7 @@ use crate::{
 impl Context {
     fn blowing(&self, time_s: f64) -> Result<Blowing> {
         self.check_time(time_s)?;
-        Ok(self.over().wind.at(time_s))
+        Ok(self.world.over().wind.at(time_s))
     }
 
     /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the station's altitude: who
@@ -24,12 +24,12 @@ impl Context {
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn wind_at(&self, position: DVec3, time_s: f64) -> Result<WindAt> {
-        let place = self.desc.world.place_at("position", position)?.place;
-        let conditions = self.weather_at(time_s)?;
+        let place = self.world.frame.place_at("position", position)?.place;
+        let conditions = self.world.weather_at(time_s)?;
         let height_m = place.altitude_m - conditions.air.station_altitude_m;
         let wind = self.blowing(time_s)?.at_height(&conditions.wind, height_m);
-        let found = self.wind_grid.as_ref().and_then(|g| {
-            let cells = g.cells_at(position, self.desc.world.frame_at(g.origin).world_to_enu);
+        let found = self.world.wind_grid.as_ref().and_then(|g| {
+            let cells = g.cells_at(position, self.world.frame.frame_at(g.origin).world_to_enu);
             Some((g.kind, g.at(cells)?))
         });
         Ok(match found {
@@ -49,13 +49,13 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_wind_grid(&mut self, grid: Option<WindGrid>) -> Result<()> {
         grid.as_ref().map_or(Ok(()), WindGrid::validate)?;
-        self.wind_grid = grid.map(Arc::new);
+        self.world.wind_grid = grid.map(Arc::new);
         Ok(())
     }
 
     /// The wind that varies in space.
     pub fn wind_grid(&self) -> Option<&Arc<WindGrid>> {
-        self.wind_grid.as_ref()
+        self.world.wind_grid.as_ref()
     }
 
     /// How far the wind at 10 m, gusts included, has carried the air since simulation time 0, m (east, north, up): the integral of

@@ -35,6 +35,7 @@
 //! camera, planet and ground. Extinctions of air, haze and precipitation at the station.
 
 pub mod candidates;
+mod held;
 pub mod laws;
 pub mod light;
 mod of_weather;
@@ -51,16 +52,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
+pub use crate::moment::MAX_EXTINCTION_PER_M;
 pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
 pub use probe::{probe, probe_csv};
 pub use queries::{
-    extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between, vertical_visibility_m,
-    visibility_between_m,
+    Between, extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between,
+    vertical_visibility_m, visibility_between_m,
 };
 pub use reference::{FogKind, FogModel, FogSample};
 pub use uniforms::{FogUniform, FogVariant};
 
-pub(crate) use of_weather::{fog_layer, through_fog};
+pub(crate) use held::HeldFog;
+pub(crate) use of_weather::{dim, fog_layer, own_rain};
 pub(crate) use view::FogView;
 
 /// Contrast left at the meteorological optical range (WMO-No. 8).
@@ -76,9 +79,6 @@ pub fn koschmieder_extinction_per_m(visibility_m: f64) -> f64 {
 pub fn koschmieder_visibility_m(extinction_per_m: f64) -> f64 {
     -CONTRAST_THRESHOLD.ln() / extinction_per_m
 }
-
-/// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
-pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
 /// How the layer's extinction changes with altitude. Altitudes in metres above mean sea level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

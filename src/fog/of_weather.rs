@@ -11,7 +11,7 @@ use super::{
 use crate::{
     error::Result,
     falling::{curtain, liquid_share},
-    moment::{Light, Scene},
+    moment::{GroundLight, Light, OwnRain, Scene},
     scene::Place,
     weather::{Conditions, lifting, smoothstep},
 };
@@ -136,8 +136,32 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
     Viewpoint { altitude_m: place.altitude_m, map_m, planet_radius_m, ground_m }
 }
 
+/// Takes off the light of a scene what the weather's low layer takes.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
+    let (above, lights) = (&scene.above_fog, [&scene.sun, &scene.moon]);
+    let lux = ([above.sun_lux, above.moon_lux, above.sky_lux], scene.planet.ground_albedo);
+    let left = through_fog(&scene.conditions, &scene.place, lights, lux)?;
+    scene.ground = GroundLight::new(left, lights, scene.place.altitude_m);
+    Ok(())
+}
+
+/// What the low layer's extinction has of the weather's rain.
+pub(crate) fn own_rain(c: &Conditions) -> OwnRain {
+    match fog_layer(c, 0, [0.0; 2]).map(|l| l.profile) {
+        Some(Profile::Slab { top_m, top_softness_m, .. }) => OwnRain {
+            extinction_per_m: c.precipitation.extinction_per_m * liquid_share(&c.precipitation),
+            top_m: top_m + 0.5 * top_softness_m,
+            soft_m: top_softness_m.max(1.0),
+        },
+        _ => OwnRain::NONE,
+    }
+}
+
 /// What the weather's low layer leaves of the light `above` it: sun, moon, and all else on level ground, lux.
-pub(crate) fn through_fog(
+fn through_fog(
     c: &Conditions,
     place: &Place,
     [sun, moon]: [&Light; 2],

@@ -3,6 +3,16 @@
 use glam::DVec3;
 
 use super::reference::{FogModel, fog_along, layer_depth_above};
+
+/// What lies between two points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// Share of light that gets through, per channel (620, 550, 450 nm of the default planet).
+    pub transmittance: [f64; 3],
+    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way were
+    /// like this part of it; infinite where nothing stops light.
+    pub visibility_m: f64,
+}
 use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, Viewpoint};
 use crate::error::{Error, Result, check_range};
 

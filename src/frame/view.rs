@@ -58,7 +58,7 @@ impl View {
             mapped_at_creation: false,
         });
         let composite = context.shared().get(|| SharedComposite::new(&device))?;
-        let effects = Effects::new(context)?;
+        let effects = Effects::new(&device, context.shared(), &context.held)?;
         let planner = Planner::new(PARTS, effects.rebuild_work());
         let around = Around::new(&device.device);
         device.check_made()?;
@@ -222,7 +222,7 @@ impl View {
     ) -> Result<()> {
         let now = context.moment("frame.camera.position", frame.camera.position)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
-        self.effects.gather(context, &now, frame, stages)?;
+        self.effects.gather((&self.device, &context.held), (&context.world, &now), frame, stages)?;
         // What is not there is not drawn.
         let asked = stages;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));

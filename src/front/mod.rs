@@ -1,3 +1,7 @@
-//! The front room: what a Rust host asks of views and contexts by the names of effects. The rooms below it name none.
+//! The front room: what a Rust host asks of contexts and views by the names of effects. The rooms below it, but for the list of effects,
+//! name none.
 
+mod air;
+mod ground;
+mod rain;
 mod view;

@@ -16,7 +16,7 @@ use crate::{
 const MOST_UNITS: f64 = 6e4;
 
 /// What a context holds of the ground, as a camera sees it.
-pub(crate) struct GroundHeld<'a> {
+pub(crate) struct GroundSeen<'a> {
     /// What weather has done to the ground at the camera.
     pub cover: SurfaceCover,
     pub hollows: &'a Hollows,
@@ -58,7 +58,7 @@ impl GroundView {
         &mut self,
         now: &Moment<'_>,
         frame: &Frame<'_>,
-        held: &GroundHeld<'_>,
+        held: &GroundSeen<'_>,
         fog_depth: f64,
     ) -> Result<bool> {
         let glaze = glaze(now);
@@ -117,7 +117,7 @@ fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
 fn uniform(
     now: &Moment<'_>,
     (frame, color): (&Frame<'_>, &wgpu::Texture),
-    held: &GroundHeld<'_>,
+    held: &GroundSeen<'_>,
     glaze: f64,
     fog_depth: f64,
 ) -> Result<GroundUniform> {

@@ -20,6 +20,9 @@ use crate::{
     wind::{Carrying, WindGrid},
 };
 
+/// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
+pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
+
 /// What holds at a camera at a time, worked out once a view and call: every effect draws from it.
 pub(crate) struct Moment<'a> {
     /// Place, lights, air and the weather there.

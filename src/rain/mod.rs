@@ -23,6 +23,7 @@ mod local;
 mod open_pass;
 mod passes;
 pub mod probe;
+mod query;
 mod settings;
 mod shaft;
 pub mod source;
@@ -39,9 +40,12 @@ pub use crate::surroundings::{
     MAX_OCCLUDER_MAPS, MAX_PLANES, MAX_SHELTERS, OccluderMap, Planes, Shelter, Taken, shelter,
 };
 pub use light::DropLight;
+pub use query::{RainAt, RainOn, RainSurface};
+pub(crate) use query::{rain_at, rain_on};
 pub use settings::{RainModel, RainSettings};
 
-pub(crate) use crate::falling::area::Shaft;
+#[cfg(test)]
+use crate::falling::area::Shaft;
 pub(crate) use cones::ConeUniform;
 pub(crate) use contrast::Streaks;
 pub(crate) use local::{Local, LocalUniform};

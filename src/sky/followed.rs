@@ -36,6 +36,11 @@ impl FollowedSky {
         })
     }
 
+    /// Where finished tables are kept, if anywhere.
+    pub fn cache_dir(&self) -> Option<PathBuf> {
+        self.cache.clone()
+    }
+
     /// With a cache, the first planet comes from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         match &self.cache {

@@ -50,13 +50,10 @@
 
 mod cache;
 pub mod candidates;
-pub mod celestial;
-pub(crate) mod ephemeris;
 mod followed;
 mod kit;
 mod level;
 pub mod light;
-pub mod moon;
 pub mod observer;
 mod passes;
 pub mod probe;
@@ -66,12 +63,12 @@ pub mod reference;
 mod set;
 pub mod settings;
 pub mod sight;
-pub mod sun;
 pub mod tables;
 mod uniforms;
 mod view;
 pub mod volume;
 
+pub use crate::almanac::{celestial, moon, sun};
 pub use crate::planet::{self, Planet, spectral};
 pub use kit::SkyLibrary;
 pub use light::{LightTable, Sh9};

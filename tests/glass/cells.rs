@@ -2,7 +2,6 @@
 
 use glam::{DVec2, DVec3};
 use welkin::{
-    context::RainSurface,
     frame::{FrameFlags, Stages},
     glass::{
         Pane, Reach, Windscreen, WiperArm,
@@ -11,6 +10,7 @@ use welkin::{
         step::{Acting, Tables, VOLUME_UNIT_M3},
     },
     gpu::{Device, DeviceOptions},
+    rain::RainSurface,
     rain::{drops::factor_in, sizes::DropSizes},
 };
 

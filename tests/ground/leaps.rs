@@ -5,8 +5,9 @@ use std::time::Duration;
 use glam::DVec3;
 use welkin::{
     Status,
-    context::{Context, GivenDirection, GroundCell},
+    context::{Context, GivenDirection},
     fog::Law,
+    ground::GroundCell,
     ground::GroundGrid,
     rain::RainArea,
     sky::sun::Utc,

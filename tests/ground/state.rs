@@ -3,8 +3,9 @@
 use glam::DVec3;
 use welkin::{
     Status,
-    context::{Context, ContextDesc, GivenDirection, GroundModel},
+    context::{Context, ContextDesc, GivenDirection},
     frame::Stages,
+    ground::GroundModel,
     ground::SurfaceClass,
     weather::Weather,
 };

@@ -3,9 +3,10 @@
 use glam::{DMat3, DVec3};
 use welkin::{
     Status,
-    context::{Context, ContextDesc, GivenDirection, GroundCell, GroundModel},
+    context::{Context, ContextDesc, GivenDirection},
     frame::Stages,
     ground::GroundGrid,
+    ground::{GroundCell, GroundModel},
     rain::{AreaMotion, AreaShape, Planes, RainArea, Shelter},
     weather::{Precipitation, PrecipitationKind, Surface, SurfaceState, Weather, Wind},
 };

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use welkin::{
     Status,
-    context::{Context, ContextDesc, GroundCell, GroundModel},
+    context::{Context, ContextDesc},
     frame::{Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
+    ground::{GroundCell, GroundModel},
     ground::{GroundTexture, SNIPPET_WGSL},
     weather::{Surface, SurfaceState, Weather, Wind},
 };

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use welkin::{
-    context::{Context, ContextDesc, GivenDirection, RainSurface},
+    context::{Context, ContextDesc, GivenDirection},
     frame::{Shared, Stages},
     gpu::{Device, DeviceOptions},
+    rain::RainSurface,
     rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea, RainModel, RainSettings},
     scene::{Place, WorldFrame, WorldKind},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use welkin::{
-    context::{Context, GivenDirection, RainSurface},
+    context::{Context, GivenDirection},
+    rain::RainSurface,
     weather::{Overrides, Weather, derive_with},
 };
 

@@ -5,17 +5,17 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::{
-    Context, GroundLight, Light, Scene,
+    World,
     air::planet_under,
     lights::{UnderClouds, color_of},
 };
 use crate::{
     error::Result,
     falling::curtain,
-    fog::through_fog,
     light::luminance,
-    scene::{LocalFrame, Place},
-    sky::Planet,
+    moment::{GroundLight, Light, Scene},
+    planet::Planet,
+    scene::{LocalFrame, Place, WorldKind},
     weather::{CloudLight, Conditions, slab_reflectance, smoothstep},
 };
 
@@ -99,39 +99,32 @@ fn medium_share(left: &CloudLight) -> f64 {
     (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
 
-impl Context {
+impl World {
     /// What a camera at `position` draws from at simulation time `time_s`, past or to come. Closed form: no device is
     /// asked.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet; for times as
-    /// [`Context::conditions_at`].
-    pub fn scene_at(&self, position: DVec3, time_s: f64) -> Result<Scene> {
-        self.scene_named("position", position, time_s)
-    }
-
-    /// As [`Context::scene_at`], where the host calls the position `name`.
-    pub(crate) fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
-        let local = self.desc.world.place_at(name, position)?;
+    /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the planet, or
+    /// the time is not known.
+    pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
+        let local = self.frame.place_at(name, position)?;
         let conditions = self.weather_at(time_s)?;
-        let planet = planet_under(&self.desc.planet, &conditions);
+        let planet = planet_under(&self.planet, &conditions);
         let lights = self.lights_over(&local.place, &conditions, time_s)?;
         let above_fog = self.ground_light(&planet, &local.place, &conditions, &lights);
         let [(sun, under_sun), (moon, _)] = lights;
-        let ground = if self.fog_law.is_some() {
-            above_fog
-        } else {
-            above_fog.through_fog(&conditions, &local.place, [&sun, &moon], planet.ground_albedo)?
-        };
         // Only patches and curtains show where the air has gone.
         let patchy =
             conditions.fog.extinction_per_m > 0.0 && (conditions.fog.coverage < 1.0 || conditions.fog.lifted > 0.0);
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
-        let drift_m =
-            if patchy || curtained { self.wind_displacement(time_s)?.truncate().to_array() } else { [0.0; 2] };
+        let drift_m = if patchy || curtained {
+            self.over().carrying_until(time_s)?.displacement_m().truncate().to_array()
+        } else {
+            [0.0; 2]
+        };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
-        Ok(Scene {
+        let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position, &local),
@@ -145,22 +138,26 @@ impl Context {
             deck_cd_m2: above_fog.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
             medium_share: medium_share(&under_sun),
-            ground,
+            ground: above_fog,
             above_fog,
             conditions,
-        })
+        };
+        if !self.set.undimmed {
+            (self.couplings.dim)(&mut scene)?;
+        }
+        Ok(scene)
     }
 
     fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
-        let o = &self.desc.world.origin;
-        match self.desc.world.kind {
-            crate::scene::WorldKind::Flat => {
+        let o = &self.frame.origin;
+        match self.frame.kind {
+            WorldKind::Flat => {
                 let enu = local.world_to_enu * position;
                 [enu.x, enu.y]
             }
             _ => {
-                let metres_per_deg = self.desc.planet.bottom_radius_m.to_radians();
+                let metres_per_deg = self.planet.bottom_radius_m.to_radians();
                 let east = (p.longitude_deg - o.longitude_deg) * o.latitude_deg.to_radians().cos();
                 [east * metres_per_deg, (p.latitude_deg - o.latitude_deg) * metres_per_deg]
             }
@@ -187,17 +184,13 @@ impl Context {
 }
 
 impl GroundLight {
-    fn new([sun_lux, moon_lux, sky_lux]: [[f64; 3]; 3], [sun, moon]: [&Light; 2], altitude_m: f64) -> Self {
+    /// Of the light of sun, moon and all else that arrives at a place, lux.
+    pub(crate) fn new([sun_lux, moon_lux, sky_lux]: [[f64; 3]; 3], [sun, moon]: [&Light; 2], altitude_m: f64) -> Self {
         let total_lux = luminance(&sky_lux)
             + luminance(&sun_lux) * sun.direction.z.max(0.0)
             + luminance(&moon_lux) * moon.direction.z.max(0.0);
         let adaptation_cd_m2 = adaptation(total_lux, luminance(&sky_lux), luminance(&sun_lux), sun, altitude_m);
         Self { sun_lux, moon_lux, sky_lux, total_lux, adaptation_cd_m2 }
-    }
-
-    fn through_fog(&self, c: &Conditions, place: &Place, lights: [&Light; 2], ground_albedo: [f64; 3]) -> Result<Self> {
-        let above = ([self.sun_lux, self.moon_lux, self.sky_lux], ground_albedo);
-        Ok(Self::new(through_fog(c, place, lights, above)?, lights, place.altitude_m))
     }
 }
 

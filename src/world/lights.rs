@@ -2,17 +2,20 @@
 
 use glam::DVec3;
 
-use super::{Context, Light};
+use super::World;
 use crate::{
-    error::{Error, Result},
-    light::luminance,
-    scene::Place,
-    sky::{
-        Planet,
+    almanac::{
         moon::{self, MoonPosition},
-        spectral::{Conversion, sun_rec709},
         sun::{self, SunPosition, Turned},
     },
+    error::{Error, Result},
+    light::luminance,
+    moment::Light,
+    planet::{
+        Planet,
+        spectral::{Conversion, sun_rec709},
+    },
+    scene::Place,
     weather::{CloudLight, Conditions},
 };
 
@@ -34,7 +37,7 @@ pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
 }
 
 /// Colour of a transfer at the planet's wavelengths.
-pub(super) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
+pub(crate) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
 }
 
@@ -52,7 +55,7 @@ fn out_of_almanac(time_s: f64) -> Error {
 /// A light and what the clouds leave of it.
 pub(super) type UnderClouds = (Light, CloudLight);
 
-impl Context {
+impl World {
     /// Sun and moon over `place` at simulation time `time_s`.
     pub(super) fn lights_over(&self, place: &Place, c: &Conditions, time_s: f64) -> Result<[UnderClouds; 2]> {
         let utc = self.utc_at(time_s);
@@ -72,7 +75,7 @@ impl Context {
         altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
-        let to_sun = self.given_sun.map_or(almanac.direction, |g| g.unit());
+        let to_sun = self.set.given_sun.map_or(almanac.direction, |g| g.unit());
         let (apparent, flattening) = see(to_sun);
         let clouds = c.cloud_light_at(to_sun.z, LAND_ALBEDO, altitude_m);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
@@ -80,7 +83,7 @@ impl Context {
             direction: to_sun,
             apparent,
             bright_limb: DVec3::Z,
-            angular_radius: (self.desc.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
+            angular_radius: (self.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
             lit: 1.0,
             spectrum: [strength; 3],
             illuminance_lux: color_of(&self.color, [strength; 3]),
@@ -99,10 +102,10 @@ impl Context {
         altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
-        if let Some(given) = &self.given_moon {
+        if let Some(given) = &self.set.given_moon {
             at.direction = given.unit();
         }
-        if self.given_moon.is_some() || self.given_sun.is_some() {
+        if self.set.given_moon.is_some() || self.set.given_sun.is_some() {
             // The host moved one of them: the phase follows from where they stand now.
             let elongation = at.direction.angle_between(sun.direction);
             at.phase_angle = std::f64::consts::PI - elongation;

@@ -3,20 +3,19 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    Context, GroundModel,
-    terrain_rain::{Overs, Part, liquid},
+    GroundGrid, GroundModel, GroundWater,
+    held::GroundState,
+    host_rain::{Overs, Part, liquid},
+    terrain::{RUN, Terrain, TerrainWater},
+    water::{Forcing, STEP_S, Step},
 };
-use crate::ground::SurfaceClass;
 use crate::{
     error::Result,
-    ground::{
-        GroundGrid, GroundWater,
-        terrain::{CellWater, RUN, Terrain, TerrainWater},
-        water::{Forcing, STEP_S, Step},
-    },
-    rain::{Shelter, drops::factor_in, shelter::sheltered, sizes::DropSizes},
+    falling::{drops::factor_in, sizes::DropSizes},
     scene::WorldFrame,
+    surroundings::{Shelter, shelter::sheltered},
     weather::{Conditions, Falling, cover_under_rain},
+    world::World,
 };
 
 /// So far above the ground is what counts as its surface, m.
@@ -64,7 +63,7 @@ struct Shown {
     wind: DVec2,
     humidity: f64,
     slot: f64,
-    told: u64,
+    surroundings: u64,
 }
 
 /// How many thirds of the rain the boxes keep off each cell.
@@ -273,156 +272,46 @@ impl HostGround {
         let cells: Vec<GroundWater> = (0..self.terrain.grid.len()).map(&mut at).collect();
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
     }
-}
 
-impl Context {
-    /// The host's terrain, over which wetness and puddles are found cell by cell; `None` leaves level ground everywhere. The grid
-    /// whose heights are set already keeps its water. With [`GroundModel::Simulated`] each cell has a state, which begins as the
-    /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
-    /// terrain's hollows. Takes some tenths of a second for the largest grids.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
-    pub fn set_ground_grid(&mut self, grid: Option<GroundGrid>) -> Result<()> {
-        let Some(grid) = grid else {
-            self.host_ground = None;
-            self.ground_generation += 1;
-            return Ok(());
-        };
-        grid.validate()?;
-        self.desc.world.place_at("ground_grid.origin_m", grid.origin)?;
-        if let Some(held) = self.host_ground.as_mut().filter(|held| held.terrain.grid.has_heights_of(&grid)) {
-            if held.terrain.grid.classes != grid.classes {
-                held.terrain.grid.classes = grid.classes;
-                self.classes_revision += 1;
-            }
-            return Ok(());
-        }
-        self.host_ground = Some(Box::new(HostGround::new(grid, &self.desc.world)));
-        (self.ground_generation, self.classes_revision) = (self.ground_generation + 1, self.classes_revision + 1);
-        let from_s = self.steps_end_s();
-        if let Some(behind) = &mut self.behind {
-            behind.terrain_from_s = from_s;
-        }
-        self.show_terrain()
-    }
-
-    /// The host's terrain.
-    pub fn ground_grid(&self) -> Option<&GroundGrid> {
-        self.host_ground.as_ref().map(|held| &held.terrain.grid)
-    }
-
-    /// Water of each cell of the host's terrain now, in the order of its heights; `None` without one.
-    pub fn ground_cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
-        let held = self.host_ground.as_ref()?;
-        Some((0..held.terrain.grid.len()).map(move |cell| {
-            let c = held.water.cell(cell);
-            GroundCell {
-                film_mm: c.film_mm as f32,
-                soaked: c.soaked as f32,
-                standing_mm: c.standing_mm.max(0.0) as f32,
-                ice: held.ice(cell),
-            }
-        }))
-    }
-
-    /// A number that is another whenever the water of the cells has changed.
-    pub fn ground_revision(&self) -> u64 {
-        self.ground_revision
-    }
-
-    /// What the ground is made of where neither the host's grid nor its image says so: [`SurfaceClass::Unspecified`], the
-    /// default, is natural ground. Part of the saved state.
-    pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
-        self.surface_class = class;
-    }
-
-    /// What ground is made of of which nothing else is said.
-    pub fn default_surface_class(&self) -> SurfaceClass {
-        self.surface_class
-    }
-
-    /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
-    pub(super) fn surface_class_at(&self, position: DVec3) -> SurfaceClass {
-        let cell = self.host_ground.as_ref().and_then(|held| {
-            let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
-            let nearest = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-            Some(held.terrain.grid.class(nearest.0))
-        });
-        cell.unwrap_or_default().or(self.surface_class)
-    }
-
-    /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
-    pub(super) fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
-        let held = self.host_ground.as_ref()?;
-        let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
-        Some((held.water.between(&about), held.water.puddles()))
-    }
-
-    /// The host's terrain and what turns the host's axes at its origin, for drawing.
-    pub(crate) fn drawn_terrain(&self) -> Option<(&GroundGrid, DMat3)> {
-        self.host_ground.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
-    }
-
-    /// Whether there is any water on the host's terrain.
-    pub(crate) fn has_wet_terrain(&self) -> bool {
-        self.host_ground.as_ref().is_some_and(|held| !held.water.is_dry())
-    }
-
-    /// Lets the terrain's water begin at its next step as the ground is then.
-    pub(super) fn begin_terrain_anew(&mut self) {
-        if let Some(held) = &mut self.host_ground {
-            (held.begun, held.shown) = (false, None);
-        }
-    }
-
-    /// Leads the terrain's water from `from_s` through a step, under the weather in its middle; `water` is that of level, open
-    /// ground at its beginning.
-    pub(super) fn step_terrain(
+    /// Leads the water from `from_s` through a step, under the weather in its middle; `water` is that of level, open ground at its
+    /// beginning. Says whether it may have changed.
+    pub fn lead(
         &mut self,
+        world: &World,
         (from_s, seconds): (f64, f64),
-        c: &Conditions,
-        forcing: &Forcing,
+        (c, forcing): (&Conditions, &Forcing),
         water: &GroundWater,
-    ) -> Result<()> {
-        let Some(mut held) = self.host_ground.take() else { return Ok(()) };
-        let overs = self.overs(&held, from_s + 0.5 * seconds, c);
-        let stepped = overs.map(|overs| {
-            if !held.begun {
-                held.show(c, water, &overs, &self.shelters);
-                held.begun = true;
-            }
-            held.step(c, forcing, seconds, &overs, &self.shelters)
-        });
-        self.host_ground = Some(held);
-        self.ground_revision += u64::from(stepped?);
-        Ok(())
+    ) -> Result<bool> {
+        let overs = self.overs(world, from_s + 0.5 * seconds, c)?;
+        let shelters = &world.set.shelters;
+        if !self.begun {
+            self.show(c, water, &overs, shelters);
+            self.begun = true;
+        }
+        Ok(self.step(c, forcing, seconds, &overs, shelters))
     }
 
-    /// Brings up to date with weather, areas and shelter what is no state of its own: the terrain's ice, and its water where it
-    /// has no state.
-    pub(super) fn show_terrain(&mut self) -> Result<()> {
-        let Some(mut held) = self.host_ground.take() else { return Ok(()) };
-        let shown = self.show_on(&mut held);
-        self.host_ground = Some(held);
-        self.ground_revision += u64::from(shown?);
-        Ok(())
+    /// Lets the water begin at its next step as the ground is then.
+    pub fn begin_anew(&mut self) {
+        (self.begun, self.shown) = (false, None);
     }
 
+    /// Brings up to date with weather, areas and shelter what is no state of its own: the ice, and the water where it has no state.
     /// Says whether anything may have changed.
-    fn show_on(&self, held: &mut HostGround) -> Result<bool> {
+    pub fn follow(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Looked at as often as a state is stepped: weather and areas may change all the time.
-        let slot_s = ((self.time_s / STEP_S).floor() * STEP_S).max(self.timeline.known_from_s());
-        let c = self.timeline.at(slot_s);
-        if held.begun && c.surface.ice == 0.0 && held.glaze.ice == 0.0 {
+        let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
+        let c = world.timeline.at(slot_s);
+        if self.begun && c.surface.ice == 0.0 && self.glaze.ice == 0.0 {
             return Ok(false);
         }
-        let overs = self.overs(held, slot_s, &c)?;
-        let iced = held.ice_over(&c, &overs, &self.shelters);
-        if held.begun {
+        let overs = self.overs(world, slot_s, &c)?;
+        let shelters = &world.set.shelters;
+        let iced = self.ice_over(&c, &overs, shelters);
+        if self.begun {
             return Ok(iced);
         }
-        let water = match (self.desc.ground, self.ground) {
+        let water = match (model, state) {
             (GroundModel::Simulated, Some(state)) => state.water(),
             _ => GroundWater::of_cover(&c.surface),
         };
@@ -431,25 +320,14 @@ impl Context {
             falling: c.precipitation,
             wind: DVec2::new(c.wind.east_m_s, c.wind.north_m_s),
             humidity: c.air.relative_humidity,
-            slot: if self.areas.is_empty() { 0.0 } else { slot_s },
-            told: self.told,
+            slot: if world.set.regions.is_empty() { 0.0 } else { slot_s },
+            surroundings: world.surroundings_revision,
         };
-        if held.shown == Some(shown) {
+        if self.shown == Some(shown) {
             return Ok(iced);
         }
-        held.show(&c, &water, &overs, &self.shelters);
-        held.shown = Some(shown);
+        self.show(&c, &water, &overs, shelters);
+        self.shown = Some(shown);
         Ok(true)
-    }
-
-    /// Exchanges the terrain for that of another state.
-    pub(super) fn swap_terrain(&mut self, other: &mut Option<Box<HostGround>>) {
-        let same = match (self.ground_grid(), other.as_ref().map(|held| &held.terrain.grid)) {
-            (Some(old), Some(new)) => old.has_heights_of(new),
-            (old, new) => old.is_none() && new.is_none(),
-        };
-        (self.ground_revision, self.classes_revision) = (self.ground_revision + 1, self.classes_revision + 1);
-        self.ground_generation += u64::from(!same);
-        std::mem::swap(&mut self.host_ground, other);
     }
 }

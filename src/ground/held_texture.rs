@@ -1,24 +1,25 @@
 //! The water on the host's terrain on the GPU: one upload for all views and for the host's own shaders.
 
-use std::sync::{MutexGuard, PoisonError};
+use std::sync::{Arc, MutexGuard, PoisonError};
 
-use super::Context;
+use super::{
+    GroundTexture,
+    held::HeldGround,
+    texture::{Filled, TerrainTextures, uv_from_world},
+};
 use crate::{
     error::{Error, Result, Status},
-    ground::{
-        GroundTexture,
-        texture::{Filled, TerrainTextures, uv_from_world},
-    },
+    gpu::Device,
 };
 
-impl Context {
+impl HeldGround {
     /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is uploaded and
     /// submitted, which is every 10 s of simulation time at most. It stays the same object until another grid is set or loaded; then
     /// it goes, at this function's or a view's next call.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain, [`Status::DeviceLost`], or a GPU fault.
-    pub fn ground_texture(&mut self) -> Result<GroundTexture> {
+    pub fn texture(&mut self, device: &Arc<Device>) -> Result<GroundTexture> {
         let Some((grid, to_enu)) = self.drawn_terrain() else {
             return Err(Error::new(
                 Status::WrongOrder,
@@ -26,42 +27,42 @@ impl Context {
             ));
         };
         let rows = uv_from_world(grid, to_enu);
-        let _entered = self.device.enter()?;
-        let mut textures = self.terrain_textures();
-        let Some(Filled { water, generation, revision, .. }) = self.fill(&mut textures).cloned() else {
+        let _entered = device.enter()?;
+        let mut textures = self.locked();
+        let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures).cloned() else {
             return Err(Error::new(Status::Internal, "a terrain without textures"));
         };
         if std::mem::take(&mut textures.written) {
             let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
-            let mut encoder = self.device.device.create_command_encoder(&label);
+            let mut encoder = device.device.create_command_encoder(&label);
             let read = wgpu::TextureUses::RESOURCE;
             let read = wgpu::TextureTransition { texture: &water, selector: None, state: read };
             encoder.transition_resources(std::iter::empty(), std::iter::once(read));
-            self.device.submit(encoder);
+            device.submit(encoder);
         }
-        self.device.check()?;
+        device.check()?;
         Ok(GroundTexture { texture: water, generation, revision, uv_from_world: rows })
     }
 
     /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.
-    pub(crate) fn terrain_views(&self, wanted: bool) -> [Option<wgpu::TextureView>; 2] {
-        let mut textures = self.terrain_textures();
-        let filled = if wanted { self.fill(&mut textures) } else { textures.filled() };
+    pub fn views(&self, device: &Arc<Device>, wanted: bool) -> [Option<wgpu::TextureView>; 2] {
+        let mut textures = self.locked();
+        let filled = if wanted { self.fill(device, &mut textures) } else { textures.filled() };
         filled.map_or([None, None], |f| f.views.clone().map(Some))
     }
 
     /// Within the host's context.
-    fn fill<'a>(&self, textures: &'a mut TerrainTextures) -> Option<&'a Filled> {
-        let Some(held) = &self.host_ground else {
+    fn fill<'a>(&self, device: &Arc<Device>, textures: &'a mut TerrainTextures) -> Option<&'a Filled> {
+        let Some(held) = &self.host else {
             *textures = TerrainTextures::default();
             return None;
         };
-        let numbers = [self.ground_generation, self.ground_revision, self.classes_revision];
-        Some(textures.follow(&self.device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
+        let numbers = [self.generation, self.revision, self.classes_revision];
+        Some(textures.follow(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
     }
 
-    fn terrain_textures(&self) -> MutexGuard<'_, TerrainTextures> {
+    fn locked(&self) -> MutexGuard<'_, TerrainTextures> {
         // What a panic left is only written anew.
-        self.terrain_textures.lock().unwrap_or_else(PoisonError::into_inner)
+        self.textures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -5,22 +5,19 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::terrain_saved::{values, words};
 use crate::{
     error::{Error, Result},
-    fog::Law,
     light::Exposure,
-    rain::{MAX_SHELTERS, Planes, Shelter},
     scene::{HostLight, MAX_LIGHTS},
+    surroundings::{MAX_SHELTERS, Planes, Shelter},
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
-/// Exposure, fog law, shelters, lamps and wind grid as text.
+/// Exposure, shelters, lamps and wind grid as text.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSettings {
     exposure: Exposure,
-    fog_law: Option<Law>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     shelters: Vec<SavedShelter>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -29,9 +26,8 @@ pub(super) struct SavedSettings {
 }
 
 /// The same as a context holds them.
-pub(super) struct Settings {
+pub(super) struct SetBeside {
     pub exposure: Exposure,
-    pub fog_law: Option<Law>,
     pub shelters: Vec<Shelter>,
     pub lights: Vec<HostLight>,
     pub wind_grid: Option<Arc<WindGrid>>,
@@ -69,16 +65,9 @@ struct SavedWindGrid {
 }
 
 impl SavedSettings {
-    pub fn of(
-        exposure: Exposure,
-        fog_law: &Option<Law>,
-        shelters: &[Shelter],
-        lights: &[HostLight],
-        wind_grid: Option<&WindGrid>,
-    ) -> Self {
+    pub fn of(exposure: Exposure, shelters: &[Shelter], lights: &[HostLight], wind_grid: Option<&WindGrid>) -> Self {
         Self {
             exposure,
-            fog_law: *fog_law,
             shelters: shelters.iter().map(SavedShelter::of).collect(),
             lights: lights.iter().map(SavedLight::of).collect(),
             wind_grid: wind_grid.map(SavedWindGrid::of),
@@ -88,10 +77,9 @@ impl SavedSettings {
     /// Refuses what cannot be set.
     ///
     /// # Errors
-    /// As the setters of [`super::Context`].
-    pub fn checked(&self) -> Result<Settings> {
+    /// As the setters of a context.
+    pub fn checked(&self) -> Result<SetBeside> {
         self.exposure.validate()?;
-        self.fog_law.as_ref().map_or(Ok(()), Law::validate)?;
         let most = |name: &str, count: usize, most: usize| match count {
             count if count > most => Err(Error::range(name, &format!("at most {most}"), count)),
             _ => Ok(()),
@@ -101,7 +89,7 @@ impl SavedSettings {
         let shelters = self.shelters.iter().map(SavedShelter::shelter).collect::<Result<_>>()?;
         let lights = self.lights.iter().map(SavedLight::light).collect::<Result<_>>()?;
         let wind_grid = self.wind_grid.as_ref().map(SavedWindGrid::grid).transpose()?.map(Arc::new);
-        Ok(Settings { exposure: self.exposure, fog_law: self.fog_law, shelters, lights, wind_grid })
+        Ok(SetBeside { exposure: self.exposure, shelters, lights, wind_grid })
     }
 }
 
@@ -180,5 +168,50 @@ impl SavedWindGrid {
         };
         grid.validate()?;
         Ok(grid)
+    }
+}
+
+/// Values as hexadecimal words of text, equal ones in a row as "value*times".
+pub(crate) fn words(values: impl Iterator<Item = u64>) -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    let mut values = values.peekable();
+    while let Some(value) = values.next() {
+        let mut times = 1;
+        while values.next_if_eq(&value).is_some() {
+            times += 1;
+        }
+        let gap = if text.is_empty() { "" } else { " " };
+        // Writing to a text cannot fail.
+        let _ = if times > 1 { write!(text, "{gap}{value:x}*{times}") } else { write!(text, "{gap}{value:x}") };
+    }
+    text
+}
+
+/// The values that [`words`] wrote, if there are `count`.
+pub(crate) fn values(text: &str, count: usize) -> Option<Vec<u64>> {
+    let mut values = Vec::new();
+    for word in text.split_whitespace() {
+        let (value, times) = word.split_once('*').unwrap_or((word, "1"));
+        let times: usize = times.parse().ok().filter(|n| *n <= count - values.len())?;
+        values.resize(values.len() + times, u64::from_str_radix(value, 16).ok()?);
+    }
+    (values.len() == count).then_some(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_come_back_and_broken_ones_do_not() {
+        let list = [7, 7, 7, 0, u64::MAX, 12, 12];
+        let text = words(list.into_iter());
+        assert_eq!(text, "7*3 0 ffffffffffffffff c*2");
+        assert_eq!(values(&text, 7).unwrap(), list);
+        assert_eq!(values("", 0).unwrap(), []);
+        for (bad, count) in [("7*3", 2), ("7*3", 4), ("7*99999999999999999999", 3), ("x", 1), ("7*-1", 1), ("7*", 1)] {
+            assert_eq!(values(bad, count), None, "{bad}");
+        }
     }
 }

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::{Context, terrain::HostGround};
+use super::{GroundGrid, host::HostGround, terrain::RUN};
 use crate::{
     error::Result,
-    ground::{GroundGrid, terrain::RUN},
-    rain::{MAX_AREAS, Shaft},
+    falling::{MAX_AREAS, area::Shaft},
     weather::{Conditions, Falling},
+    world::World,
 };
 
 /// The rain of an area over a grid.
@@ -136,16 +136,16 @@ impl HostGround {
     }
 }
 
-impl Context {
-    /// The areas over a terrain at a time; `c` is the weather then.
-    pub(super) fn overs(&self, held: &HostGround, time_s: f64, c: &Conditions) -> Result<Overs> {
+impl HostGround {
+    /// The areas over the terrain at a time; `c` is the weather then.
+    pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<Overs> {
         let mut overs = Overs { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
-        if self.areas.is_empty() {
+        if world.set.regions.is_empty() {
             return Ok(overs);
         }
         let places = overs.list.iter_mut().zip(&mut overs.evens);
-        for ((place, even), shaft) in places.zip(self.over().shafts_at(time_s, c)?) {
-            let (most, over_all) = held.whole.even(&shaft, &held.to_enu);
+        for ((place, even), shaft) in places.zip(world.over().shafts_at(time_s, c)?) {
+            let (most, over_all) = self.whole.even(&shaft, &self.to_enu);
             let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
             *even = over_all;
             *place = Some(Over { shaft, reaches: most > 0.0, liquid_mm_h });

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::terrain::HostGround;
+use super::{GroundGrid, MAX_GRID_NODES, SurfaceClass, host::HostGround, terrain::TerrainWater};
 use crate::{
-    ground::{GroundGrid, MAX_GRID_NODES, SurfaceClass, terrain::TerrainWater},
     scene::WorldFrame,
+    world::{values, words},
 };
 
 /// A terrain as it is saved, with its water if that is a state.
@@ -22,33 +22,6 @@ pub(super) struct SavedGround {
     classes: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<[String; 3]>,
-}
-
-pub(super) fn words(values: impl Iterator<Item = u64>) -> String {
-    use std::fmt::Write;
-    let mut text = String::new();
-    let mut values = values.peekable();
-    while let Some(value) = values.next() {
-        let mut times = 1;
-        while values.next_if_eq(&value).is_some() {
-            times += 1;
-        }
-        let gap = if text.is_empty() { "" } else { " " };
-        // Writing to a text cannot fail.
-        let _ = if times > 1 { write!(text, "{gap}{value:x}*{times}") } else { write!(text, "{gap}{value:x}") };
-    }
-    text
-}
-
-/// The values that [`words`] wrote, if there are `count`.
-pub(super) fn values(text: &str, count: usize) -> Option<Vec<u64>> {
-    let mut values = Vec::new();
-    for word in text.split_whitespace() {
-        let (value, times) = word.split_once('*').unwrap_or((word, "1"));
-        let times: usize = times.parse().ok().filter(|n| *n <= count - values.len())?;
-        values.resize(values.len() + times, u64::from_str_radix(value, 16).ok()?);
-    }
-    (values.len() == count).then_some(values)
 }
 
 impl SavedGround {
@@ -90,22 +63,5 @@ impl SavedGround {
             held.begun = true;
         }
         Some(held)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_come_back_and_broken_ones_do_not() {
-        let list = [7, 7, 7, 0, u64::MAX, 12, 12];
-        let text = words(list.into_iter());
-        assert_eq!(text, "7*3 0 ffffffffffffffff c*2");
-        assert_eq!(values(&text, 7).unwrap(), list);
-        assert_eq!(values("", 0).unwrap(), []);
-        for (bad, count) in [("7*3", 2), ("7*3", 4), ("7*99999999999999999999", 3), ("x", 1), ("7*-1", 1), ("7*", 1)] {
-            assert_eq!(values(bad, count), None, "{bad}");
-        }
     }
 }

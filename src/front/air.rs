@@ -1,51 +1,24 @@
-//! What a host may ask: light, transmittance and visibility at any place and any time that the timeline knows.
+//! Air, sky and fog by their names: what lies between two places, the sky's light and its tables, the fog laws.
 //!
-//! Closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
+//! Queries are closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
 //! tables and so answers for the present. Positions are in the host's world.
+
+use std::sync::MutexGuard;
 
 use glam::DVec3;
 
-use super::{Context, GroundLight, Light, lights::color_of};
 use crate::{
-    error::{Error, Result},
-    fog::{FogLayer, Viewpoint, fog_layer, koschmieder_visibility_m, transmittance_between},
+    context::{Context, Light},
+    error::{Error, Result, Status},
+    fog::{Between, FogLayer, Law, Viewpoint, fog_layer, koschmieder_visibility_m, transmittance_between},
     sky::{
-        LightTable, Sh9,
+        FollowedSky, LightTable, Sh9,
         reference::{medium::Medium, ray::Ray},
     },
+    world::{color_of, planet_under},
 };
 
-/// Light at a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightAt {
-    /// The sun, in (east, north, up) of the place.
-    pub sun: Light,
-    /// The moon.
-    pub moon: Light,
-    /// What arrives, after air, clouds and fog.
-    pub arriving: GroundLight,
-}
-
-/// What lies between two points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between {
-    /// Share of light that gets through, per channel (620, 550, 450 nm of the default planet).
-    pub transmittance: [f64; 3],
-    /// Meteorological optical range of the air along the way, m: where 550 nm light would fall to 5 % if all the way were
-    /// like this part of it; infinite where nothing stops light.
-    pub visibility_m: f64,
-}
-
 impl Context {
-    /// Sun, moon and sky at `position` and simulation time `time_s`, with the clouds' and the air's share taken off.
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
-    pub fn light_at(&self, position: DVec3, time_s: f64) -> Result<LightAt> {
-        let scene = self.scene_at(position, time_s)?;
-        Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
-    }
-
     /// What air, fog, rain and snow between `from` and `to` leave of the light at simulation time `time_s`, rain areas on the mean
     /// over their curtains.
     ///
@@ -53,8 +26,8 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] if a position is no place, or both are the same; for times as
     /// [`Context::conditions_at`].
     pub fn between(&self, from: DVec3, to: DVec3, time_s: f64) -> Result<Between> {
-        let scene = self.scene_named("from", from, time_s)?;
-        self.desc.world.place_at("to", to)?;
+        let scene = self.world.scene_named("from", from, time_s)?;
+        self.world.frame.place_at("to", to)?;
         let offset = scene.world_to_enu * (to - from);
         let distance = offset.length();
         if distance < 1e-3 {
@@ -63,7 +36,7 @@ impl Context {
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
-        if let Some(layer) = fog_layer(&scene.conditions, self.desc.seed, scene.drift_m) {
+        if let Some(layer) = fog_layer(&scene.conditions, self.world.seed, scene.drift_m) {
             let view = Viewpoint {
                 altitude_m: scene.place.altitude_m,
                 map_m: scene.map_m,
@@ -88,7 +61,7 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place; [`crate::Status::DeviceLost`] or a GPU fault.
     pub fn ambient_at(&self, position: DVec3) -> Result<Sh9> {
-        let scene = self.scene_at(position, self.time_s)?;
+        let scene = self.scene_at(position, self.world.time_s)?;
         let table = self.light_table(&scene.planet)?;
         let clear = |light: &Light| -> (Sh9, f32) {
             let sh = table.sh9(scene.place.altitude_m, light.direction.to_array());
@@ -117,8 +90,48 @@ impl Context {
         Ok(sh)
     }
 
+    /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn set_fog_law(&mut self, law: Option<Law>) -> Result<()> {
+        law.as_ref().map_or(Ok(()), Law::validate)?;
+        self.held.fog.law = law;
+        self.world.set.undimmed = law.is_some();
+        Ok(())
+    }
+
+    /// The fog law that the host asked for.
+    pub fn fog_law(&self) -> Option<&Law> {
+        self.held.fog.law.as_ref()
+    }
+
+    pub(crate) fn sky(&self) -> Result<MutexGuard<'_, FollowedSky>> {
+        self.held
+            .sky
+            .lock()
+            .map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked while building the sky"))
+    }
+
+    /// Builds the tables of the sky for the weather of the present time now, in sixteen parts with a wait for the GPU after
+    /// each, and shows them, so that no frame has to. Tables that another context of the device shows, or that lie in
+    /// [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), are taken instead; new ones are written there. `progress` is told the share done,
+    /// 1 at last; when it answers false the build ends, and the context stays as it was.
+    ///
+    /// # Errors
+    /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
+    pub fn build_sky(&self, progress: &mut dyn FnMut(f32) -> bool) -> Result<()> {
+        let planet = planet_under(&self.world.planet, &self.world.timeline.at(self.world.time_s));
+        planet.check()?;
+        // Not under the sky's lock: frames and queries of other threads go on while parts are built.
+        let kit = self.sky()?.kit().clone();
+        let set = kit.build(&planet, self.sky()?.cache_dir().as_deref(), progress)?;
+        let _entered = self.device().enter()?;
+        self.sky()?.show_now(set)
+    }
+
     fn light_table(&self, planet: &crate::sky::Planet) -> Result<std::sync::Arc<LightTable>> {
-        let device = self.device.clone();
+        let device = self.device().clone();
         let _entered = device.enter()?;
         self.sky()?.light_table(&device, planet)
     }

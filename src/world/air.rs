@@ -1,6 +1,6 @@
 //! The planet's air as the weather makes it: gas by pressure and temperature, haze by visibility, ozone by its column.
 
-use crate::{fog::MAX_EXTINCTION_PER_M, sky::Planet, weather::Conditions};
+use crate::{moment::MAX_EXTINCTION_PER_M, planet::Planet, weather::Conditions};
 
 /// Dobson units that a planet file's ozone layer stands for.
 const PLANET_OZONE_DU: f64 = 300.0;

@@ -1,0 +1,44 @@
+//! What a context holds of the fog: the law that stands in for the weather's, if the host asked for one.
+
+use super::Law;
+use crate::{
+    error::{Error, Result, Status},
+    world::{HeldEffect, parse_error},
+};
+
+/// The fog of a context.
+#[derive(Clone, Default)]
+pub(crate) struct HeldFog {
+    pub law: Option<Law>,
+}
+
+/// Where the law is in a saved state.
+const TABLE: &str = "settings";
+const KEY: &str = "fog_law";
+
+impl HeldFog {
+    /// Takes its part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what is no law.
+    pub fn read(state: &mut toml::Table) -> Result<Self> {
+        let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
+        let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };
+        let law: Law = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        law.validate().map_err(|e| e.within("saved state: "))?;
+        Ok(Self { law: Some(law) })
+    }
+}
+
+impl HeldEffect for HeldFog {
+    fn save(&self, state: &mut toml::Table) -> Result<()> {
+        let Some(law) = &self.law else { return Ok(()) };
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        let value = toml::Value::try_from(law).map_err(written)?;
+        let settings = state.entry(TABLE).or_insert_with(|| toml::Table::new().into());
+        if let Some(settings) = settings.as_table_mut() {
+            settings.insert(KEY.into(), value);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,67 @@
+//! Rain by its name: areas, and what falls where.
+
+use glam::DVec3;
+
+use crate::{
+    context::Context,
+    error::Result,
+    rain::{AreaField, RainArea, RainAt, RainOn, RainSurface, rain_at, rain_on},
+    weather::Conditions,
+};
+
+impl Context {
+    /// Regions with rain of their own, in place of those before.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; nothing changes then.
+    pub fn set_rain_areas(&mut self, areas: &[RainArea]) -> Result<()> {
+        self.world.set_regions(areas)?;
+        self.follow()
+    }
+
+    /// The regions with rain of their own, as they were set.
+    pub fn rain_areas(&self) -> impl ExactSizeIterator<Item = &RainArea> {
+        self.world.set.regions.iter().map(|kept| &kept.area)
+    }
+
+    /// What falls at `position` and simulation time `time_s`.
+    ///
+    /// Any thread. Laws: [`crate::rain::sizes`], [`crate::rain::ice`].
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`].
+    pub fn rain_at(&self, position: DVec3, time_s: f64) -> Result<RainAt> {
+        rain_at(&self.world, position, time_s)
+    }
+
+    /// What lands on a surface, or comes through a window, at simulation time `time_s`: each size along its own
+    /// slant in the wind, and in that which the surface's own motion makes. What a box ([`Context::set_shelters`]) keeps off,
+    /// where it is at that time by its velocity, does not land: each size is asked for by its own path to a point 5 cm before the
+    /// surface, so that a face of a box is not inside of it. Occluder maps are not asked.
+    ///
+    /// Any thread.
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`]; [`crate::Status::InvalidArgument`] naming the field of `surface`.
+    pub fn rain_on(&self, surface: &RainSurface, time_s: f64) -> Result<RainOn> {
+        rain_on(&self.world, surface, time_s)
+    }
+
+    /// Optical depth at 550 nm that the areas add between a place and another `offset` metres away (east, north, up of the
+    /// first), on the mean over their pattern; negative where they thin the weather's rain.
+    pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
+        let (over, world) = (self.world.over(), &self.world);
+        if over.regions.is_empty() {
+            return Ok(0.0);
+        }
+        let local = world.frame.frame_at(position);
+        let field = AreaField::new(
+            over.shafts_at(time_s, c)?,
+            (position, &local.world_to_enu, local.place.altitude_m),
+            &world.own_rain(c),
+            0.0,
+        );
+        let range = offset.length();
+        Ok(field.depth_along(DVec3::ZERO, offset / range, range))
+    }
+}

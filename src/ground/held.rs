@@ -1,0 +1,436 @@
+//! The water on the ground as a context holds it for all its views: as the weather reports it, or simulated over the timeline if the
+//! host asked for that; on level, open ground and cell by cell on the host's terrain.
+
+use std::sync::Mutex;
+
+use glam::{DMat3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    GroundGrid, GroundSeen, GroundWater, Hollows, SurfaceClass,
+    host::{GroundCell, HostGround},
+    saved::SavedGround,
+    terrain::CellWater,
+    texture::TerrainTextures,
+    water::{Forcing, STEP_S, depth_at_mm},
+};
+use crate::{
+    error::{Error, Result, Status},
+    moment::Moment,
+    scene::WorldKind,
+    weather::{SurfaceCover, cover_under_rain},
+    world::{HeldEffect, Within, World, parse_error},
+};
+
+/// Where the wetness of the ground comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum GroundModel {
+    /// From the weather of the moment: as reported, or as the rain of the moment keeps it. No state: rain that ends leaves
+    /// dry ground.
+    #[default]
+    Reported,
+    /// A state that rain fills and that drains and dries by wind, sun and humidity ([`crate::ground::water`]). It begins at
+    /// simulation time 0 as the weather of that moment reports the ground. An update that moves time by more than a day begins it
+    /// anew, in the same way, a day before its end.
+    Simulated,
+}
+
+/// Water at a place of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundAt {
+    /// Depth of water, mm: the film, and what stands in the hollow if there is one. For tyres.
+    pub water_mm: f64,
+    /// Film on level ground outside of hollows, mm; on the host's terrain that of the place.
+    pub film_mm: f64,
+    /// Of all the ground, on the host's terrain of the place: 0 dry, 0.3 damp, 1 under a closed film.
+    pub wetness: f64,
+    /// Share of all the ground, or of the host's terrain, under standing water.
+    pub puddles: f64,
+    /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
+    pub in_puddle: bool,
+    /// What the ground is made of there, by the host's terrain, else by the context's default.
+    pub surface_class: SurfaceClass,
+}
+
+/// Sunlight for evaporation is looked up this often, s: a multiple of the step.
+const SUN_EVERY_S: f64 = 300.0;
+/// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
+const LUX_PER_W_M2: f64 = 110.0;
+/// An update that moves time by more than this begins the state anew, this long before its end, s.
+const LONGEST_S: f64 = 86_400.0;
+
+/// The simulated water and what its next step needs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GroundState {
+    time_s: f64,
+    film_mm: f64,
+    soaked_mm: f64,
+    hollows_mm: f64,
+    /// Sunlight on level ground since the last look at it.
+    sunlight_w_m2: f64,
+}
+
+impl GroundState {
+    pub fn water(&self) -> GroundWater {
+        GroundWater { film_mm: self.film_mm, soaked_mm: self.soaked_mm, hollows_mm: self.hollows_mm }
+    }
+
+    fn set(&mut self, water: GroundWater) {
+        (self.film_mm, self.soaked_mm, self.hollows_mm) = (water.film_mm, water.soaked_mm, water.hollows_mm);
+    }
+
+    /// A state that begins at `time_s` as the weather reports the ground.
+    fn first(world: &World, time_s: f64) -> Result<Self> {
+        let sunlight_w_m2 = sunlight_w_m2(world, time_s)?;
+        let mut state = Self { time_s, film_mm: 0.0, soaked_mm: 0.0, hollows_mm: 0.0, sunlight_w_m2 };
+        state.set(GroundWater::of_cover(&world.timeline.at(time_s).surface));
+        Ok(state)
+    }
+
+    /// Where its next step ends, s.
+    fn next_s(&self) -> f64 {
+        ((self.time_s / STEP_S).floor() + 1.0) * STEP_S
+    }
+
+    /// Whether a saved one can be one of ours.
+    pub fn is_valid(&self) -> bool {
+        let amounts = [self.film_mm, self.soaked_mm, self.hollows_mm, self.sunlight_w_m2];
+        self.time_s.is_finite() && amounts.iter().all(|v| (0.0..1e4).contains(v))
+    }
+}
+
+/// The ground of a context.
+pub(crate) struct HeldGround {
+    pub model: GroundModel,
+    /// Hollows of the ground, in which water stands.
+    pub hollows: Hollows,
+    state: Option<GroundState>,
+    pub(super) host: Option<Box<HostGround>>,
+    /// Incremented whenever the water of the cells has changed.
+    pub revision: u64,
+    /// Incremented whenever the host replaces the grid.
+    pub generation: u64,
+    /// Incremented whenever the host says anew what its terrain is made of.
+    pub classes_revision: u64,
+    /// Of ground of which nothing else is said.
+    pub surface_class: SurfaceClass,
+    /// The terrain has no part in steps before this, s: it was set later.
+    terrain_from_s: f64,
+    pub(super) textures: Mutex<TerrainTextures>,
+}
+
+/// A saved ground that can be shown.
+pub(crate) struct LoadedGround {
+    state: Option<GroundState>,
+    host: Option<Box<HostGround>>,
+    surface_class: SurfaceClass,
+    terrain_from_s: f64,
+}
+
+/// Where the parts of the ground are in a saved state.
+const STATE_KEY: &str = "ground";
+const TERRAIN_KEY: &str = "terrain";
+const CLASS_KEY: &str = "surface_class";
+
+impl HeldGround {
+    /// Dry, level ground.
+    pub fn new(model: GroundModel, seed: u64) -> Self {
+        Self {
+            model,
+            hollows: Hollows::new(seed),
+            state: None,
+            host: None,
+            revision: 0,
+            generation: 0,
+            classes_revision: 0,
+            surface_class: SurfaceClass::Unspecified,
+            terrain_from_s: f64::NEG_INFINITY,
+            textures: Mutex::default(),
+        }
+    }
+
+    /// Puts a grid in place of the one before; see [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_grid(&mut self, world: &World, grid: Option<GroundGrid>) -> Result<()> {
+        let Some(grid) = grid else {
+            self.host = None;
+            self.generation += 1;
+            return Ok(());
+        };
+        grid.validate()?;
+        world.frame.place_at("ground_grid.origin_m", grid.origin)?;
+        if let Some(held) = self.host.as_mut().filter(|held| held.terrain.grid.has_heights_of(&grid)) {
+            if held.terrain.grid.classes != grid.classes {
+                held.terrain.grid.classes = grid.classes;
+                self.classes_revision += 1;
+            }
+            return Ok(());
+        }
+        self.host = Some(Box::new(HostGround::new(grid, &world.frame)));
+        (self.generation, self.classes_revision) = (self.generation + 1, self.classes_revision + 1);
+        self.terrain_from_s = (world.time_s / STEP_S).floor() * STEP_S;
+        self.follow(world)
+    }
+
+    /// The host's terrain.
+    pub fn grid(&self) -> Option<&GroundGrid> {
+        self.host.as_ref().map(|held| &held.terrain.grid)
+    }
+
+    /// Water of each cell of the host's terrain.
+    pub fn cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
+        let held = self.host.as_ref()?;
+        Some((0..held.terrain.grid.len()).map(move |cell| {
+            let c = held.water.cell(cell);
+            GroundCell {
+                film_mm: c.film_mm as f32,
+                soaked: c.soaked as f32,
+                standing_mm: c.standing_mm.max(0.0) as f32,
+                ice: held.ice(cell),
+            }
+        }))
+    }
+
+    /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
+    fn surface_class_at(&self, position: DVec3) -> SurfaceClass {
+        let cell = self.host.as_ref().and_then(|held| {
+            let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
+            let nearest = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(held.terrain.grid.class(nearest.0))
+        });
+        cell.unwrap_or_default().or(self.surface_class)
+    }
+
+    /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
+    fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
+        let held = self.host.as_ref()?;
+        let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
+        Some((held.water.between(&about), held.water.puddles()))
+    }
+
+    /// The host's terrain and what turns the host's axes at its origin, for drawing.
+    pub fn drawn_terrain(&self) -> Option<(&GroundGrid, DMat3)> {
+        self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
+    }
+
+    /// Whether steps remain up to the present.
+    fn is_behind(&self, world: &World) -> bool {
+        self.state.is_some_and(|state| state.next_s() <= world.time_s)
+    }
+
+    /// The simulated water on level, open ground; `None` if it is not simulated.
+    pub fn water(&self, world: &World) -> Option<GroundWater> {
+        match (self.model, self.state) {
+            (GroundModel::Reported, _) => None,
+            (GroundModel::Simulated, Some(state)) if !self.is_behind(world) && world.time_s > state.time_s => {
+                let c = world.timeline.at(0.5 * (state.time_s + world.time_s));
+                Some(state.water().after(&Forcing::of(&c, state.sunlight_w_m2), world.time_s - state.time_s))
+            }
+            (GroundModel::Simulated, Some(state)) => Some(state.water()),
+            (GroundModel::Simulated, None) => Some(GroundWater::of_cover(&world.timeline.at(world.time_s).surface)),
+        }
+    }
+
+    /// What weather has done to the ground up to now: `reported` with the simulated water in its place.
+    fn cover(&self, world: &World, reported: SurfaceCover) -> SurfaceCover {
+        match self.water(world).map(|w| w.cover()) {
+            Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
+            None => reported,
+        }
+    }
+
+    /// The same at a place: in a region no drier than its rain of the moment keeps the ground.
+    fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
+        let cover = self.cover(world, reported);
+        let weather = world.timeline.at(world.time_s);
+        let here = world.over().at_place(position, world.time_s, weather).precipitation;
+        if here == weather.precipitation {
+            return cover;
+        }
+        let kept = cover_under_rain(&here, weather.air.relative_humidity);
+        SurfaceCover {
+            wetness: cover.wetness.max(kept.0 * (1.0 - cover.ice)),
+            puddles: cover.puddles.max(kept.1 * (1.0 - cover.ice)),
+            ..cover
+        }
+    }
+
+    /// What a camera sees of the ground.
+    pub fn seen(&self, world: &World, now: &Moment<'_>) -> GroundSeen<'_> {
+        GroundSeen {
+            cover: self.cover_at(world, now.eye, now.scene.conditions.surface),
+            hollows: &self.hollows,
+            terrain: self.drawn_terrain(),
+            has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry()),
+            surface_class: self.surface_class,
+        }
+    }
+
+    /// Water on the ground at a place; see [`Context::ground_at`](crate::context::Context::ground_at).
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] if the position is no place.
+    pub fn at(&self, world: &World, position: DVec3) -> Result<GroundAt> {
+        let frame = world.frame.place_at("position", position)?;
+        let surface_class = self.surface_class_at(position);
+        if let Some((cell, puddles)) = self.terrain_at(position) {
+            return Ok(GroundAt {
+                water_mm: cell.depth_mm(),
+                film_mm: cell.film_mm,
+                wetness: cell.wetness(),
+                puddles,
+                in_puddle: cell.standing_mm > 0.0,
+                surface_class,
+            });
+        }
+        let reported = world.timeline.at(world.time_s).surface;
+        let cover = self.cover_at(world, position, reported);
+        let kept = GroundWater::of_cover(&cover);
+        let water = match self.water(world) {
+            Some(state) if cover == self.cover(world, reported) => state,
+            Some(state) => state.max(&kept),
+            None => kept,
+        };
+        let at = DVec2::from(super::pattern_axes(&frame.world_to_enu).map(|a| a.dot(position)));
+        let hollow_mm = depth_at_mm(&water, self.hollows.depth(at));
+        let water_mm = if surface_class.has_hollows() { hollow_mm } else { water.film_mm };
+        Ok(GroundAt {
+            water_mm,
+            film_mm: water.film_mm,
+            wetness: cover.wetness,
+            puddles: cover.puddles,
+            in_puddle: water_mm > water.film_mm,
+            surface_class,
+        })
+    }
+
+    /// Takes its part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what can be no ground of this context.
+    pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
+        let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
+        let simulated = self.model == GroundModel::Simulated;
+        let state: Option<GroundState> =
+            saved.remove(STATE_KEY).map(|v| v.try_into().map_err(|e| fault(STATE_KEY, e))).transpose()?;
+        if state.is_some_and(|g| !simulated || !g.is_valid()) {
+            return Err(parse_error("ground must be a simulated one with finite amounts of water from 0 on"));
+        }
+        let terrain: Option<SavedGround> =
+            saved.remove(TERRAIN_KEY).map(|v| v.try_into().map_err(|e| fault(TERRAIN_KEY, e))).transpose()?;
+        let host = terrain.map(|t| {
+            let of_a_state = simulated && state.is_some();
+            let loaded = t.host_ground(&world.frame).filter(|held| of_a_state || !held.begun);
+            let wanted = "terrain must be a grid of heights and the water that it can hold";
+            loaded.map(Box::new).ok_or_else(|| parse_error(wanted))
+        });
+        let class: u8 = saved
+            .remove(CLASS_KEY)
+            .map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
+        let class = SurfaceClass::from_number("saved state: surface_class", class);
+        Ok(LoadedGround {
+            state,
+            host: host.transpose()?,
+            surface_class: class.map_err(|e| Error::new(Status::Parse, e.message))?,
+            terrain_from_s: f64::NEG_INFINITY,
+        })
+    }
+
+    /// Shows a loaded ground, and leaves the one before in its place.
+    pub fn take_up(&mut self, other: &mut LoadedGround) {
+        let same = match (self.grid(), other.host.as_ref().map(|held| &held.terrain.grid)) {
+            (Some(old), Some(new)) => old.has_heights_of(new),
+            (old, new) => old.is_none() && new.is_none(),
+        };
+        (self.revision, self.classes_revision) = (self.revision + 1, self.classes_revision + 1);
+        self.generation += u64::from(!same);
+        std::mem::swap(&mut self.state, &mut other.state);
+        std::mem::swap(&mut self.host, &mut other.host);
+        std::mem::swap(&mut self.surface_class, &mut other.surface_class);
+        std::mem::swap(&mut self.terrain_from_s, &mut other.terrain_from_s);
+    }
+}
+
+impl HeldEffect for HeldGround {
+    fn begin(&mut self, world: &World, time_s: f64) -> Result<()> {
+        if self.model == GroundModel::Reported {
+            return Ok(());
+        }
+        self.state = Some(if time_s - world.time_s > LONGEST_S {
+            // Where the sun is looked at, so that leaps that end a little apart begin alike.
+            let begin_s = ((time_s - LONGEST_S) / SUN_EVERY_S).floor() * SUN_EVERY_S;
+            let state = GroundState::first(world, begin_s.max(world.time_s))?;
+            self.host.iter_mut().for_each(|host| host.begin_anew());
+            state
+        } else {
+            self.state.map_or_else(|| GroundState::first(world, world.time_s), Ok)?
+        });
+        Ok(())
+    }
+
+    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+        let Some(mut state) = self.state else { return Ok(Status::Ok) };
+        for steps in 0.. {
+            let end_s = state.next_s();
+            if end_s > world.time_s {
+                break;
+            }
+            if steps > 0 && within.begun.elapsed() >= within.most {
+                return Ok(Status::Pending);
+            }
+            if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
+                state.sunlight_w_m2 = sunlight_w_m2(world, state.time_s)?;
+            }
+            let (before, from_s, seconds) = (state.water(), state.time_s, end_s - state.time_s);
+            let c = world.timeline.at(0.5 * (from_s + end_s));
+            let forcing = Forcing::of(&c, state.sunlight_w_m2);
+            state.set(before.after(&forcing, seconds));
+            state.time_s = end_s;
+            if let Some(host) = self.host.as_mut().filter(|_| from_s >= self.terrain_from_s) {
+                let stepped = host.lead(world, (from_s, seconds), (&c, &forcing), &before)?;
+                self.revision += u64::from(stepped);
+            }
+            self.state = Some(state);
+        }
+        Ok(Status::Ok)
+    }
+
+    fn stepped_to_s(&self) -> Option<f64> {
+        self.state.map(|state| state.time_s)
+    }
+
+    fn follow(&mut self, world: &World) -> Result<()> {
+        let Some(host) = &mut self.host else { return Ok(()) };
+        self.revision += u64::from(host.follow(world, self.model, self.state.as_ref())?);
+        Ok(())
+    }
+
+    fn created(&self, table: &mut toml::Table) {
+        table.insert("ground_model".into(), format!("{:?}", self.model).into());
+    }
+
+    fn save(&self, table: &mut toml::Table) -> Result<()> {
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        if let Some(state) = &self.state {
+            table.insert(STATE_KEY.into(), toml::Value::try_from(state).map_err(written)?);
+        }
+        if let Some(host) = &self.host {
+            table.insert(TERRAIN_KEY.into(), toml::Value::try_from(SavedGround::of(host)).map_err(written)?);
+        }
+        if self.surface_class != SurfaceClass::Unspecified {
+            table.insert(CLASS_KEY.into(), i64::from(self.surface_class as u8).into());
+        }
+        Ok(())
+    }
+}
+
+/// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
+/// that is only drawn must not change a state.
+fn sunlight_w_m2(world: &World, time_s: f64) -> Result<f64> {
+    let frame = &world.frame;
+    let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
+    Ok((world.scene_named("position", origin, time_s)?.ground.total_lux / LUX_PER_W_M2).round())
+}

@@ -1,0 +1,146 @@
+//! What falls at a place, and what lands on a surface there.
+
+use glam::DVec3;
+
+use super::{
+    drops::factor_in,
+    ice::StoneSizes,
+    sizes::{DropSizes, SMALLEST_MM, Weight},
+};
+use crate::{
+    error::{Error, Result, check_range},
+    surroundings::shelter::sheltered,
+    world::World,
+};
+
+/// What falls at a place: rain and drizzle, hail and ice pellets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainAt {
+    /// On level ground, mm/h.
+    pub rate_mm_h: f64,
+    /// Drops from 0.1 to 6 mm, 1/m^3.
+    pub number_per_m3: f64,
+    /// Water in the air, g/m^3.
+    pub liquid_g_m3: f64,
+    /// Extinction by the drops, 1/m.
+    pub extinction_per_m: f64,
+    /// Mean diameter of the drops in the air, mm.
+    pub mean_diameter_mm: f64,
+    /// Diameter below which half of the water in the air is, mm.
+    pub median_volume_diameter_mm: f64,
+    /// Drops that land on level ground, 1/(m^2 s).
+    pub drops_per_m2_s: f64,
+    /// Velocity of the drop that divides the water that falls into halves, m/s (east, north, up): one half comes steeper, the other
+    /// flatter. Along it an occluder's picture is taken. 0 without rain.
+    pub fall_velocity_m_s: DVec3,
+    /// Hail and ice pellets on level ground, mm/h of melted water.
+    pub ice_mm_h: f64,
+    /// Stones in the air, 1/m^3.
+    pub stones_per_m3: f64,
+    /// Extinction by the stones, 1/m.
+    pub stone_extinction_per_m: f64,
+    /// Mean diameter of the stones in the air, mm.
+    pub stone_diameter_mm: f64,
+    /// Stones that land on level ground, 1/(m^2 s).
+    pub stones_per_m2_s: f64,
+}
+
+/// How far before a surface a drop is asked for the box that kept it off, m.
+const BEFORE_M: f64 = 0.05;
+
+/// A surface that rain may land on, or a window that it may come through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainSurface {
+    /// Where, in the host's world.
+    pub position: DVec3,
+    /// The way that its wet side faces, (east, north, up) of the place; any length but 0.
+    pub normal: DVec3,
+    /// How it moves, m/s (east, north, up), each within \[-1000, 1000\].
+    pub velocity_m_s: DVec3,
+    /// Its size, m^2, \[0, 1e6\].
+    pub area_m2: f64,
+}
+
+/// What lands on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainOn {
+    /// Water, mm/h: litres a square metre and hour.
+    pub rate_mm_h: f64,
+    /// Drops on all of it, 1/s.
+    pub drops_per_s: f64,
+    /// Hail and ice pellets, mm/h of melted water.
+    pub ice_mm_h: f64,
+    /// Stones on all of it, 1/s.
+    pub stones_per_s: f64,
+}
+
+impl RainSurface {
+    fn validate(&self) -> Result<()> {
+        let length = self.normal.length();
+        if !(length.is_finite() && length > 1e-9) {
+            return Err(Error::range("normal", "finite and longer than 1e-9", self.normal));
+        }
+        for (axis, v) in ["[0]", "[1]", "[2]"].iter().zip(self.velocity_m_s.to_array()) {
+            check_range(&format!("velocity_m_s{axis}"), v, -1000.0, 1000.0, "m/s")?;
+        }
+        check_range("area_m2", self.area_m2, 0.0, 1e6, "m^2")
+    }
+}
+
+/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the
+/// cloud that they fall from there are none. In rain areas ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are theirs, mixed by their rims.
+fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
+    let place = world.frame.place_at("position", position)?.place;
+    let c = world.weather_at(time_s)?;
+    let mut ice = world.over().at_place(position, time_s, c).precipitation;
+    if place.altitude_m > c.falling_top_m() {
+        (ice.ice_pellets_mm_h, ice.hail_mm_h) = (0.0, 0.0);
+    }
+    let stones = StoneSizes::new(&ice, factor_in(&c.air, place.altitude_m));
+    Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.over().carrying_until(time_s)?.velocity_m_s()))
+}
+
+/// See [`Context::rain_at`](crate::context::Context::rain_at).
+pub(crate) fn rain_at(world: &World, position: DVec3, time_s: f64) -> Result<RainAt> {
+    let (sizes, stones, wind) = drops_at(world, position, time_s)?;
+    let (level, landed) = (sizes.on_level_ground(), stones.on_surface(DVec3::Z, DVec3::ZERO));
+    let [median] = sizes.diameters(Weight::Water, SMALLEST_MM, [0.5]);
+    let falls = level.drops_per_m2_s > 0.0;
+    Ok(RainAt {
+        rate_mm_h: level.rate_mm_h,
+        number_per_m3: sizes.number_per_m3(),
+        liquid_g_m3: sizes.liquid_g_m3(),
+        extinction_per_m: sizes.extinction_per_m(),
+        mean_diameter_mm: sizes.mean_diameter_mm(),
+        median_volume_diameter_mm: sizes.median_volume_diameter_mm(),
+        drops_per_m2_s: level.drops_per_m2_s,
+        fall_velocity_m_s: if falls { wind - DVec3::Z * sizes.speed_m_s(median) } else { DVec3::ZERO },
+        ice_mm_h: landed.rate_mm_h,
+        stones_per_m3: stones.number_per_m3(),
+        stone_extinction_per_m: stones.extinction_per_m(),
+        stone_diameter_mm: stones.mean_diameter_mm(),
+        stones_per_m2_s: landed.drops_per_m2_s,
+    })
+}
+
+/// See [`Context::rain_on`](crate::context::Context::rain_on).
+pub(crate) fn rain_on(world: &World, surface: &RainSurface, time_s: f64) -> Result<RainOn> {
+    surface.validate()?;
+    let (sizes, stones, wind) = drops_at(world, surface.position, time_s)?;
+    let (normal, air) = (surface.normal.normalize(), wind - surface.velocity_m_s);
+    let to_world = world.frame.frame_at(surface.position).world_to_enu.transpose();
+    let before = surface.position + to_world * (normal * BEFORE_M);
+    let since_s = time_s - world.time_s;
+    // A box was elsewhere by as much as the point lies elsewhere before it now.
+    let comes = |falls_m_s: f64| {
+        let velocity = to_world * (wind - DVec3::Z * falls_m_s);
+        !world.set.shelters.iter().any(|b| sheltered(b, before - b.velocity_m_s * since_s, velocity))
+    };
+    let (flux, ice) = (sizes.on_surface_of(normal, air, comes), stones.on_surface_of(normal, air, comes));
+    Ok(RainOn {
+        rate_mm_h: flux.rate_mm_h,
+        drops_per_s: flux.drops_per_m2_s * surface.area_m2,
+        ice_mm_h: ice.rate_mm_h,
+        stones_per_s: ice.drops_per_m2_s * surface.area_m2,
+    })
+}

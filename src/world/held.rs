@@ -1,0 +1,45 @@
+//! The shape of an effect that has a state, or that follows what is set.
+
+use std::time::Instant;
+
+use super::World;
+use crate::error::{Result, Status};
+
+/// When an update began, and how long it may go on.
+#[derive(Clone, Copy)]
+pub(crate) struct Within {
+    pub begun: Instant,
+    pub most: std::time::Duration,
+}
+
+/// What a context holds of an effect for all its views. `src/effects.rs` lists them; a context leads, saves and loads the list.
+pub(crate) trait HeldEffect {
+    /// Makes ready to be led from the present to `time_s`.
+    fn begin(&mut self, _world: &World, _time_s: f64) -> Result<()> {
+        Ok(())
+    }
+
+    /// Leads the state on until the present, by steps of a grid that is anchored at time 0, or until the time is over: one step at
+    /// least. Says whether it got there.
+    fn lead(&mut self, _world: &World, _within: Within) -> Result<Status> {
+        Ok(Status::Ok)
+    }
+
+    /// Simulation time of the state, if there is one.
+    fn stepped_to_s(&self) -> Option<f64> {
+        None
+    }
+
+    /// Brings up to date what follows from weather, surroundings and time without being a state.
+    fn follow(&mut self, _world: &World) -> Result<()> {
+        Ok(())
+    }
+
+    /// Adds what was fixed at creation to what a saved state is compared by.
+    fn created(&self, _table: &mut toml::Table) {}
+
+    /// Adds its state and what is set of it to a saved one.
+    fn save(&self, _state: &mut toml::Table) -> Result<()> {
+        Ok(())
+    }
+}

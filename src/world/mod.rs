@@ -1,0 +1,228 @@
+//! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its lights, the wind,
+//! and what the host tells of the surroundings. It names no effect; effects that have a state of their own are led along with it
+//! ([`HeldEffect`]).
+//!
+//! Everything here is a function of (description, timeline, time, position): two worlds that were told the same answer alike on every
+//! machine, without a device and a frame.
+
+mod air;
+mod held;
+mod lights;
+mod regions;
+mod saved;
+mod saved_settings;
+mod scene;
+
+use std::{cell::OnceCell, sync::Arc};
+
+use glam::DVec3;
+
+pub(crate) use air::planet_under;
+pub(crate) use held::{HeldEffect, Within};
+pub(crate) use lights::color_of;
+pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
+pub(crate) use saved_settings::{values, words};
+
+use crate::{
+    almanac::{
+        ephemeris::Ephemeris,
+        sun::{Utc, direction, sun_position},
+    },
+    error::{Result, check_range},
+    light::{Exposure, ToneCurve},
+    moment::{Moment, OwnRain, Region, Scene, WeatherOver},
+    planet::Planet,
+    scene::{HostLight, WorldFrame},
+    surroundings::{OccluderMaps, Shelter},
+    weather::{Conditions, Timeline, timeline::MAX_TIME_S},
+    wind::{Drift, Wind, WindGrid, WindOver},
+};
+
+/// A direction to a light, given by the host in place of the almanac.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenDirection {
+    /// Degrees clockwise from true north, [-360, 360].
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon, without refraction, [-90, 90].
+    pub elevation_deg: f64,
+}
+
+impl GivenDirection {
+    pub(crate) fn validate(&self, name: &str) -> Result<()> {
+        check_range(&format!("{name}.azimuth_deg"), self.azimuth_deg, -360.0, 360.0, "deg")?;
+        check_range(&format!("{name}.elevation_deg"), self.elevation_deg, -90.0, 90.0, "deg")
+    }
+
+    pub(crate) fn unit(&self) -> DVec3 {
+        direction(self.azimuth_deg, self.elevation_deg)
+    }
+}
+
+/// What the host has set that decides a step of what is simulated. Steps that an update leaves for another call are done under what was
+/// set when it was called.
+#[derive(Clone)]
+pub(crate) struct Settings {
+    pub shelters: Vec<Shelter>,
+    pub regions: Vec<Region>,
+    pub given_sun: Option<GivenDirection>,
+    pub given_moon: Option<GivenDirection>,
+    /// Universal time at simulation time 0.
+    pub utc_at_zero: Utc,
+    /// A law of the host's stands in for the weather's low layer, which then takes no light.
+    pub undimmed: bool,
+}
+
+/// What an effect does to the light of a scene.
+pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
+
+/// What the effects do to every world.
+#[derive(Clone, Copy)]
+pub(crate) struct Couplings {
+    /// Takes the light that the weather's low layer takes.
+    pub dim: Dim,
+    /// What the low layer's extinction has of the weather's rain.
+    pub own_rain: fn(&Conditions) -> OwnRain,
+}
+
+/// Place, weather, time and surroundings.
+pub(crate) struct World {
+    pub frame: WorldFrame,
+    pub planet: Planet,
+    pub seed: u64,
+    pub exposure: Exposure,
+    pub tone: ToneCurve,
+    /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
+    color: [[f64; 3]; 3],
+    pub timeline: Timeline,
+    wind: Wind,
+    /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
+    pub drifted: Drift,
+    pub set: Settings,
+    pub maps: Option<Box<OccluderMaps>>,
+    pub lights: Vec<HostLight>,
+    pub wind_grid: Option<Arc<WindGrid>>,
+    pub time_s: f64,
+    ephemeris: Ephemeris,
+    couplings: Couplings,
+    /// Revision of the rain areas and static shelters.
+    pub surroundings_revision: u64,
+}
+
+/// What a world is made of.
+pub(crate) struct Made {
+    pub frame: WorldFrame,
+    pub planet: Planet,
+    pub seed: u64,
+    pub exposure: Exposure,
+    pub tone: ToneCurve,
+    pub utc_at_zero: Utc,
+}
+
+impl World {
+    /// With a first weather, at time 0.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field.
+    pub fn new(made: Made, weather: Conditions, couplings: Couplings) -> Result<Self> {
+        let Made { frame, planet, seed, exposure, tone, utc_at_zero } = made;
+        frame.validate()?;
+        planet.check()?;
+        exposure.validate()?;
+        sun_position(utc_at_zero, &frame.origin)?;
+        Ok(Self {
+            frame,
+            color: lights::color_columns(&planet),
+            planet,
+            seed,
+            exposure,
+            tone,
+            timeline: Timeline::new(weather),
+            wind: Wind::new(seed),
+            drifted: Drift::ZERO,
+            set: Settings {
+                shelters: Vec::new(),
+                regions: Vec::new(),
+                given_sun: None,
+                given_moon: None,
+                utc_at_zero,
+                undimmed: false,
+            },
+            maps: None,
+            lights: Vec::new(),
+            wind_grid: None,
+            time_s: 0.0,
+            ephemeris: Ephemeris::default(),
+            couplings,
+            surroundings_revision: 0,
+        })
+    }
+
+    /// The weather over all places and times.
+    pub fn over(&self) -> WeatherOver<'_> {
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted };
+        WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
+    }
+
+    /// The weather at a time.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
+    pub fn weather_at(&self, time_s: f64) -> Result<Conditions> {
+        self.over().check_time(time_s)?;
+        Ok(self.timeline.at(time_s))
+    }
+
+    /// Universal time at simulation time `time_s`.
+    pub fn utc_at(&self, time_s: f64) -> Utc {
+        Utc(self.set.utc_at_zero.0 + time_s)
+    }
+
+    /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for times out of range.
+    pub fn set_clock(&mut self, utc: Utc, at_s: f64) -> Result<()> {
+        check_range("time_s", at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let zero = Utc(utc.0 - at_s);
+        sun_position(zero, &self.frame.origin)?;
+        self.set.utc_at_zero = zero;
+        Ok(())
+    }
+
+    /// Forgets what has ended, but for what is asked from `keep_s` on.
+    pub fn forget_before(&mut self, keep_s: f64) {
+        self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
+        self.timeline.advance_keeping(self.time_s, keep_s);
+    }
+
+    /// What the low layer's extinction has of the weather's rain `c`.
+    pub fn own_rain(&self, c: &Conditions) -> OwnRain {
+        if self.set.undimmed { OwnRain::NONE } else { (self.couplings.own_rain)(c) }
+    }
+
+    /// What holds now at a camera that stands at `eye`, which the host calls `name`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
+    pub fn moment(&self, name: &str, eye: DVec3) -> Result<Moment<'_>> {
+        let scene = self.scene_named(name, eye, self.time_s)?;
+        let weather = self.over();
+        Ok(Moment {
+            eye,
+            time_s: self.time_s,
+            seed: self.seed,
+            tone: self.tone,
+            exposure: self.exposure,
+            planet_radius_m: self.planet.bottom_radius_m,
+            weather,
+            here: weather.at_place(eye, self.time_s, scene.conditions),
+            own_rain: if self.set.regions.is_empty() { OwnRain::NONE } else { self.own_rain(&scene.conditions) },
+            shelters: &self.set.shelters,
+            maps: self.maps.as_deref(),
+            lamps: &self.lights,
+            wind_grid: self.wind_grid.as_ref(),
+            carried: OnceCell::new(),
+            scene,
+        })
+    }
+}

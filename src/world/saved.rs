@@ -1,0 +1,182 @@
+//! A world as it is saved, and back.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    GivenDirection, Settings, World,
+    saved_settings::{SavedSettings, SetBeside},
+};
+use crate::{
+    almanac::sun::{Utc, sun_position},
+    error::{Error, Result, Status, check_range},
+    moment::Region,
+    scene::WorldKind,
+    weather::{Timeline, timeline::MAX_TIME_S},
+    wind::Drift,
+};
+
+/// What is saved of a world.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SavedWorld {
+    time_s: f64,
+    utc_at_zero: f64,
+    sun: Option<[f64; 2]>,
+    moon: Option<[f64; 2]>,
+    timeline: String,
+    /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
+    drifted: [f64; 4],
+    created: toml::Table,
+    settings: SavedSettings,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    areas: Vec<Region>,
+}
+
+/// A fault of a saved state.
+pub(crate) fn parse_error(what: impl std::fmt::Display) -> Error {
+    Error::new(Status::Parse, format!("saved state: {what}"))
+}
+
+/// Refuses a state of a context that was created otherwise, naming all that differs.
+fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
+    let names = here.keys().chain(saved.keys().filter(|name| !here.contains_key(*name)));
+    let shown = |v: Option<&toml::Value>| v.map_or("nothing".into(), ToString::to_string);
+    let other = names
+        .filter(|name| saved.get(*name) != here.get(*name))
+        .map(|name| format!("{name} ({} in the state, {} here)", shown(saved.get(name)), shown(here.get(name))));
+    let other: Vec<String> = other.collect();
+    if other.is_empty() {
+        return Ok(());
+    }
+    Err(Error::new(
+        Status::InvalidArgument,
+        format!("state must be of a context that was created alike; other is {}", other.join(", ")),
+    ))
+}
+
+/// Where counting goes on: at the end of what `timeline` has forgotten.
+fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) -> Result<Drift> {
+    let drift = Drift { time_s, path_m, displacement_m: DVec2::new(east, north) };
+    let since_ever = timeline.known_since_ever() && drift == Drift::ZERO;
+    let finite = [path_m, east, north].iter().all(|v| v.is_finite());
+    let sound = since_ever || (finite && time_s == timeline.known_from_s());
+    let wanted = "drifted must be finite and belong to the end of what the timeline has forgotten";
+    sound.then_some(drift).ok_or_else(|| parse_error(wanted))
+}
+
+/// A saved world that can be shown.
+pub(crate) struct LoadedWorld {
+    time_s: f64,
+    timeline: Timeline,
+    drifted: Drift,
+    set: Settings,
+    beside: SetBeside,
+}
+
+impl World {
+    /// What the description of this world fixes of what it shows, under the names of the C header.
+    pub fn created(&self) -> toml::Table {
+        // Named one by one: a new field has to be put here, or among what is saved, unless it follows from the rest.
+        let Self {
+            frame,
+            planet,
+            seed,
+            tone,
+            exposure: _,
+            color: _,
+            timeline: _,
+            wind: _,
+            drifted: _,
+            set: _,
+            maps: _,
+            lights: _,
+            wind_grid: _,
+            time_s: _,
+            ephemeris: _,
+            couplings: _,
+            surroundings_revision: _,
+        } = self;
+        let mut table = toml::Table::new();
+        let mut put = |name: &str, value: toml::Value| table.insert(name.into(), value);
+        put("world_kind", format!("{:?}", frame.kind).into());
+        // 0 and -0 are the same place.
+        put("latitude_deg", (frame.origin.latitude_deg + 0.0).into());
+        put("longitude_deg", (frame.origin.longitude_deg + 0.0).into());
+        put("altitude_m", (frame.origin.altitude_m + 0.0).into());
+        if frame.kind != WorldKind::Ecef {
+            put("axes", format!("{:?}", frame.axes).into());
+            put("grid_bearing_deg", (frame.grid_bearing_deg + 0.0).into());
+        }
+        put("seed", seed.to_string().into());
+        put("planet_toml", format!("hash {:016x}", planet.hash()).into());
+        put("tone_curve", format!("{tone:?}").into());
+        table
+    }
+
+    /// Weather, time, clock, lights, surroundings; and what was `created`.
+    ///
+    /// # Errors
+    /// If a number cannot be written.
+    pub fn saved(&self, created: toml::Table) -> Result<SavedWorld> {
+        // Named one by one: what a new field decides has to be saved, unless it follows from the rest.
+        let Settings { shelters, regions, given_sun, given_moon, utc_at_zero, undimmed: _ } = &self.set;
+        let angles = |g: &Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
+        let (drifted, carried) = (&self.drifted, self.drifted.displacement_m);
+        Ok(SavedWorld {
+            time_s: self.time_s,
+            utc_at_zero: utc_at_zero.0,
+            sun: angles(given_sun),
+            moon: angles(given_moon),
+            timeline: self.timeline.save()?,
+            drifted: [drifted.time_s, drifted.path_m, carried.x, carried.y],
+            created,
+            settings: SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref()),
+            areas: regions.clone(),
+        })
+    }
+
+    /// A saved world that fits this one, which was `created` so.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] or [`Status::InvalidArgument`], naming what does not fit.
+    pub fn read(&self, saved: SavedWorld, created: &toml::Table) -> Result<LoadedWorld> {
+        check_created(&saved.created, created)?;
+        let given = |name: &str, a: Option<[f64; 2]>| -> Result<Option<GivenDirection>> {
+            let given = a.map(|[azimuth_deg, elevation_deg]| GivenDirection { azimuth_deg, elevation_deg });
+            given.map_or(Ok(()), |g| g.validate(name))?;
+            Ok(given)
+        };
+        check_range("time_s", saved.time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let utc_at_zero = Utc(saved.utc_at_zero);
+        sun_position(utc_at_zero, &self.frame.origin)?;
+        let (given_sun, given_moon) = (given("sun", saved.sun)?, given("moon", saved.moon)?);
+        let timeline = Timeline::load(&saved.timeline)?;
+        if !self.are_valid(&saved.areas, &timeline) {
+            return Err(parse_error("areas must be as they can be set"));
+        }
+        let mut beside = saved.settings.checked().map_err(|e| e.within("saved state: "))?;
+        let shelters = std::mem::take(&mut beside.shelters);
+        let set = Settings { shelters, regions: saved.areas, given_sun, given_moon, utc_at_zero, undimmed: false };
+        Ok(LoadedWorld {
+            time_s: saved.time_s,
+            drifted: drifted_from(saved.drifted, &timeline)?,
+            timeline,
+            set,
+            beside,
+        })
+    }
+
+    /// Shows a loaded world, and leaves the one before in its place.
+    pub fn take_up(&mut self, other: &mut LoadedWorld) {
+        use std::mem::swap;
+        swap(&mut self.time_s, &mut other.time_s);
+        swap(&mut self.timeline, &mut other.timeline);
+        swap(&mut self.drifted, &mut other.drifted);
+        swap(&mut self.set, &mut other.set);
+        swap(&mut self.exposure, &mut other.beside.exposure);
+        swap(&mut self.lights, &mut other.beside.lights);
+        swap(&mut self.wind_grid, &mut other.beside.wind_grid);
+        self.surroundings_revision += 1;
+    }
+}
