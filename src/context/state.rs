@@ -89,10 +89,7 @@ fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     if other.is_empty() {
         return Ok(());
     }
-    Err(Error::new(
-        Status::InvalidArgument,
-        format!("state must be of a context that was created alike; other is {}", other.join(", ")),
-    ))
+    Err(Error::invalid("state", format!("must be of a context that was created alike; other is {}", other.join(", "))))
 }
 
 fn parse_error(what: impl std::fmt::Display) -> Error {
@@ -267,7 +264,7 @@ impl Context {
             let wanted = "terrain must be a grid of heights and the water that it can hold";
             loaded.map(Box::new).ok_or_else(|| parse_error(wanted))
         });
-        let surface_class = SurfaceClass::from_number("saved state: surface_class", saved.surface_class);
+        let surface_class = SurfaceClass::from_number("surface_class", saved.surface_class);
         Ok(Loaded {
             time_s: saved.time_s,
             utc_at_zero,
@@ -278,8 +275,8 @@ impl Context {
             behind: None,
             areas: saved.areas,
             terrain: terrain.transpose()?,
-            surface_class: surface_class.map_err(|e| Error::new(Status::Parse, e.message))?,
-            settings: saved.settings.checked().map_err(|e| e.within("saved state: "))?,
+            surface_class: surface_class.map_err(|e| e.with_status(Status::Parse).found_in("saved state"))?,
+            settings: saved.settings.checked().map_err(|e| e.found_in("saved state"))?,
         })
     }
 

@@ -92,8 +92,9 @@ impl View {
         let several = frame.color.is_some_and(|c| c.sample_count() > 1);
         if several && stages.has(Stages::LENS) && self.glass.is_some() {
             return Err(Error::unsupported(
-                "color.samples above 1 in the stage LENS with a windscreen: resolve first, then record LENS",
-            ));
+                "above 1 in the stage LENS with a windscreen: resolve first, then record LENS",
+            )
+            .within("color.samples"));
         }
         Ok(())
     }
