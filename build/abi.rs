@@ -7,9 +7,17 @@ use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
 /// One struct of the interface.
 pub struct Struct {
     pub name: String,
-    pub fields: Vec<(String, syn::Type)>,
+    pub fields: Vec<Field>,
     /// The fields of its `const INIT`, if it has one.
     pub defaults: Vec<(String, syn::Expr)>,
+}
+
+/// One field of a struct.
+pub struct Field {
+    pub name: String,
+    pub ty: syn::Type,
+    /// What follows `Range` in its documentation, such as `[0, 1]`; empty if that says none.
+    pub range: String,
 }
 
 /// An integer type with named constants.
@@ -99,8 +107,23 @@ fn section(module: String, file: &syn::File, aliases: &mut BTreeMap<String, syn:
 /// A `#[repr(C)]` struct; handles are opaque and have no fields to list.
 fn structure(s: &syn::ItemStruct) -> Option<Struct> {
     s.attrs.iter().find(|a| a.path().is_ident("repr"))?;
-    let fields = s.fields.iter().map(|f| (f.ident.as_ref().expect("named field").to_string(), f.ty.clone())).collect();
-    Some(Struct { name: s.ident.to_string(), fields, defaults: vec![] })
+    let field = |f: &syn::Field| Field {
+        name: f.ident.as_ref().expect("named field").to_string(),
+        ty: f.ty.clone(),
+        range: range(&doc_lines(&f.attrs)),
+    };
+    Some(Struct { name: s.ident.to_string(), fields: s.fields.iter().map(field).collect(), defaults: vec![] })
+}
+
+/// The interval behind the word `Range` of a field's documentation.
+fn range(doc: &[String]) -> String {
+    let doc: Vec<_> = doc.iter().map(|line| line.trim()).collect();
+    let doc = doc.join(" ");
+    let interval = doc.split_once("Range ").map_or("", |d| d.1);
+    if !interval.starts_with(['[', '(']) {
+        return String::new();
+    }
+    interval.find([']', ')']).map_or(String::new(), |end| interval[..=end].to_owned())
 }
 
 fn constant(c: &syn::ItemConst, enums: &mut [Enumeration]) {
@@ -127,7 +150,7 @@ fn defaults(item: &syn::ItemImpl, structs: &mut [Struct]) {
     }
     if !target.defaults.is_empty() {
         let order = |list: Vec<&String>| list.into_iter().cloned().collect::<Vec<_>>();
-        let declared = order(target.fields.iter().map(|f| &f.0).collect());
+        let declared = order(target.fields.iter().map(|f| &f.name).collect());
         let given = order(target.defaults.iter().map(|f| &f.0).collect());
         assert!(declared == given, "{name}::INIT must name every field in order: {declared:?} against {given:?}");
     }
@@ -211,11 +234,11 @@ pub fn write_table(model: &Model) -> String {
                 s.name,
                 !s.defaults.is_empty()
             );
-            for (field, ty) in &s.fields {
+            for Field { name: field, ty, range } in &s.fields {
                 let (kind, count) = kind(model, ty);
                 let _ = writeln!(
                     out,
-                    "    Field {{ name: \"{field}\", offset: std::mem::offset_of!({path}, {field}), kind: {kind}, count: {count} }},"
+                    "    Field {{ name: \"{field}\", offset: std::mem::offset_of!({path}, {field}), kind: {kind}, count: {count}, range: \"{range}\" }},"
                 );
             }
             out.push_str("] };\n");
@@ -274,7 +297,7 @@ pub fn write_inits(section: &Section) -> String {
 impl Struct {
     /// Whether it begins with `struct_size`, `struct_type`, `next`.
     pub fn is_tagged(&self) -> bool {
-        self.fields.first().is_some_and(|f| f.0 == "struct_size")
+        self.fields.first().is_some_and(|f| f.name == "struct_size")
     }
 }
 

@@ -136,7 +136,7 @@ fn init_macro(s: &Struct) -> String {
     let name = s.name.to_uppercase();
     let mut out = format!("\n/** Every field of `{}` at its default. */\n#define {name}_INIT {{ \\\n", s.name);
     let last = s.defaults.len() - 1;
-    for (i, ((field, value), (_, ty))) in s.defaults.iter().zip(&s.fields).enumerate() {
+    for (i, ((field, value), (_, ty))) in s.defaults.iter().zip(s.fields.iter().map(|f| (&f.name, &f.ty))).enumerate() {
         let comma = if i == last { "" } else { "," };
         let _ = writeln!(out, "    /* {field} */ {}{comma} \\", c_value(&s.name, ty, value));
     }

@@ -29,9 +29,9 @@
  *
  * Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. A failed call writes no output,
  * changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
- * parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`. Welkin never
- * aborts, prints or throws. It catches a fault of its own and answers WK_ERROR_INTERNAL. The device then answers
- * WK_ERROR_POISONED, and only destroying works.
+ * parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
+ * wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. It catches a fault of
+ * its own and answers WK_ERROR_INTERNAL. The device then answers WK_ERROR_POISONED, and only destroying works.
  *
  * STRUCTS
  *
@@ -102,7 +102,8 @@ extern "C" {
  * Status, versions, messages
  *
  * Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
- * output. wk_last_error_message() then says which parameter was wrong and what is accepted.
+ * output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
+ * gives that parameter or field alone.
  * ====================================================================================================
  */
 
@@ -273,6 +274,15 @@ WK_API const char *wk_status_name(wk_status status);
  * valid until the next failing call of this thread.
  */
 WK_API const char *wk_last_error_message(void);
+
+/**
+ * The parameter or field that the calling thread's last failed call was about, as a path of names in this header that
+ * begins at the function's parameter or at a struct's name: "frame.projection", "shelters[2].half_size_m",
+ * "wk_sky_settings.suns", "time_s". A host's editor can mark a control by it. The last failure with
+ * WK_ERROR_INVALID_ARGUMENT always has one; empty where a failure is about no field, and before the first failure.
+ * Never NULL; valid until the next failing call of this thread.
+ */
+WK_API const char *wk_last_error_field(void);
 
 /**
  * The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major

@@ -22,14 +22,16 @@
 namespace welkin {
 
 #ifndef WELKIN_NO_EXCEPTIONS
-/* A failed call: what() is the message of wk_last_error_message. */
+/* A failed call: what() is the message of wk_last_error_message, field() that of wk_last_error_field. */
 class error : public std::runtime_error {
 public:
-    explicit error(wk_status status) : std::runtime_error(wk_last_error_message()), status_(status) {}
+    explicit error(wk_status status) : std::runtime_error(wk_last_error_message()), status_(status), field_(wk_last_error_field()) {}
     wk_status status() const noexcept { return status_; }
+    const std::string &field() const noexcept { return field_; }
 
 private:
     wk_status status_;
+    std::string field_;
 };
 #endif
 

@@ -120,7 +120,8 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
 pub fn candidate(effect: Effect, name: &str) -> Result<Candidate> {
     let all = candidates(effect);
     let known: Vec<_> = all.iter().map(|c| c.name).collect();
-    let fault = Error::range(&format!("{} candidate", effect.name()), &format!("one of {}", known.join(", ")), name);
+    let fault =
+        Error::range("name", &format!("one of the candidates for {}: {}", effect.name(), known.join(", ")), name);
     all.into_iter().find(|c| c.name == name).ok_or(fault)
 }
 
@@ -144,7 +145,7 @@ mod tests {
                 }
             }
         }
-        assert!(Effect::from_name("sea").unwrap_err().message.contains("sky, fog, rain"));
-        assert!(candidate(Effect::Fog, "best").unwrap_err().message.contains("exact"));
+        assert!(Effect::from_name("sea").unwrap_err().to_string().contains("sky, fog, rain"));
+        assert!(candidate(Effect::Fog, "best").unwrap_err().to_string().contains("exact"));
     }
 }

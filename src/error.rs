@@ -1,5 +1,5 @@
-//! What can go wrong, said in one way everywhere: a stable status code and a sentence that names the parameter
-//! and the accepted range.
+//! What can go wrong, said in one way everywhere: a stable status code, the field that it is about as a value, and a
+//! sentence that begins with the field and says what is accepted.
 
 use std::fmt;
 
@@ -43,44 +43,131 @@ pub enum Status {
     Internal = -15,
 }
 
-/// A failed call: the status and a sentence for the person who reads the log.
+/// A failed call: the status, the parameter or field that it is about, and a sentence for the person who reads the log.
+///
+/// `to_string()` gives the whole sentence: where the fault was found, the field, what is accepted, what was given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     /// Stable code.
     pub status: Status,
-    /// Names the parameter and the accepted range.
-    pub message: String,
+    /// Where the field stands if not in a parameter (`saved state: `); mostly empty.
+    place: String,
+    /// Path of the field; empty where the fault is no single field's.
+    field: String,
+    /// What follows the field, its own blank or colon included; the whole sentence where there is no field.
+    rest: String,
 }
 
 /// Result of every fallible call of the crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// An error of `status` with a ready sentence.
-    pub fn new(status: Status, message: impl Into<String>) -> Self {
-        Self { status, message: message.into() }
+    /// An error that is no single field's, with its whole sentence. Not for [`Status::InvalidArgument`], which is always some
+    /// field's: [`Error::invalid`].
+    pub fn new(status: Status, sentence: impl Into<String>) -> Self {
+        debug_assert!(status != Status::InvalidArgument, "an invalid argument has a name");
+        Self { status, place: String::new(), field: String::new(), rest: sentence.into() }
     }
 
-    /// A parameter outside its range: `visibility_m must be in [1, 1e6] m, got -3`.
-    pub fn range(name: &str, accepted: &str, got: impl fmt::Display) -> Self {
-        Self::new(Status::InvalidArgument, format!("{name} must be {accepted}, got {got}"))
+    /// An error about a field; `rest` is the sentence without the field that it begins with.
+    pub fn about(status: Status, field: impl Into<String>, rest: impl fmt::Display) -> Self {
+        Self { status, place: String::new(), field: field.into(), rest: format!(" {rest}") }
     }
 
-    /// The same error with `prefix` before its sentence.
-    #[must_use]
-    pub fn within(self, prefix: &str) -> Self {
-        Self { status: self.status, message: format!("{prefix}{}", self.message) }
+    /// [`Status::InvalidArgument`] about a field: `get_proc must not be NULL`.
+    pub fn invalid(field: impl Into<String>, rest: impl fmt::Display) -> Self {
+        Self::about(Status::InvalidArgument, field, rest)
+    }
+
+    /// A field outside its range: `visibility_m must be in [1, 1e6] m, got -3`.
+    pub fn range(field: &str, accepted: &str, got: impl fmt::Display) -> Self {
+        Self::invalid(field, format_args!("must be {accepted}, got {got}"))
     }
 
     /// A feature that this device, tier or build does not have.
     pub fn unsupported(what: impl Into<String>) -> Self {
         Self::new(Status::Unsupported, what)
     }
+
+    /// Path of the parameter or field that the error is about, such as `camera.view`, `shelters[2].half_size_m` or `time_s`;
+    /// `None` where it is about none. There is one for every [`Status::InvalidArgument`].
+    pub fn field(&self) -> Option<&str> {
+        (!self.field.is_empty()).then_some(self.field.as_str())
+    }
+
+    /// The same error of a field inside `outer`: `wishes[0].rung` within `budget` is `budget.wishes[0].rung`. An error
+    /// about no field becomes one about `outer`.
+    #[must_use]
+    pub fn within(mut self, outer: &str) -> Self {
+        if self.field.is_empty() {
+            return self.in_text(outer);
+        }
+        let dot = if self.field.starts_with('[') { "" } else { "." };
+        self.field = format!("{outer}{dot}{}", self.field);
+        self
+    }
+
+    /// The same error where the field's path begins with the segments `to` in place of `from`; as it is if it does not begin so.
+    #[must_use]
+    pub fn renamed(mut self, from: &str, to: &str) -> Self {
+        if let Some(rest) = self.field.strip_prefix(from)
+            && (rest.is_empty() || rest.starts_with(['.', '[']))
+        {
+            self.field = format!("{to}{rest}");
+        }
+        self
+    }
+
+    /// The same error where the field is called as `name` says.
+    #[must_use]
+    pub(crate) fn map_field(mut self, name: impl FnOnce(&str) -> String) -> Self {
+        if !self.field.is_empty() {
+            self.field = name(&self.field);
+        }
+        self
+    }
+
+    /// The same error about the text or bytes that were given as `parameter`, in which it was found: what the text says stays
+    /// in the sentence and is no field.
+    #[must_use]
+    pub fn in_text(self, parameter: &str) -> Self {
+        let inner = self
+            .field
+            .strip_prefix(parameter)
+            .filter(|f| self.place.is_empty() && (f.is_empty() || f.starts_with('.')));
+        let rest = inner.map_or_else(|| format!(": {self}"), |inner| format!("{inner}{}", self.rest));
+        Self { status: self.status, place: String::new(), field: parameter.into(), rest }
+    }
+
+    /// The same error, found at `place`: its sentence begins `place: `.
+    #[must_use]
+    pub fn found_in(mut self, place: impl fmt::Display) -> Self {
+        self.place = format!("{place}: {}", self.place);
+        self
+    }
+
+    /// The same error under another status.
+    #[must_use]
+    pub fn with_status(self, status: Status) -> Self {
+        Self { status, ..self }
+    }
+
+    /// All errors of a list in one, about the first one's field; `Ok` if there are none.
+    ///
+    /// # Errors
+    /// The first error, its sentence followed by the others'.
+    pub fn all(errors: impl IntoIterator<Item = Self>) -> Result<()> {
+        let join = |mut all: Self, e: Self| {
+            all.rest = format!("{}; {e}", all.rest);
+            all
+        };
+        errors.into_iter().reduce(join).map_or(Ok(()), Err)
+    }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
+        write!(f, "{}{}{}", self.place, self.field, self.rest)
     }
 }
 
@@ -139,7 +226,35 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, 0.5, 2e6] {
             let e = check_range("visibility_m", bad, 1.0, 1e6, "m").unwrap_err();
             assert_eq!(e.status, Status::InvalidArgument);
-            assert!(e.message.contains("visibility_m") && e.message.contains("[1, 1000000] m"), "{}", e.message);
+            assert_eq!(e.field(), Some("visibility_m"));
+            assert!(e.to_string().starts_with("visibility_m must be in [1, 1000000] m, got "), "{e}");
         }
+    }
+
+    #[test]
+    fn fields_are_placed_and_renamed_as_values() {
+        let e = Error::range("view", "rigid", "depth.view");
+        let text = |e: &Error| (e.field().map(str::to_owned), e.to_string());
+        let is = |e: &Error, field: &str, sentence: &str| assert_eq!(text(e), (Some(field.into()), sentence.into()));
+        is(&e.clone().within("camera"), "camera.view", "camera.view must be rigid, got depth.view");
+        is(&e.clone().within("maps[1]").renamed("maps", "m"), "m[1].view", "m[1].view must be rigid, got depth.view");
+        is(&e.clone().renamed("vie", "x"), "view", "view must be rigid, got depth.view");
+        is(
+            &e.clone().found_in("line 2").found_in("state"),
+            "view",
+            "state: line 2: view must be rigid, got depth.view",
+        );
+        is(&e.clone().found_in("state").in_text("bytes"), "bytes", "bytes: state: view must be rigid, got depth.view");
+        is(&e.clone().in_text("view"), "view", "view must be rigid, got depth.view");
+        is(&e.clone().within("plan").in_text("plan"), "plan", "plan.view must be rigid, got depth.view");
+        assert_eq!(Error::all([]), Ok(()));
+        is(
+            &Error::all([e.clone(), e.clone()]).unwrap_err(),
+            "view",
+            "view must be rigid, got depth.view; view must be rigid, got depth.view",
+        );
+        let none = Error::new(Status::Parse, "line 3: expected a number");
+        assert_eq!(text(&none), (None, "line 3: expected a number".into()));
+        is(&none.within("planet_toml"), "planet_toml", "planet_toml: line 3: expected a number");
     }
 }

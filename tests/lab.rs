@@ -81,7 +81,7 @@ fn a_stopped_run_is_continued_and_a_line_that_was_cut_is_measured_again() {
     let mut first = Journal::open(&dir.0, "sky", "sky; full", &columns, false).unwrap();
     first.push(fields(&["a", "1"])).unwrap();
     first.push(fields(&["b", "2"])).unwrap();
-    assert!(first.push(fields(&["wide", "2", "3"])).unwrap_err().message.contains("3 fields"));
+    assert!(first.push(fields(&["wide", "2", "3"])).unwrap_err().to_string().contains("3 fields"));
     drop(first);
     let part = dir.0.join("sky.csv.part");
     let text = std::fs::read_to_string(&part).unwrap();
@@ -126,7 +126,7 @@ fn what_is_unknown_is_said_and_nothing_is_written() {
             all.extend(["--out", out]);
         }
         let e = run(&all).unwrap_err();
-        assert!(e.message.contains(says), "{arguments:?}: {}", e.message);
+        assert!(e.to_string().contains(says), "{arguments:?}: {}", e);
         assert!(!dir.0.exists(), "{arguments:?} wrote something");
     }
 }

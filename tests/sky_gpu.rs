@@ -196,7 +196,7 @@ fn coarsest_settings_still_draw_a_sky_and_coarser_ones_are_refused() {
         let mut settings = LEAST;
         let least = *field(&mut settings);
         *field(&mut settings) -= 1;
-        let message = settings.check().unwrap_err().message;
+        let message = settings.check().unwrap_err().to_string();
         assert!(message.contains(&format!("{name} must be in [{least}, ")), "{message}");
     }
 }

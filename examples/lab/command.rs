@@ -51,7 +51,7 @@ fn parse(arguments: &[String]) -> Result<(Vec<String>, Options)> {
 /// The candidate of that name in whichever effect has it.
 fn find_candidate(name: &str) -> Result<Candidate> {
     let faults: Vec<String> =
-        Effect::NAMES.iter().filter_map(|(_, e)| candidate(*e, name).err().map(|fault| fault.message)).collect();
+        Effect::NAMES.iter().filter_map(|(_, e)| candidate(*e, name).err().map(|fault| fault.to_string())).collect();
     let found = Effect::NAMES.iter().find_map(|(_, e)| candidate(*e, name).ok());
     found.ok_or_else(|| usage(&faults.join("\n")))
 }

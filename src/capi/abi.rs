@@ -49,6 +49,11 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     found
 }
 
+/// Status of the calling thread's last failed call, of which wk_last_error_message and wk_last_error_field tell; 0 before the first.
+pub fn last_status() -> i32 {
+    boundary::last_status()
+}
+
 /// The next call of this thread that reaches a device panics there.
 pub fn panic_in_next_call() {
     boundary::inject(boundary::Injected::Panic);

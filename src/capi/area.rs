@@ -11,8 +11,8 @@ use std::{ffi::c_void, ptr::null};
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
-    input,
+    context::{ContextObject, wk_context},
+    input::{self, List},
     layout::{init_struct, struct_size},
     status::*,
 };
@@ -152,10 +152,10 @@ pub unsafe extern "C" fn wk_context_set_rain_areas(
         };
         // SAFETY: the caller's promise about `areas`.
         unsafe {
-            input::each("areas", areas, count as usize, stride as usize, MAX_AREAS, &mut take)?;
+            input::each(&List::parameters("areas", count, stride, MAX_AREAS), areas, &mut take)?;
         }
-        let named = |e| renamed("rain_areas[", "areas[", e);
-        object.write().set_rain_areas(&list[..count as usize]).map_err(named)?;
+        let list = &list[..count as usize];
+        object.write().set_rain_areas(list).map_err(|e| e.renamed("rain_areas", "areas"))?;
         Ok(Status::Ok)
     })
 }

@@ -1,4 +1,4 @@
-//! What surrounds every call: no panic crosses, every failure leaves a status and a sentence of its thread, and a
+//! What surrounds every call: no panic crosses, every failure leaves a status, a sentence and a field of its thread, and a
 //! device in which something panicked answers no further calls.
 
 use std::{
@@ -13,7 +13,7 @@ use super::{device_cell::DeviceCell, handles, status::wk_status};
 use crate::error::{Error, Result, Status};
 
 thread_local! {
-    static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
+    static LAST: RefCell<Last> = RefCell::default();
     /// How many boundary calls this thread is in; a panic there is ours to report, not the standard hook's to print.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
     /// See [`inject`].
@@ -56,8 +56,8 @@ impl Call {
 pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
     hush_panics();
     if DEPTH.get() > 0 {
-        remember(function, "called inside a callback of Welkin's: no Welkin function may be");
-        return Status::WrongOrder as wk_status;
+        let text = "called inside a callback of Welkin's: no Welkin function may be";
+        return remember(function, &Error::new(Status::WrongOrder, text));
     }
     let mut call = Call { device: None };
     DEPTH.set(DEPTH.get() + 1);
@@ -74,13 +74,30 @@ pub(super) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Resu
             panic_error(payload)
         }
     };
-    remember(function, &error.message);
-    error.status as wk_status
+    remember(function, &error)
+}
+
+/// What a thread keeps of its last failed call.
+#[derive(Default)]
+struct Last {
+    status: wk_status,
+    message: CString,
+    field: CString,
+}
+
+/// Status of the calling thread's last failed call; 0 before the first.
+pub(super) fn last_status() -> wk_status {
+    LAST.with_borrow(|last| last.status)
 }
 
 /// The calling thread's last message; valid until its next failing call.
 pub(super) fn last_error() -> *const c_char {
-    LAST_ERROR.with_borrow(|m| m.as_ptr())
+    LAST.with_borrow(|last| last.message.as_ptr())
+}
+
+/// The field that it is about, by the header's names; empty where it is about none.
+pub(super) fn last_error_field() -> *const c_char {
+    LAST.with_borrow(|last| last.field.as_ptr())
 }
 
 /// What the tests let happen inside a call.
@@ -97,9 +114,13 @@ pub(super) fn inject(what: Injected) {
     INJECTED.set(what);
 }
 
-fn remember(function: &str, message: &str) {
-    let text = format!("{function}: {message}").replace('\0', "\\0");
-    LAST_ERROR.set(CString::new(text).unwrap_or_default());
+/// Keeps an error for the thread's next question, and answers its status.
+fn remember(function: &str, error: &Error) -> wk_status {
+    let c_text = |text: String| CString::new(text.replace('\0', "\\0")).unwrap_or_default();
+    let status = error.status as wk_status;
+    let (message, field) = (c_text(format!("{function}: {error}")), c_text(error.field().unwrap_or_default().into()));
+    LAST.set(Last { status, message, field });
+    status
 }
 
 fn panic_error(payload: Box<dyn Any + Send>) -> Error {

@@ -14,12 +14,12 @@ use glam::DVec3;
 use super::{
     boundary::guard,
     context::{ContextObject, wk_context},
-    input::{self, check_finite, out},
+    input::{self, out},
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::{Error, Result, Status},
+    error::{Result, Status},
     weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS},
 };
 
@@ -280,28 +280,14 @@ impl wk_cloud_slab {
     }
 }
 
-/// What is wrong with `position`, said of the parameter that the host gave.
-pub(super) fn of_position(param: &str, e: Error) -> Error {
-    match e.message.strip_prefix("position ") {
-        Some(rest) => Error::new(e.status, format!("{param} {rest}")),
-        None => e,
-    }
-}
-
-/// A place of the host's world, three finite numbers.
+/// Three numbers for a place of the host's world; whether it is one, the query finds.
 ///
 /// # Safety
 /// `p` is NULL or points to three numbers.
 pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3]> {
     layout::check_pointer(&param, p)?;
     // SAFETY: checked, and the caller's promise.
-    let position = unsafe { p.read() };
-    for (i, v) in position.iter().enumerate() {
-        if !v.is_finite() {
-            return Err(Error::range(&format!("{param}[{i}]"), "finite", v));
-        }
-    }
-    Ok(position)
+    Ok(unsafe { p.read() })
 }
 
 /// Gets the conditions at a position and a past or future simulation time. Every field is at the station's height
@@ -321,9 +307,8 @@ pub unsafe extern "C" fn wk_context_get_conditions(
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_conditions", out_conditions)?) };
-        let time_s = check_finite("time_s", time_s)?;
         let conditions = object.read().conditions_at(DVec3::from_array(at), time_s);
-        place.set(&wk_conditions::of(&conditions.map_err(|e| of_position("position_m", e))?));
+        place.set(&wk_conditions::of(&conditions.map_err(|e| e.renamed("position", "position_m"))?));
         Ok(Status::Ok)
     })
 }
@@ -348,9 +333,8 @@ pub unsafe extern "C" fn wk_context_get_cloud_slabs(
         let at = unsafe { position("position_m", position_m)? };
         let count = out("out_count", out_count)?;
         let room = input::Room::new("slabs", "slab_size", slabs, capacity, slab_size)?;
-        let time_s = check_finite("time_s", time_s)?;
         let conditions = object.read().conditions_at(DVec3::from_array(at), time_s);
-        let conditions = conditions.map_err(|e| of_position("position_m", e))?;
+        let conditions = conditions.map_err(|e| e.renamed("position", "position_m"))?;
         let found: [Option<&CloudSlab>; MAX_CLOUD_LAYERS] = {
             let mut slabs = conditions.cloud_slabs();
             std::array::from_fn(|_| slabs.next())

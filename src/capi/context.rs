@@ -182,11 +182,9 @@ pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
     }
 }
 
-/// Names the C field in an error of the Rust side: `latitude_deg must ..` becomes `desc.latitude_deg must ..`.
-pub(super) fn in_struct(param: &str, e: Error) -> Error {
-    let (name, rest) = e.message.split_once(' ').unwrap_or((e.message.as_str(), ""));
-    let name = if name.starts_with("exposure.") { "exposure_value" } else { name };
-    Error::new(e.status, format!("{param}.{name} {rest}"))
+/// An exposure's error as one of the struct `param`, whose exposure_value it is.
+pub(super) fn exposure_in(param: &str, e: Error) -> Error {
+    e.map_field(|_| format!("{param}.exposure_value"))
 }
 
 /// # Safety
@@ -201,26 +199,26 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let origin =
         Place { latitude_deg: desc.latitude_deg, longitude_deg: desc.longitude_deg, altitude_m: desc.altitude_m };
     let world = WorldFrame { kind, axes, origin, grid_bearing_deg: desc.grid_bearing_deg };
-    world.validate().map_err(|e| in_struct("desc", e))?;
+    world.validate().map_err(|e| e.within("desc"))?;
     // SAFETY: the caller's promise.
     let planet = match unsafe { input::optional_text("desc.planet_toml", desc.planet_toml)? } {
-        Some(text) => Planet::from_toml(text).map_err(|e| e.within("desc.planet_toml: "))?,
+        Some(text) => Planet::from_toml(text).map_err(|e| e.in_text("desc.planet_toml"))?,
         None => Planet::earth(),
     };
     let exposure = exposure(desc.exposure_mode, desc.exposure_value).ok_or_else(|| {
         Error::range("desc.exposure_mode", "AUTO, EV100 or FACTOR in a context", "WK_EXPOSURE_OF_CONTEXT")
     })?;
-    exposure.validate().map_err(|e| in_struct("desc", e))?;
+    exposure.validate().map_err(|e| exposure_in("desc", e))?;
     let tone = match desc.tone_curve {
         WK_TONE_LINEAR => ToneCurve::Linear,
         WK_TONE_FILMIC => ToneCurve::Filmic,
         _ => ToneCurve::Exponential,
     };
     let utc_at_zero = Utc(desc.utc_at_zero_s);
-    sun_position(utc_at_zero, &world.origin).map_err(|e| renamed("utc", "desc.utc_at_zero_s", e))?;
+    sun_position(utc_at_zero, &world.origin).map_err(|e| e.renamed("utc", "desc.utc_at_zero_s"))?;
     // SAFETY: the caller's promise.
     let sky = unsafe { layout::extension::<wk_sky_settings>(desc.next)? }.unwrap_or(wk_sky_settings::INIT).to_rust();
-    sky.check().map_err(|e| e.within("wk_sky_settings."))?;
+    sky.check().map_err(|e| e.within("wk_sky_settings"))?;
     // SAFETY: the caller's promise.
     let simulation = unsafe { layout::extension::<wk_simulation_desc>(desc.next)? }.unwrap_or(wk_simulation_desc::INIT);
     let ground = simulation.ground();
@@ -303,9 +301,4 @@ pub unsafe extern "C" fn wk_context_destroy(context: *mut wk_context) -> wk_stat
         }
         Ok(Status::Ok)
     })
-}
-
-/// Swaps the first part of the parameter's name in a message.
-pub(super) fn renamed(from: &str, to: &str, e: Error) -> Error {
-    Error::new(e.status, e.message.replacen(from, to, 1))
 }

@@ -8,7 +8,7 @@ use std::{ffi::c_void, ptr::null};
 use super::{
     boundary::guard,
     context::{ContextObject, wk_context},
-    input::{check_finite, out},
+    input::out,
     layout::{self, init_struct, struct_size},
     status::*,
 };
@@ -127,9 +127,9 @@ fn check_unused(law: &wk_fog_law) -> Result<()> {
     check_range("fog.density_per_m", law.density_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")
 }
 
-/// `fog.start_m must ..` as the header has it: `fog_law.start_m must ..`.
+/// The header's names for the fields of a law.
 fn in_law(e: Error) -> Error {
-    Error::new(e.status, e.message.replace("fog.colour", "fog_law.color").replace("fog.", "fog_law."))
+    e.renamed("fog.colour", "fog_law.color").renamed("fog", "fog_law")
 }
 
 /// Draws a fog law in place of the weather's fog; NULL returns to the weather's fog.
@@ -170,7 +170,7 @@ pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, ou
 pub unsafe extern "C" fn wk_visibility_cull_distance(visibility_m: f64, out_distance_m: *mut f64) -> wk_status {
     guard("wk_visibility_cull_distance", |_| {
         let place = out("out_distance_m", out_distance_m)?;
-        check_range("visibility_m", check_finite("visibility_m", visibility_m)?, 1.0, 1e6, "m")?;
+        check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(cull_distance_m(koschmieder_extinction_per_m(visibility_m))) };
         Ok(Status::Ok)

@@ -19,7 +19,6 @@ use glam::{DMat4, DVec3};
 use super::{
     boundary::guard,
     context::{self, ContextObject, WK_EXPOSURE_OF_CONTEXT, wk_context, wk_exposure_mode},
-    host,
     layout::{self, init_struct, struct_size},
     status::*,
     surface::wk_surface,
@@ -247,7 +246,7 @@ pub unsafe extern "C" fn wk_context_get_frame_light(
         let (c, place) = unsafe { (layout::read(&"frame", frame)?, layout::out_struct(&"out_light", out_light)?) };
         // SAFETY: as above.
         unsafe { layout::check_chain(&"frame", c.next, &[])? };
-        let light = from_c(&c, Images::default(), false)?.light(&object.read()).map_err(host::in_frame)?;
+        let light = from_c(&c, Images::default(), false)?.light(&object.read()).map_err(in_frame)?;
         place.set(&wk_frame_light {
             direction: light.direction.to_array(),
             direct: light.direct,
@@ -287,16 +286,16 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         _ => ClipSpace::ZeroToOne,
     };
     let depth_mapping = DepthMapping { kind, reversed: c.flags & WK_FRAME_DEPTH_REVERSED != 0, clip };
-    depth_mapping.validate().map_err(|e| field(e, "depth.", ""))?;
+    depth_mapping.validate().map_err(in_frame)?;
     let camera = Camera {
         position: DVec3::from_array(c.position_m),
         view: DMat4::from_cols_array(&c.view),
         projection: DMat4::from_cols_array(&c.projection),
     };
-    camera.validate().map_err(|e| field(e, "camera.", ""))?;
+    camera.validate().map_err(in_frame)?;
     let exposure = context::exposure(c.exposure_mode, c.exposure_value);
     if let Some(exposure) = &exposure {
-        exposure.validate().map_err(|e| context::in_struct("frame", e))?;
+        exposure.validate().map_err(|e| context::exposure_in("frame", e))?;
     }
     Ok(Frame {
         frame_id: c.frame_id,
@@ -328,7 +327,25 @@ fn is_orthographic(m: &[f64; 16]) -> bool {
     m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0
 }
 
-/// `camera.view must ..` as C knows it: `frame.view must ..`.
-fn field(e: Error, from: &str, to: &str) -> Error {
-    Error::new(e.status, format!("frame.{}", e.message.replacen(from, to, 1)))
+/// The header's names for what the Rust side calls a frame's fields, in the order in which they are tried.
+const NAMES: [(&str, &str); 14] = [
+    ("frame.camera.position", "frame.position_m"),
+    ("camera.position", "frame.position_m"),
+    ("camera", "frame"),
+    ("depth_mapping.kind", "frame.depth_kind"),
+    ("depth_mapping.reversed", "frame.flags"),
+    ("depth_mapping", "frame"),
+    ("flags", "frame.flags"),
+    ("cd_m2_per_unit", "frame.cd_m2_per_unit"),
+    ("camera_velocity_m_s", "frame.velocity_m_s"),
+    ("color", "frame.target.color"),
+    ("depth", "frame.target.depth"),
+    ("mask", "frame.target.mask"),
+    ("surface_classes", "frame.target.surface_classes"),
+    ("normals", "frame.target.normals"),
+];
+
+/// A frame's error with the field's name in the header.
+pub(super) fn in_frame(e: Error) -> Error {
+    NAMES.iter().fold(e, |e, (from, to)| e.renamed(from, to))
 }

@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    conditions::{of_position, position},
+    conditions::position,
     context::{ContextObject, wk_context},
     input,
     layout::{self, init_struct, struct_size},
@@ -162,7 +162,7 @@ pub unsafe extern "C" fn wk_context_get_ground(
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ground", out_ground)?) };
-        let ground = object.read().ground_at(DVec3::from_array(at)).map_err(|e| of_position("position_m", e))?;
+        let ground = object.read().ground_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", "position_m"))?;
         place.set(&wk_ground::of(&ground));
         Ok(Status::Ok)
     })

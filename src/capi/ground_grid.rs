@@ -12,8 +12,8 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
-    input,
+    context::{ContextObject, wk_context},
+    input::{self, Named},
     layout::{self, init_struct, struct_size},
     status::*,
 };
@@ -120,9 +120,10 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
         let (heights, classes) = unsafe {
             layout::check_chain(&"ground_grid", c.next, &[])?;
             let most = (MAX_GRID_NODES * MAX_GRID_NODES) as usize;
-            let class_count = c.surface_class_count as usize;
+            let height_count = Named("ground_grid.height_count", c.height_count as usize);
+            let class_count = Named("ground_grid.surface_class_count", c.surface_class_count as usize);
             (
-                input::slice("ground_grid.heights_m", c.heights_m, c.height_count as usize, most)?,
+                input::slice("ground_grid.heights_m", c.heights_m, height_count, most)?,
                 input::slice("ground_grid.surface_classes", c.surface_classes, class_count, most)?,
             )
         };
@@ -136,8 +137,10 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
             heights_m: heights.to_vec(),
             classes: classes.iter().enumerate().map(class).collect::<Result<_>>()?,
         };
-        let named =
-            |e| renamed("heights_m' count", "height_count", renamed("classes' count", "surface_class_count", e));
+        let named = |e: Error| {
+            e.renamed("ground_grid.heights_m.len", "ground_grid.height_count")
+                .renamed("ground_grid.classes.len", "ground_grid.surface_class_count")
+        };
         object.write().set_ground_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })
@@ -163,7 +166,7 @@ pub unsafe extern "C" fn wk_context_get_ground_cells(
         let revision = input::out("out_revision", out_revision)?;
         let context = object.read();
         let water = context.ground_cells().ok_or_else(|| {
-            Error::new(Status::WrongOrder, "cells come after wk_context_set_ground_grid: there is no terrain")
+            Error::new(Status::WrongOrder, "there are no cells before wk_context_set_ground_grid").within("context")
         })?;
         if capacity > 0 {
             room.check_capacity("capacity", water.len())?;

@@ -86,7 +86,7 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promise about `out_texture`.
         let place = unsafe { layout::out_struct(&"out_texture", out_texture)? };
-        object.cell.host().check_own_shaders("ground textures")?;
+        object.cell.host().check_own_shaders("context", "ground textures")?;
         object.cell.check_not_lost()?;
         object.cell.drain();
         let ground = object.write().ground_texture()?;

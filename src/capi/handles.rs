@@ -68,16 +68,16 @@ fn write() -> RwLockWriteGuard<'static, Table> {
 
 /// Why a handle is none of ours, or `Ok` with its slot.
 fn locate<T: Object>(table: &Table, param: &str, handle: usize) -> Result<usize> {
-    let bad = |text: String| Err(Error::new(Status::BadHandle, text));
+    let bad = |got: &str| Err(Error::about(Status::BadHandle, param, format!("must be a live {}, got {got}", T::NAME)));
     if handle == 0 {
-        return bad(format!("{param} must be a live {}, got NULL", T::NAME));
+        return bad("NULL");
     }
     let slot = table.slots.get(slot_of(handle)).filter(|_| handle & 1 == 1);
     let live = slot.filter(|s| s.object.is_some() && encode(s.kind, s.generation, slot_of(handle)) == handle);
     match live {
         Some(s) if s.kind == T::KIND => Ok(slot_of(handle)),
-        Some(s) => bad(format!("{param} must be a live {}, got a {}", T::NAME, s.name)),
-        None => bad(format!("{param} must be a live {}, got {handle:#x}, which is destroyed or foreign", T::NAME)),
+        Some(s) => bad(&format!("a {}", s.name)),
+        None => bad(&format!("{handle:#x}, which is destroyed or foreign")),
     }
 }
 
@@ -130,8 +130,8 @@ pub(super) fn remove<T: Object>(param: &str, handle: *const T::C) -> Result<Arc<
     let children = table.slots[index].children;
     if children > 0 {
         let noun = if children == 1 { "child" } else { "children" };
-        let text = format!("{param} has {children} live {noun} (contexts, views, surfaces, textures): destroy first");
-        return Err(Error::new(Status::InUse, text));
+        let rest = format!("has {children} live {noun} (contexts, views, surfaces, textures): destroy first");
+        return Err(Error::about(Status::InUse, param, rest));
     }
     let slot = &mut table.slots[index];
     let (object, parent) = (slot.object.take(), slot.parent.take());
@@ -182,13 +182,13 @@ mod tests {
         let ship = insert::<Ship, Ship>(Arc::new(Ship), None).unwrap();
         assert!(get::<Ship>("ship", ship).is_ok());
         let wrong = get::<Boat>("boat", ship.cast()).err().unwrap();
-        assert_eq!((wrong.status, wrong.message.contains("got a wk_ship")), (Status::BadHandle, true));
-        assert!(get::<Ship>("ship", std::ptr::null()).err().unwrap().message.contains("NULL"));
+        assert_eq!((wrong.status, wrong.to_string().contains("got a wk_ship")), (Status::BadHandle, true));
+        assert!(get::<Ship>("ship", std::ptr::null()).err().unwrap().to_string().contains("NULL"));
         let on_stack = 0_u64;
         assert!(get::<Ship>("ship", (&raw const on_stack).cast()).is_err());
         assert!(get::<Ship>("ship", usize::MAX as *const CShip).is_err());
         remove::<Ship>("ship", ship).unwrap();
-        assert!(get::<Ship>("ship", ship).err().unwrap().message.contains("destroyed or foreign"));
+        assert!(get::<Ship>("ship", ship).err().unwrap().to_string().contains("destroyed or foreign"));
         let again = insert::<Ship, Ship>(Arc::new(Ship), None).unwrap();
         assert_ne!(ship, again, "a slot's next handle differs from the dead one");
         assert!(get::<Ship>("ship", ship).is_err());

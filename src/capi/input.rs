@@ -6,18 +6,12 @@ use super::{
     layout::{self, EnumInfo, Layout},
     status::wk_struct_type,
 };
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result};
 
 /// # Errors
 /// Names the parameter and every accepted constant.
 pub(super) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> Result<()> {
     info.check(&param, value.into())
-}
-
-/// # Errors
-/// Names the parameter if it is NaN or infinite.
-pub(super) fn check_finite(param: &str, value: f64) -> Result<f64> {
-    if value.is_finite() { Ok(value) } else { Err(Error::range(param, "finite", value)) }
 }
 
 /// A place for an answer, not written yet.
@@ -39,9 +33,9 @@ pub(super) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
 pub(super) unsafe fn text<'a>(param: &str, p: *const c_char) -> Result<&'a str> {
     layout::check_pointer(&param, p)?;
     // SAFETY: not NULL, and the caller's promise.
-    unsafe { CStr::from_ptr(p) }.to_str().map_err(|e| {
-        Error::new(Status::InvalidArgument, format!("{param} must be UTF-8; byte {} is not", e.valid_up_to()))
-    })
+    unsafe { CStr::from_ptr(p) }
+        .to_str()
+        .map_err(|e| Error::invalid(param, format_args!("must be UTF-8; byte {} is not", e.valid_up_to())))
 }
 
 /// A text that may be left out.
@@ -63,8 +57,8 @@ pub(super) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -> Result<
 ///
 /// # Errors
 /// If there are more than `limit`, or `p` is NULL while `count` is not 0.
-pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: usize, limit: usize) -> Result<&'a [T]> {
-    check_count(param, count, limit)?;
+pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: Named, limit: usize) -> Result<&'a [T]> {
+    let count = count.at_most(limit)?;
     if count == 0 {
         return Ok(&[]);
     }
@@ -80,8 +74,8 @@ pub(super) unsafe fn slice<'a, T: Copy>(param: &str, p: *const T, count: usize, 
 ///
 /// # Errors
 /// As [`slice`].
-pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: usize, limit: usize) -> Result<&'a mut [T]> {
-    check_count(param, count, limit)?;
+pub(super) unsafe fn slice_mut<'a, T: Copy>(param: &str, p: *mut T, count: Named, limit: usize) -> Result<&'a mut [T]> {
+    let count = count.at_most(limit)?;
     if count == 0 {
         return Ok(&mut []);
     }
@@ -105,7 +99,7 @@ pub(super) unsafe fn answer_bytes(
 ) -> Result<()> {
     let place = out("out_size", out_size)?;
     // SAFETY: the caller's promise.
-    let room = unsafe { slice_mut("buffer", buffer.cast::<u8>(), capacity, usize::MAX)? };
+    let room = unsafe { slice_mut("buffer", buffer.cast::<u8>(), Named("capacity", capacity), usize::MAX)? };
     // SAFETY: `place` was checked and is the caller's.
     unsafe { place.write(bytes.len()) };
     if capacity == 0 {
@@ -118,11 +112,34 @@ pub(super) unsafe fn answer_bytes(
     Ok(())
 }
 
-fn check_count(param: &str, count: usize, limit: usize) -> Result<()> {
-    if count <= limit {
-        return Ok(());
+/// A number with the name that it has in the header.
+#[derive(Clone, Copy)]
+pub(super) struct Named<'a>(pub(super) &'a str, pub(super) usize);
+
+impl Named<'_> {
+    fn at_most(self, limit: usize) -> Result<usize> {
+        if self.1 <= limit {
+            return Ok(self.1);
+        }
+        Err(Error::range(self.0, &format!("at most {limit}"), self.1))
     }
-    Err(Error::range(&format!("{param}'s count"), &format!("at most {limit}"), count))
+}
+
+/// A caller's list of structs.
+pub(super) struct List<'a> {
+    pub(super) name: &'a str,
+    pub(super) count: Named<'a>,
+    /// Bytes from one element to the next.
+    pub(super) stride: Named<'a>,
+    /// Most elements.
+    pub(super) limit: usize,
+}
+
+impl<'a> List<'a> {
+    /// The list that a function has by its parameters `name`, `count` and `stride`.
+    pub(super) fn parameters(name: &'a str, count: u32, stride: u32, limit: usize) -> Self {
+        Self { name, count: Named("count", count as usize), stride: Named("stride", stride as usize), limit }
+    }
 }
 
 /// A caller's list of plain values, `size` bytes apart.
@@ -142,7 +159,7 @@ impl<T: Copy> Places<T> {
         size: u32,
         limit: usize,
     ) -> Result<Self> {
-        check_count(param, count as usize, limit)?;
+        Named("count", count as usize).at_most(limit)?;
         if count > 0 {
             layout::check_pointer(&param, first)?;
             check_element_size::<T>(size_name, size)?;
@@ -210,15 +227,12 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
 /// # Errors
 /// Too many, a stride that does not fit, the first wrong field, or what `take` answers.
 pub(super) unsafe fn each<T: Layout>(
-    param: &str,
+    list: &List<'_>,
     p: *const T,
-    count: usize,
-    stride: usize,
-    limit: usize,
     take: &mut dyn FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
     // SAFETY: the caller's promise.
-    unsafe { each_with(param, p, (count, stride, limit), &[], take) }
+    unsafe { each_with(list, p, &[], take) }
 }
 
 /// As [`each`], where each may have extensions of the types `known`.
@@ -229,26 +243,22 @@ pub(super) unsafe fn each<T: Layout>(
 /// # Errors
 /// As [`each`].
 pub(super) unsafe fn each_with<T: Layout>(
-    param: &str,
+    list: &List<'_>,
     p: *const T,
-    (count, stride, limit): (usize, usize, usize),
     known: &[wk_struct_type],
     take: &mut dyn FnMut(usize, T) -> Result<()>,
 ) -> Result<()> {
-    check_count(param, count, limit)?;
+    let (param, count, stride) = (list.name, list.count.at_most(list.limit)?, list.stride.1);
     if count == 0 {
         return Ok(());
     }
     if p.is_null() {
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("{param} must not be NULL where its count is {count}"),
-        ));
+        return Err(Error::invalid(param, format_args!("must not be NULL where its count is {count}")));
     }
     let align = align_of::<T>();
     if stride < size_of::<layout::Head>() || !stride.is_multiple_of(align) {
         let accepted = format!("sizeof({}) of your header, a multiple of {align}", T::INFO.name);
-        return Err(Error::range(&format!("{param}'s stride"), &accepted, stride));
+        return Err(Error::range(list.stride.0, &accepted, stride));
     }
     for i in 0..count {
         // SAFETY: the caller promises `count` structs at this stride.

@@ -33,6 +33,8 @@ pub(crate) struct Field {
     pub offset: usize,
     pub kind: Kind,
     pub count: usize,
+    /// What its documentation says it accepts, such as `[0, 1]`; empty if it says no range.
+    pub range: &'static str,
 }
 
 /// A struct as the header declares it.
@@ -162,7 +164,11 @@ unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Resul
         }
         _ => return Ok(()),
     };
-    if float.is_finite() { Ok(()) } else { Err(Error::range(&name.to_string(), "finite", float)) }
+    if float.is_finite() {
+        return Ok(());
+    }
+    let accepted = if field.range.is_empty() { "finite".into() } else { format!("finite and in {}", field.range) };
+    Err(Error::range(&name.to_string(), &accepted, float))
 }
 
 /// `frame.camera.position_m[2]`, written only when an error needs it.
@@ -182,14 +188,11 @@ impl Display for Named<'_> {
 /// Fails unless `p` may be read or written as a `T`: neither NULL nor misaligned.
 pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
     if p.is_null() {
-        return Err(Error::new(Status::InvalidArgument, format!("{param} must not be NULL")));
+        return Err(Error::invalid(param.to_string(), "must not be NULL"));
     }
     if !p.is_aligned() {
         let align = align_of::<T>();
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("{param} must be aligned to {align} bytes, got {p:p}"),
-        ));
+        return Err(Error::range(&param.to_string(), &format!("aligned to {align} bytes"), format_args!("{p:p}")));
     }
     Ok(())
 }
@@ -260,15 +263,15 @@ unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &Stru
     let tail = unsafe { std::slice::from_raw_parts(p.add(info.size), size - info.size) };
     match tail.iter().position(|&b| b != 0) {
         None => Ok(()),
-        Some(i) => Err(Error::new(
-            Status::Unsupported,
-            format!(
-                "{param} has a field beyond the {} bytes that this version of {} knows, and it is not 0 (byte {})",
+        Some(i) => {
+            let rest = format!(
+                "has a field beyond the {} bytes that this version of {} knows, and it is not 0 (byte {})",
                 info.size,
                 info.name,
                 info.size + i
-            ),
-        )),
+            );
+            Err(Error::about(Status::Unsupported, param.to_string(), rest))
+        }
     }
 }
 
@@ -312,13 +315,12 @@ pub(crate) unsafe fn check_chain(param: &dyn Display, first: *const c_void, know
         // SAFETY: not NULL, aligned, and the caller's promise.
         let head = unsafe { *link.cast::<Head>() };
         let Some(i) = known.iter().position(|&t| t == head.struct_type) else {
-            let text =
-                format!("{param}.next holds an extension of type {} that this call does not take", head.struct_type);
-            return Err(Error::unsupported(text));
+            let rest = format!("holds an extension of type {} that this call does not take", head.struct_type);
+            return Err(Error::about(Status::Unsupported, format!("{param}.next"), rest));
         };
         if std::mem::replace(&mut seen[i], true) {
-            let text = format!("{param}.next holds two extensions of type {}", head.struct_type);
-            return Err(Error::new(Status::InvalidArgument, text));
+            let rest = format!("holds two extensions of type {}", head.struct_type);
+            return Err(Error::invalid(format!("{param}.next"), rest));
         }
         link = head.next;
     }

@@ -9,13 +9,13 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
-    input,
+    context::{ContextObject, wk_context},
+    input::{self, List},
     layout::{init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::Status,
+    error::{Error, Status},
     scene::{HostLight, MAX_LIGHTS},
 };
 
@@ -79,14 +79,14 @@ pub unsafe extern "C" fn wk_context_set_lights(
                 inner_deg: c.inner_deg,
                 outer_deg: c.outer_deg,
             };
-            let named = |e| renamed("light.", &format!("lights[{i}]."), e);
+            let named = |e: Error| e.renamed("light", &format!("lights[{i}]"));
             light.validate().map_err(named)?;
             list[i] = Some(light);
             Ok(())
         };
         // SAFETY: the caller's promise about `lights`.
         unsafe {
-            input::each("lights", lights, count as usize, stride as usize, MAX_LIGHTS, &mut take)?;
+            input::each(&List::parameters("lights", count, stride, MAX_LIGHTS), lights, &mut take)?;
         }
         object.write().set_lights(list.iter().flatten())?;
         Ok(Status::Ok)

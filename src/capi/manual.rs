@@ -30,9 +30,9 @@
 //!
 //! Every call answers a wk_status: 0 or more is an answer, less than 0 a failure. A failed call writes no output,
 //! changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
-//! parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`. Welkin never
-//! aborts, prints or throws. It catches a fault of its own and answers WK_ERROR_INTERNAL. The device then answers
-//! WK_ERROR_POISONED, and only destroying works.
+//! parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
+//! wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. It catches a fault of
+//! its own and answers WK_ERROR_INTERNAL. The device then answers WK_ERROR_POISONED, and only destroying works.
 //!
 //! STRUCTS
 //!

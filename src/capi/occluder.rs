@@ -19,7 +19,8 @@ use super::{
     boundary::guard,
     context::{ContextObject, wk_context},
     frame::{WK_CLIP_MINUS_ONE_TO_ONE, WK_CLIP_ZERO_TO_ONE, wk_clip_space},
-    host, input,
+    host,
+    input::{self, List},
     layout::{init_struct, struct_size},
     opengl::wk_opengl_image,
     status::*,
@@ -132,7 +133,7 @@ pub unsafe extern "C" fn wk_context_set_occluder_maps(
         };
         // SAFETY: the caller's promise about `maps`.
         unsafe {
-            input::each("maps", maps, count as usize, stride as usize, MAX_OCCLUDER_MAPS, &mut take)?;
+            input::each(&List::parameters("maps", count, stride, MAX_OCCLUDER_MAPS), maps, &mut take)?;
         }
         object.cell.check_not_lost()?;
         object.cell.drain();

@@ -26,7 +26,7 @@ use std::{
 
 use super::{
     boundary::guard,
-    input,
+    input::{self, List, Named},
     layout::{self, init_struct, struct_size},
     status::*,
     view::{ViewObject, wk_view},
@@ -314,9 +314,10 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
             layout::WK_BUDGET_HAS_FLAGS.check(&"budget.has", c.has.into())?;
             asked.tolerance = (c.has & WK_BUDGET_HAS_TOLERANCE != 0).then_some(c.tolerance);
             asked.milliseconds = (c.has & WK_BUDGET_HAS_MILLISECONDS != 0).then_some(c.milliseconds);
-            asked.wishes = wishes(&c)?;
+            let parts;
+            (asked.wishes, parts) = wishes(&c)?;
+            asked.validate(PARTS).map_err(|e| in_list(&parts, e))?;
         }
-        asked.validate(PARTS)?;
         object.cell.drain();
         object.lock().set_budget(asked)?;
         Ok(Status::Ok)
@@ -418,9 +419,9 @@ pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_vo
         let object = call.get::<ViewObject>("view", view)?;
         layout::check_pointer(&"plan", plan.cast::<u8>())?;
         // SAFETY: the caller promises `size` readable bytes.
-        let bytes = unsafe { input::slice("plan", plan.cast::<u8>(), size, usize::MAX)? };
+        let bytes = unsafe { input::slice("plan", plan.cast::<u8>(), Named("size", size), usize::MAX)? };
         object.cell.drain();
-        object.lock().load_plan(bytes)?;
+        object.lock().load_plan(bytes).map_err(|e| e.in_text("plan"))?;
         Ok(Status::Ok)
     })
 }
@@ -431,25 +432,38 @@ static NAMES: LazyLock<Vec<(CString, Vec<CString>)>> = LazyLock::new(|| {
     PARTS.iter().map(|p| (text(&p.name), p.rungs.iter().map(text).collect())).collect()
 });
 
-/// What is wanted of the parts, by number.
-fn wishes(c: &wk_budget) -> Result<Vec<Wish>> {
+/// The Rust side counts wishes by part, the header by their place in the list.
+fn in_list(parts: &[usize], e: Error) -> Error {
+    let of = |i: usize| format!("budget.wishes[{i}]");
+    let place = parts.iter().position(|part| e.field().is_some_and(|f| f.starts_with(&of(*part))));
+    place.map_or(e.clone(), |i| e.renamed(&of(parts[i]), &of(i)))
+}
+
+/// What is wanted of the parts, by number, and the part of each element of the host's list.
+fn wishes(c: &wk_budget) -> Result<(Vec<Wish>, Vec<usize>)> {
     let mut wishes = vec![Wish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
-    let mut seen = vec![false; wishes.len()];
+    let mut parts = Vec::new();
     let mut take = |i: usize, w: wk_part_wish| {
         let name = format!("budget.wishes[{i}]");
         layout::WK_PART_WISH_HAS_FLAGS.check(&format!("{name}.has"), w.has.into())?;
-        let i = w.part as usize;
-        if std::mem::replace(&mut seen[i], true) {
+        let part = w.part as usize;
+        if parts.contains(&part) {
             return Err(Error::range(&format!("{name}.part"), "a part that is not in the list yet", w.part));
         }
-        wishes[i] = Wish {
+        parts.push(part);
+        wishes[part] = Wish {
             importance: (w.has & WK_PART_WISH_HAS_IMPORTANCE != 0).then_some(w.importance),
             rung: (w.has & WK_PART_WISH_HAS_RUNG != 0).then_some(w.rung as usize),
         };
         Ok(())
     };
-    let (count, stride) = (c.wish_count as usize, c.wish_stride as usize);
+    let list = List {
+        name: "budget.wishes",
+        count: Named("budget.wish_count", c.wish_count as usize),
+        stride: Named("budget.wish_stride", c.wish_stride as usize),
+        limit: PARTS.len(),
+    };
     // SAFETY: the caller's promise about the list.
-    unsafe { input::each("budget.wishes", c.wishes, count, stride, PARTS.len(), &mut take)? };
-    Ok(wishes)
+    unsafe { input::each(&list, c.wishes, &mut take)? };
+    Ok((wishes, parts))
 }

@@ -16,9 +16,9 @@ use glam::DVec3;
 use super::{
     MAX_BATCH,
     boundary::guard,
-    conditions::{of_position, position},
+    conditions::position,
     context::{ContextObject, wk_context},
-    input::{self, check_finite},
+    input,
     layout::{self, init_struct, struct_size},
     status::*,
 };
@@ -243,14 +243,14 @@ unsafe fn celestial(
         let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&out_name, out)?) };
         let context = object.read();
         let light = context.light_at(DVec3::from_array(at), time_or_now(&context, time_s)?);
-        place.set(&wk_celestial::of(&which(&light.map_err(|e| of_position("position_m", e))?)));
+        place.set(&wk_celestial::of(&which(&light.map_err(|e| e.renamed("position", "position_m"))?)));
         Ok(Status::Ok)
     })
 }
 
 fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64> {
     let Some(time_s) = time_s else { return Ok(context.time_s()) };
-    context.check_time(check_finite("time_s", time_s)?)?;
+    context.check_time(time_s)?;
     Ok(time_s)
 }
 
@@ -308,7 +308,8 @@ unsafe fn light(
             // SAFETY: `i` is below the count that the caller promises.
             let at = unsafe { position(&format!("positions_m[{i}]"), places.at(i))? };
             let light = context.light_at(DVec3::from_array(at), time_s);
-            Ok(wk_ground_light::of(&light.map_err(|e| of_position(&format!("positions_m[{i}]"), e))?.arriving))
+            let named = |e: Error| e.renamed("position", &format!("positions_m[{i}]"));
+            Ok(wk_ground_light::of(&light.map_err(named)?.arriving))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, light) in answers.iter().enumerate() {
@@ -378,7 +379,8 @@ unsafe fn way(
                 (part("from_m", &raw const (*pair).from_m)?, part("to_m", &raw const (*pair).to_m)?)
             };
             let between = context.between(DVec3::from_array(from), DVec3::from_array(to), time_s);
-            Ok(wk_between::of(&between.map_err(|e| of_segment(i, e))?))
+            let named = |e: Error| e.renamed("from", "from_m").renamed("to", "to_m").within(&format!("segments[{i}]"));
+            Ok(wk_between::of(&between.map_err(named)?))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, between) in answers.iter().enumerate() {
@@ -387,16 +389,6 @@ unsafe fn way(
         }
         Ok(Status::Ok)
     })
-}
-
-/// What is wrong with `from` or `to`, said of the segment's field.
-fn of_segment(i: usize, e: Error) -> Error {
-    for end in ["from", "to"] {
-        if let Some(rest) = e.message.strip_prefix(&format!("{end} ")) {
-            return Error::new(e.status, format!("segments[{i}].{end}_m {rest}"));
-        }
-    }
-    e.within(&format!("segments[{i}]: "))
 }
 
 /// Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
@@ -414,7 +406,7 @@ pub unsafe extern "C" fn wk_context_get_ambient(
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ambient", out_ambient)?) };
         object.cell.drain();
-        let sh = object.read().ambient_at(DVec3::from_array(at)).map_err(|e| of_position("position_m", e))?;
+        let sh = object.read().ambient_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", "position_m"))?;
         let mut answer = wk_ambient::INIT;
         for (to, from) in answer.sh9.iter_mut().zip(sh.as_flattened()) {
             *to = f64::from(*from);

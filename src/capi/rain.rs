@@ -16,8 +16,8 @@ use glam::{DMat3, DVec3};
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
-    input,
+    context::{ContextObject, wk_context},
+    input::{self, List},
     layout::{self, init_struct, struct_size},
     status::*,
     view::{ViewObject, wk_view},
@@ -221,17 +221,17 @@ pub unsafe extern "C" fn wk_context_set_shelters(
                 half_size_m: DVec3::from_array(c.half_size_m),
                 velocity_m_s: DVec3::from_array(c.velocity_m_s),
                 planes: shape
-                    .map_or(Ok(Planes::NONE), |s| s.planes().map_err(|e| e.within(&format!("shelters[{i}]."))))?,
+                    .map_or(Ok(Planes::NONE), |s| s.planes().map_err(|e| e.within(&format!("shelters[{i}]"))))?,
             };
-            let named = |e| renamed("shelter.", &format!("shelters[{i}]."), e);
+            let named = |e: Error| e.renamed("shelter", &format!("shelters[{i}]"));
             shelter.validate().map_err(named)?;
             list[i] = Some(shelter);
             Ok(())
         };
         // SAFETY: the caller's promise about `shelters`.
         unsafe {
-            let list = (count as usize, stride as usize, MAX_SHELTERS);
-            input::each_with("shelters", shelters, list, &[WK_STRUCT_TYPE_SHELTER_SHAPE], &mut take)?;
+            let list = List::parameters("shelters", count, stride, MAX_SHELTERS);
+            input::each_with(&list, shelters, &[WK_STRUCT_TYPE_SHELTER_SHAPE], &mut take)?;
         }
         object.write().set_shelters(list.iter().flatten())?;
         Ok(Status::Ok)

@@ -115,7 +115,7 @@ pub unsafe extern "C" fn wk_weather_from_metar(
             // SAFETY: the caller's promise.
             Some(unsafe { layout::out_struct(&"out_metar", out_metar)? })
         };
-        let report = Weather::from_metar(text)?;
+        let report = Weather::from_metar(text).map_err(|e| e.in_text("report"))?;
         weather.set(&report.weather)?;
         if let Some(metar) = metar {
             metar.set(&wk_metar::of(&report));

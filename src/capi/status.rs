@@ -1,7 +1,8 @@
 //! Status, versions, messages
 //!
 //! Every call answers a wk_status. 0 and positive values are answers, negative ones failures. A failed call writes no
-//! output. wk_last_error_message() then says which parameter was wrong and what is accepted.
+//! output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
+//! gives that parameter or field alone.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -174,6 +175,16 @@ pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_last_error_message() -> *const c_char {
     boundary::last_error()
+}
+
+/// The parameter or field that the calling thread's last failed call was about, as a path of names in this header that
+/// begins at the function's parameter or at a struct's name: "frame.projection", "shelters[2].half_size_m",
+/// "wk_sky_settings.suns", "time_s". A host's editor can mark a control by it. The last failure with
+/// WK_ERROR_INVALID_ARGUMENT always has one; empty where a failure is about no field, and before the first failure.
+/// Never NULL; valid until the next failing call of this thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn wk_last_error_field() -> *const c_char {
+    boundary::last_error_field()
 }
 
 /// The library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the major

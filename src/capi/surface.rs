@@ -173,16 +173,14 @@ unsafe fn native(p: *const wk_window) -> Result<NativeWindow> {
     })
 }
 
-/// The Rust side's names for the handles, as `wk_window` has them.
+/// The header's names for the handles of a window.
 fn in_window(e: Error) -> Error {
-    let (name, rest) = e.message.split_once(' ').unwrap_or((e.message.as_str(), ""));
-    let field = match name {
-        "display" | "connection" | "hinstance" => "window.display",
-        "window" => "window.id",
-        "surface" | "hwnd" | "ns_view" => "window.handle",
-        _ => return e,
-    };
-    Error::new(e.status, format!("{field} {rest}"))
+    e.map_field(|name| match name {
+        "display" | "connection" | "hinstance" => "window.display".into(),
+        "window" => "window.id".into(),
+        "surface" | "hwnd" | "ns_view" => "window.handle".into(),
+        other => other.into(),
+    })
 }
 
 /// Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
@@ -271,10 +269,7 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
             },
             pacing: if c.pacing == WK_PACING_IMMEDIATE { Pacing::Immediate } else { Pacing::Refresh },
         };
-        object.lock().configure(&options).map_err(|e| match e.status {
-            Status::InvalidArgument => e.within("config."),
-            _ => e,
-        })?;
+        object.lock().configure(&options).map_err(|e| e.map_field(|field| format!("config.{field}")))?;
         Ok(Status::Ok)
     })
 }

@@ -14,7 +14,7 @@ use super::{
     device::{DeviceObject, wk_device},
     device_cell::DeviceCell,
     handles::{self, Object},
-    input::{self, out},
+    input::{self, Named, out},
     layout::{self, init_struct, struct_size},
     status::*,
 };
@@ -162,8 +162,9 @@ fn create(cell: &DeviceCell, desc: &wk_texture_desc) -> Result<wgpu::Texture> {
         usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
     }
     if !allowed.contains(usage) {
-        let text = "desc.format must be one that this device can make and draw into: WK_FORMAT_RGBA16_FLOAT always is";
-        return Err(Error::unsupported(format!("{text}, got {}", name_of(desc.format))));
+        let rest = "must be one that this device can make and draw into: WK_FORMAT_RGBA16_FLOAT always is";
+        let rest = format!("{rest}, got {}", name_of(desc.format));
+        return Err(Error::about(Status::Unsupported, "desc.format", rest));
     }
     let _entered = cell.enter()?;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -206,7 +207,7 @@ pub unsafe extern "C" fn wk_texture_write(
     guard("wk_texture_write", |call| {
         let object = call.get::<TextureObject>("texture", texture)?;
         // SAFETY: the caller promises `data_size` readable bytes.
-        let bytes = unsafe { input::slice("data", data.cast::<u8>(), data_size, usize::MAX)? };
+        let bytes = unsafe { input::slice("data", data.cast::<u8>(), Named("data_size", data_size), usize::MAX)? };
         check_rows(&object.texture, data_size, bytes_per_row)?;
         let _one = object.transfer.lock().unwrap_or_else(PoisonError::into_inner);
         let _entered = object.cell.enter()?;
@@ -243,7 +244,7 @@ pub unsafe extern "C" fn wk_texture_read(
         let packed = readback::bytes(object.cell.gpu(), &object.texture, 0)?;
         drop(entered);
         // SAFETY: the caller promises `data_size` writable bytes.
-        let room = unsafe { input::slice_mut("data", data.cast::<u8>(), data_size, usize::MAX)? };
+        let room = unsafe { input::slice_mut("data", data.cast::<u8>(), Named("data_size", data_size), usize::MAX)? };
         let row = packed.len() / object.texture.height() as usize;
         for (from, to) in packed.chunks_exact(row).zip(room.chunks_mut(bytes_per_row as usize)) {
             to[..row].copy_from_slice(from);

@@ -12,8 +12,8 @@ use std::{ffi::c_void, ptr::null};
 
 use super::{
     boundary::guard,
-    context::{self, ContextObject, renamed, wk_context, wk_exposure_mode},
-    input::{self, check_finite, out},
+    context::{self, ContextObject, wk_context, wk_exposure_mode},
+    input::{self, Named, out},
     layout::{self, init_struct, struct_size},
     status::*,
     weather::wk_weather,
@@ -116,8 +116,8 @@ pub unsafe extern "C" fn wk_context_get_state_time(
 pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f64, time_s: f64) -> wk_status {
     guard("wk_context_set_clock", |call| {
         let object = call.get::<ContextObject>("context", context)?;
-        let utc = Utc(check_finite("utc_s", utc_s)?);
-        object.write().set_clock(utc, time_s).map_err(|e| renamed("utc ", "utc_s ", e))?;
+        let utc = Utc(utc_s);
+        object.write().set_clock(utc, time_s).map_err(|e| e.renamed("utc", "utc_s"))?;
         Ok(Status::Ok)
     })
 }
@@ -137,7 +137,6 @@ pub unsafe extern "C" fn wk_utc_from_calendar(
 ) -> wk_status {
     guard("wk_utc_from_calendar", |_| {
         let place = out("out_utc_s", out_utc_s)?;
-        check_finite("second", second)?;
         let utc = Utc::from_calendar(year, month, day, hour, minute, second)?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(utc.0) };
@@ -156,7 +155,7 @@ pub unsafe extern "C" fn wk_context_set_sun(
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promise about `direction`.
         let given = unsafe { given_direction(direction)? };
-        object.write().set_sun(given).map_err(|e| renamed("sun.", "direction.", e))?;
+        object.write().set_sun(given).map_err(|e| e.renamed("sun", "direction"))?;
         Ok(Status::Ok)
     })
 }
@@ -172,7 +171,7 @@ pub unsafe extern "C" fn wk_context_set_moon(
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promise about `direction`.
         let given = unsafe { given_direction(direction)? };
-        object.write().set_moon(given).map_err(|e| renamed("moon.", "direction.", e))?;
+        object.write().set_moon(given).map_err(|e| e.renamed("moon", "direction"))?;
         Ok(Status::Ok)
     })
 }
@@ -202,18 +201,12 @@ pub unsafe extern "C" fn wk_context_set_exposure(
     guard("wk_context_set_exposure", |call| {
         let object = call.get::<ContextObject>("context", context)?;
         input::check_enum("mode", &layout::WK_EXPOSURE_MODE, mode)?;
-        let exposure = context::exposure(mode, check_finite("value", value)?)
+        let exposure = context::exposure(mode, value)
             .ok_or_else(|| Error::range("mode", "AUTO, EV100 or FACTOR in a context", "WK_EXPOSURE_OF_CONTEXT"))?;
-        exposure.validate().map_err(value_name)?;
+        exposure.validate().map_err(|e| e.map_field(|_| "value".into()))?;
         object.write().set_exposure(exposure)?;
         Ok(Status::Ok)
     })
-}
-
-/// `exposure.ev100 must ..` as `value must ..`.
-fn value_name(e: Error) -> Error {
-    let rest = e.message.split_once(' ').map_or("", |m| m.1);
-    Error::new(e.status, format!("value {rest}"))
 }
 
 /// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
@@ -254,8 +247,8 @@ pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const
         let object = call.get::<ContextObject>("context", context)?;
         layout::check_pointer(&"state", state.cast::<u8>())?;
         // SAFETY: the caller promises `size` readable bytes.
-        let bytes = unsafe { input::slice("state", state.cast::<u8>(), size, usize::MAX)? };
-        object.write().load(bytes)?;
+        let bytes = unsafe { input::slice("state", state.cast::<u8>(), Named("size", size), usize::MAX)? };
+        object.write().load(bytes).map_err(|e| e.in_text("state"))?;
         Ok(Status::Ok)
     })
 }

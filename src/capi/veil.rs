@@ -81,7 +81,7 @@ pub unsafe extern "C" fn wk_view_get_frame_textures(
         let object = call.get::<ViewObject>("view", view)?;
         // SAFETY: the caller's promise about `out_textures`.
         let place = unsafe { layout::out_struct(&"out_textures", out_textures)? };
-        object.cell.host().check_own_shaders("frame textures")?;
+        object.cell.host().check_own_shaders("view", "frame textures")?;
         object.cell.drain();
         let textures = object.lock().frame_textures()?;
         object.uses_veil();

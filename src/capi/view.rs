@@ -27,7 +27,7 @@ use std::{
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
+    context::{ContextObject, wk_context},
     device_cell::DeviceCell,
     frame::{WK_FRAME_MEASURE, wk_frame},
     handles::{self, Object},
@@ -318,7 +318,7 @@ pub unsafe extern "C" fn wk_view_record(
         let measured = (c.flags & WK_FRAME_MEASURE != 0).then(Instant::now);
         // SAFETY: as above.
         unsafe { host::record(call, &object, &c, stages) }
-            .map_err(|e| renamed("frame.camera.position ", "frame.position_m ", e))?;
+            .map_err(|e| e.renamed("frame.camera.position", "frame.position_m"))?;
         if let Some(start) = measured {
             object.lock().add_hand_over(start);
         }

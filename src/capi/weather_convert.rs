@@ -2,7 +2,12 @@
 
 use std::ptr::null;
 
-use super::{input, layout, status::WK_STRUCT_TYPE_WEATHER_OVERRIDES, weather::*};
+use super::{
+    input::{self, List, Named},
+    layout,
+    status::WK_STRUCT_TYPE_WEATHER_OVERRIDES,
+    weather::*,
+};
 use crate::{
     error::{Error, Result},
     weather::{
@@ -23,15 +28,21 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     let c = unsafe { layout::read(&param, p)? };
     // SAFETY: as above.
     unsafe { layout::check_chain(&param, c.next, &[WK_STRUCT_TYPE_WEATHER_OVERRIDES])? };
-    let (count, stride) = (c.cloud_count as usize, c.cloud_stride as usize);
     let mut weather = fields(&c).map_err(|e| flat_name(param, e))?;
     let mut take = |_: usize, layer: wk_cloud_layer| {
         weather.clouds.push(cloud(&layer)?);
         Ok(())
     };
-    let name = format!("{param}.clouds");
+    let of = |field: &str| format!("{param}.{field}");
+    let (name, count, stride) = (of("clouds"), of("cloud_count"), of("cloud_stride"));
+    let list = List {
+        name: &name,
+        count: Named(&count, c.cloud_count as usize),
+        stride: Named(&stride, c.cloud_stride as usize),
+        limit: MAX_CLOUD_LAYERS,
+    };
     // SAFETY: as above.
-    unsafe { input::each(&name, c.clouds, count, stride, MAX_CLOUD_LAYERS, &mut take)? };
+    unsafe { input::each(&list, c.clouds, &mut take)? };
     weather.validate().map_err(|e| flat_name(param, e))?;
     Ok(weather)
 }
@@ -64,27 +75,27 @@ pub(super) unsafe fn overrides(param: &str, p: *const wk_weather) -> Result<Over
         wave_height_m: some(WK_OVERRIDE_WAVE_HEIGHT, c.wave_height_m),
         wetness: some(WK_OVERRIDE_WETNESS, c.wetness),
     };
-    let name = |e: Error| {
-        let text = e.message.replacen("overrides.", "wk_weather_overrides.", 1);
-        let text = text.replacen("cloud_light.0", "cloud_direct", 1).replacen("cloud_light.1", "cloud_diffuse", 1);
-        Error::new(e.status, text)
+    let named = |e: Error| {
+        e.renamed("overrides", "wk_weather_overrides")
+            .renamed("wk_weather_overrides.cloud_light.0", "wk_weather_overrides.cloud_direct")
+            .renamed("wk_weather_overrides.cloud_light.1", "wk_weather_overrides.cloud_diffuse")
     };
-    overrides.validate().map_err(name)?;
+    overrides.validate().map_err(named)?;
     Ok(overrides)
 }
 
-/// `wind.speed_m_s must ..` as C knows it: `weather.wind_speed_m_s must ..`.
+/// `wind.speed_m_s` of the Rust side is `weather.wind_speed_m_s` in the header.
 fn flat_name(param: &str, e: Error) -> Error {
-    let (name, rest) = e.message.split_once(' ').unwrap_or((e.message.as_str(), ""));
-    let name = match name {
+    let flat = |field: &str| match field {
         "wind.variable_deg.0" => "wind_variable_from_deg".into(),
         "wind.variable_deg.1" => "wind_variable_to_deg".into(),
-        layer if layer.starts_with("clouds[") => layer.to_owned(),
-        other => other.trim_start_matches("sea.swell.").replace('.', "_"),
+        layer if layer.starts_with("clouds") => layer.to_owned(),
+        other => match other.strip_prefix("sea.swell.") {
+            Some(swell) => format!("swell_{swell}"),
+            None => other.replace('.', "_"),
+        },
     };
-    let swell = e.message.starts_with("sea.swell.");
-    let name = if swell { format!("swell_{name}") } else { name };
-    Error::new(e.status, format!("{param}.{name} {rest}"))
+    e.map_field(flat).within(param)
 }
 
 fn fields(c: &wk_weather) -> Result<Weather> {

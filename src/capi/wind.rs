@@ -11,9 +11,9 @@ use glam::DVec3;
 use super::{
     MAX_BATCH,
     boundary::guard,
-    conditions::{of_position, position},
+    conditions::position,
     context::{ContextObject, wk_context},
-    input::{self, check_finite},
+    input,
     layout::{self, init_struct, struct_size},
     status::*,
 };
@@ -187,9 +187,8 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promises.
         let (at, place) = unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_wind", out_wind)?) };
-        let time_s = check_finite("time_s", time_s)?;
         let context = object.read();
-        let wind = context.wind_at(DVec3::from_array(at), time_s).map_err(|e| of_position("position_m", e))?;
+        let wind = context.wind_at(DVec3::from_array(at), time_s).map_err(|e| e.renamed("position", "position_m"))?;
         place.set(&wk_wind {
             velocity_m_s: wind.velocity_m_s.to_array(),
             mean_m_s: wind.mean_m_s.to_array(),
@@ -217,9 +216,8 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_rainfall", out_rainfall)?) };
-        let time_s = check_finite("time_s", time_s)?;
         let rain = object.read().rain_at(DVec3::from_array(at), time_s);
-        place.set(&wk_rainfall::of(&rain.map_err(|e| of_position("position_m", e))?));
+        place.set(&wk_rainfall::of(&rain.map_err(|e| e.renamed("position", "position_m"))?));
         Ok(Status::Ok)
     })
 }
@@ -246,24 +244,18 @@ pub unsafe extern "C" fn wk_context_get_rain_on_at(
         let list = input::Places::new("surfaces", "surface_size", surfaces, count, surface_size, MAX_BATCH)?;
         let room = input::Room::new("on", "on_size", on, count, on_size)?;
         let context = object.read();
-        context.check_time(check_finite("time_s", time_s)?)?;
+        context.check_time(time_s)?;
         let answer = |i: usize| {
             // SAFETY: `i` is below the count that the caller promises, and the size was checked.
             let c = unsafe { list.at(i).read() };
-            let vector = |name: &str, v: [f64; 3]| -> Result<DVec3> {
-                for (k, x) in v.into_iter().enumerate() {
-                    check_finite(&format!("surfaces[{i}].{name}[{k}]"), x)?;
-                }
-                Ok(DVec3::from_array(v))
-            };
             let surface = RainSurface {
-                position: vector("position_m", c.position_m)?,
-                normal: vector("normal", c.normal)?,
-                velocity_m_s: vector("velocity_m_s", c.velocity_m_s)?,
-                area_m2: check_finite(&format!("surfaces[{i}].area_m2"), c.area_m2)?,
+                position: DVec3::from_array(c.position_m),
+                normal: DVec3::from_array(c.normal),
+                velocity_m_s: DVec3::from_array(c.velocity_m_s),
+                area_m2: c.area_m2,
             };
             let on = context.rain_on(&surface, time_s);
-            Ok(wk_rain_on::of(&on.map_err(|e| of_position("position_m", e).within(&format!("surfaces[{i}].")))?))
+            Ok(wk_rain_on::of(&on.map_err(|e| e.renamed("position", "position_m").within(&format!("surfaces[{i}]")))?))
         };
         let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
         for (i, on) in answers.iter().enumerate() {

@@ -10,13 +10,13 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    context::{ContextObject, renamed, wk_context},
-    input,
+    context::{ContextObject, wk_context},
+    input::{self, Named},
     layout::{self, init_struct, struct_size},
     status::*,
 };
 use crate::{
-    error::Status,
+    error::{Error, Status},
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn wk_context_set_wind_grid(
         // SAFETY: the caller's promise about its pointers.
         let velocities: &[[f32; 3]] = unsafe {
             layout::check_chain(&"wind_grid", c.next, &[])?;
-            let count = c.velocity_count as usize;
+            let count = Named("wind_grid.velocity_count", c.velocity_count as usize);
             input::slice("wind_grid.velocities_m_s", c.velocities_m_s.cast(), count, most)?
         };
         let grid = WindGrid {
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn wk_context_set_wind_grid(
             kind: if c.kind == WK_WIND_GRID_ADDED { WindGridKind::Added } else { WindGridKind::Whole },
             velocities_m_s: velocities.to_vec(),
         };
-        let named = |e| renamed("velocities_m_s' count", "velocity_count", e);
+        let named = |e: Error| e.renamed("wind_grid.velocities_m_s.len", "wind_grid.velocity_count");
         object.write().set_wind_grid(Some(grid)).map_err(named)?;
         Ok(Status::Ok)
     })

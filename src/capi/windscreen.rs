@@ -18,7 +18,7 @@ use glam::DVec3;
 
 use super::{
     boundary::guard,
-    input,
+    input::{self, List, Named},
     layout::{self, init_struct, struct_size},
     status::*,
     view::{ViewObject, wk_view},
@@ -186,10 +186,15 @@ unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     // SAFETY: as above.
     unsafe { layout::check_chain(&"windscreen", c.next, &[])? };
     let mut arms = [None; MAX_ARMS];
-    let (count, stride) = (c.arm_count as usize, c.arm_stride as usize);
+    let list = List {
+        name: "windscreen.arms",
+        count: Named("windscreen.arm_count", c.arm_count as usize),
+        stride: Named("windscreen.arm_stride", c.arm_stride as usize),
+        limit: MAX_ARMS,
+    };
     // SAFETY: the caller's promise.
     unsafe {
-        input::each("windscreen.arms", c.arms, count, stride, MAX_ARMS, &mut |i, a: wk_wiper_arm| {
+        input::each(&list, c.arms, &mut |i, a: wk_wiper_arm| {
             arms[i] = Some(WiperArm {
                 pivot_m: a.pivot_m,
                 length_m: a.length_m,

@@ -25,7 +25,7 @@ impl HeldFog {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };
         let law: Law = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
-        law.validate().map_err(|e| e.within("saved state: "))?;
+        law.validate().map_err(|e| e.found_in("saved state"))?;
         Ok(Self { law: Some(law) })
     }
 }

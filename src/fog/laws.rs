@@ -67,7 +67,7 @@ impl CompatibilityLaw {
                 check_range("fog.start_m", start_m, 0.0, 1e9, "m")?;
                 check_range("fog.end_m", end_m, 0.0, 1e9, "m")?;
                 if end_m <= start_m {
-                    return Err(Error::range("fog.end_m", &format!("above fog.start_m, {start_m} m"), end_m));
+                    return Err(Error::range("fog.end_m", &format!("above start_m, {start_m} m"), end_m));
                 }
             }
             Curve::Exponential { density_per_m } | Curve::ExponentialSquared { density_per_m } => {
@@ -155,13 +155,13 @@ mod tests {
 
     #[test]
     fn faults_are_named() {
-        let says = |c| law(c).validate().unwrap_err().message;
+        let says = |c| law(c).validate().unwrap_err().to_string();
         assert!(says(Curve::Linear { start_m: 5.0, end_m: 5.0 }).contains("fog.end_m"));
         assert!(says(Curve::Exponential { density_per_m: f64::NAN }).contains("fog.density_per_m"));
         let bad = CompatibilityLaw {
             colour: Some([0.0, f64::INFINITY, 0.0]),
             ..law(Curve::Linear { start_m: 0.0, end_m: 1.0 })
         };
-        assert!(bad.validate().unwrap_err().message.contains("fog.colour"));
+        assert!(bad.validate().unwrap_err().to_string().contains("fog.colour"));
     }
 }

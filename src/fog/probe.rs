@@ -168,7 +168,7 @@ pub fn probe_csv(device: &Device, visibility_m: f64, text: &str) -> Result<Strin
         let value = fields[index].trim();
         let distance =
             value.parse::<f64>().map_err(|_| fault(number, column, format!("distance_m is no number: {value:?}")))?;
-        check_range("distance_m", distance, 0.0, 1e9, "m").map_err(|e| fault(number, column, e.message))?;
+        check_range("distance_m", distance, 0.0, 1e9, "m").map_err(|e| fault(number, column, e.to_string()))?;
         kept.push(line);
         distances.push(distance);
     }

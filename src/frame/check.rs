@@ -25,13 +25,11 @@ impl View {
         let last = 31 - self.recorded.0.leading_zeros();
         let first = stages.0.trailing_zeros();
         if first <= last {
-            return Err(Error::new(
-                Status::WrongOrder,
-                format!(
-                    "stages {:#x} of frame_id {frame_id} come after {:#x}: each stage once, in rising order of its bit",
-                    stages.0, self.recorded.0
-                ),
-            ));
+            let (now, before) = (stages.0, self.recorded.0);
+            let rest = format!(
+                "{now:#x} of frame_id {frame_id} come after {before:#x}: each stage once, in rising order of its bit"
+            );
+            return Err(Error::about(Status::WrongOrder, "stages", rest));
         }
         Ok(())
     }
@@ -61,9 +59,8 @@ impl View {
             self.reading(color)?;
         }
         if color.sample_count() > 1 && !self.composite.lock()?.reads_samples() {
-            return Err(Error::unsupported(
-                "color.samples above 1: this device cannot shade per sample; resolve first",
-            ));
+            let what = "above 1: this device cannot shade per sample; resolve first";
+            return Err(Error::unsupported(what).within("color.samples"));
         }
         if let Some(depth) = frame.depth {
             check_depth(depth, color)?;

@@ -196,14 +196,16 @@ impl View {
     ) -> Result<()> {
         if frame.flags.has(FrameFlags::MEASURE) {
             return Err(Error::unsupported(
-                "flags MEASURE where the host submits, or lends its images for one submission: measure there by the host's own \
+                "MEASURE where the host submits, or lends its images for one submission: measure there by the host's own \
                  timestamps",
-            ));
+            )
+            .within("flags"));
         }
         if frame.color.is_some_and(|c| !can_copy(c)) {
             return Err(Error::unsupported(
-                "color without COPY_SRC where the host submits: the picture is read between submissions; use record",
-            ));
+                "without COPY_SRC where the host submits: the picture is read between submissions; use record",
+            )
+            .within("color.usage"));
         }
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;

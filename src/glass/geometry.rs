@@ -82,7 +82,7 @@ impl Plane {
                     d * (distance_m / -d.z)
                 };
                 Self::of(&[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]).map_err(|e| {
-                    Error::unsupported(format!("windscreen over the whole view with this projection: {}", e.message))
+                    Error::unsupported(format!("windscreen over the whole view with this projection: {e}"))
                 })
             }
         }
@@ -166,7 +166,7 @@ mod tests {
         let flat = [a, a + DVec3::X, a + DVec3::X * 2.0, a + DVec3::X * 3.0];
         for bad in [[a, d, c, b], [a, b, lifted, d], [lost, b, c, d], [a, a, c, d], flat, [a, b, d, c]] {
             let e = Plane::of(&bad).unwrap_err();
-            assert!(e.message.contains("windscreen.corners_m"), "{e}");
+            assert!(e.to_string().contains("windscreen.corners_m"), "{e}");
         }
         assert!(Plane::of(&[a, b, c, d].map(|p| p * 30.0)).is_err());
     }

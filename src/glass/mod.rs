@@ -176,7 +176,7 @@ impl Windscreen {
         check_range("windscreen.fogging", self.fogging, 0.0, 1.0, "")?;
         check_range("windscreen.demist", self.demist, 0.0, 1.0, "")?;
         // Names are put together for an error only: a host that drives sets its windscreen before every frame.
-        let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]."));
+        let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]"));
         self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))
     }
 }

@@ -96,9 +96,8 @@ impl DrawnEffect for GlassView {
     fn check(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let several = frame.color.is_some_and(|c| c.sample_count() > 1);
         if several && stages.has(Stages::LENS) && self.glass.is_some() {
-            return Err(Error::unsupported(
-                "color.samples above 1 in the stage LENS with a windscreen: resolve first, then record LENS",
-            ));
+            let what = "above 1 in the stage LENS with a windscreen: resolve first, then record LENS";
+            return Err(Error::unsupported(what).within("color.samples"));
         }
         Ok(())
     }

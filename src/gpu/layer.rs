@@ -77,8 +77,9 @@ pub(crate) fn check_depth_format(format: wgpu::TextureFormat) -> Result<()> {
             | F::R32Float
     ) {
         return Err(Error::unsupported(format!(
-            "depth format {format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
-        )));
+            "{format:?}; supported: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8), R32Float"
+        ))
+        .within("depth.format"));
     }
     Ok(())
 }

@@ -366,7 +366,7 @@ impl Surface {
         self.surface.configure(&device.device, &config);
         if let Some(fault) = device.take_fault() {
             self.lost = true;
-            return Err(outdated(&fault.message));
+            return Err(outdated(&fault.to_string()));
         }
         if !direct {
             self.stand_in = Some(StandIn::new(&device, (options.width, options.height), format, IMAGE_USAGE)?);
@@ -463,7 +463,7 @@ impl Surface {
         device.queue.present(image);
         if let Some(fault) = device.take_fault() {
             self.ready = false;
-            return Err(outdated(&fault.message));
+            return Err(outdated(&fault.to_string()));
         }
         Ok(())
     }
@@ -491,7 +491,8 @@ fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> 
         SurfaceEncoding::DisplaySrgb => [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm],
     };
     offered.iter().copied().find(|f| wanted.contains(f)).ok_or_else(|| {
-        Error::unsupported(format!("encoding: the window offers {offered:?}, none of which serves {encoding:?}"))
+        Error::unsupported(format!("the window offers {offered:?}, none of which serves {encoding:?}"))
+            .within("encoding")
     })
 }
 
@@ -518,7 +519,7 @@ mod tests {
             // SAFETY: the null handle is found before anything is used.
             let e = unsafe { device_for_window(&window, &DeviceOptions::default()) }.err().expect("refused");
             assert_eq!(e.status, Status::InvalidArgument);
-            assert!(e.message.starts_with(name), "{}", e.message);
+            assert!(e.to_string().starts_with(name), "{}", e);
         }
     }
 

@@ -118,7 +118,7 @@ mod tests {
             assert_eq!((class as usize, SurfaceClass::from_number("x", i as u8).unwrap()), (i, class));
         }
         let e = SurfaceClass::from_number("ground_grid.surface_classes[5]", 7).unwrap_err();
-        assert_eq!(e.message, "ground_grid.surface_classes[5] must be a WK_SURFACE_CLASS_ value, 0 to 6, got 7");
+        assert_eq!(e.to_string(), "ground_grid.surface_classes[5] must be a WK_SURFACE_CLASS_ value, 0 to 6, got 7");
     }
 
     #[test]

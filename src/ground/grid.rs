@@ -46,11 +46,11 @@ impl GroundGrid {
         let count = self.len();
         if self.heights_m.len() != count {
             let wanted = format!("{count}, one a node");
-            return Err(Error::range("ground_grid.heights_m' count", &wanted, self.heights_m.len()));
+            return Err(Error::range("ground_grid.heights_m.len", &wanted, self.heights_m.len()));
         }
         if !self.classes.is_empty() && self.classes.len() != count {
             let wanted = format!("0, or {count}, one a node");
-            return Err(Error::range("ground_grid.classes' count", &wanted, self.classes.len()));
+            return Err(Error::range("ground_grid.classes.len", &wanted, self.classes.len()));
         }
         match self.heights_m.iter().position(|h| h.is_nan() || h.abs() > MOST_M) {
             None => Ok(()),
@@ -185,11 +185,11 @@ mod tests {
             (torn(f32::NAN), "heights_m[7] must be finite"),
             (torn(f32::INFINITY), "heights_m[7] must be finite"),
             (torn(-2e5), "heights_m[7] must be finite"),
-            (short, "heights_m' count must be 12"),
-            (GroundGrid { classes: vec![SurfaceClass::Soil; 11], ..grid() }, "classes' count must be 0, or 12"),
+            (short, "heights_m.len must be 12"),
+            (GroundGrid { classes: vec![SurfaceClass::Soil; 11], ..grid() }, "classes.len must be 0, or 12"),
         ] {
             let e = bad.validate().unwrap_err();
-            assert!(e.message.contains(&format!("ground_grid.{name}")), "{name}: {}", e.message);
+            assert!(e.to_string().contains(&format!("ground_grid.{name}")), "{name}: {}", e);
         }
     }
 }

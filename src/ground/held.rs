@@ -330,11 +330,11 @@ impl HeldGround {
         let class: u8 = saved
             .remove(CLASS_KEY)
             .map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
-        let class = SurfaceClass::from_number("saved state: surface_class", class);
+        let class = SurfaceClass::from_number("surface_class", class);
         Ok(LoadedGround {
             state,
             host: host.transpose()?,
-            surface_class: class.map_err(|e| Error::new(Status::Parse, e.message))?,
+            surface_class: class.map_err(|e| e.with_status(Status::Parse).found_in("saved state"))?,
             terrain_from_s: f64::NEG_INFINITY,
         })
     }

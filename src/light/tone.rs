@@ -144,8 +144,8 @@ mod tests {
             assert!(y >= last - 1e-12, "{i}: {y} < {last}");
             last = y;
         }
-        assert!(Exposure::Ev100(f64::NAN).validate().unwrap_err().message.contains("exposure.ev100"));
-        assert!(Exposure::Factor(0.0).validate().unwrap_err().message.contains("exposure.factor"));
+        assert!(Exposure::Ev100(f64::NAN).validate().unwrap_err().to_string().contains("exposure.ev100"));
+        assert!(Exposure::Factor(0.0).validate().unwrap_err().to_string().contains("exposure.factor"));
         assert!((Exposure::Ev100(15.0).factor(0.0) * 1.2 * 32768.0 - 1.0).abs() < 1e-12);
     }
 }

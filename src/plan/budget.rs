@@ -48,15 +48,20 @@ impl Budget {
         above_zero("budget.tolerance", self.tolerance, 1.0)?;
         above_zero("budget.milliseconds", self.milliseconds, 1000.0)?;
         if self.wishes.len() > parts.len() {
-            return Err(Error::range("budget.wishes", &format!("of at most {} parts", parts.len()), self.wishes.len()));
+            return Err(Error::range(
+                "budget.wishes.len",
+                &format!("at most {}, one a part", parts.len()),
+                self.wishes.len(),
+            ));
         }
-        for (part, wish) in parts.iter().zip(&self.wishes) {
+        for (i, (part, wish)) in parts.iter().zip(&self.wishes).enumerate() {
             if let Some(importance) = wish.importance {
-                check_range(&format!("budget.importance of {}", part.name), importance, 0.0, 1.0, "")?;
+                check_range(&format!("budget.wishes[{i}].importance"), importance, 0.0, 1.0, "")?;
             }
             if let Some(rung) = wish.rung.filter(|r| *r >= part.rungs.len()) {
-                let accepted = format!("in [0, {}]: {}", part.rungs.len() - 1, part.rungs.join(", "));
-                return Err(Error::range(&format!("budget.rung of {}", part.name), &accepted, rung));
+                let (most, names) = (part.rungs.len() - 1, part.rungs.join(", "));
+                let accepted = format!("in [0, {most}] for {}: {names}", part.name);
+                return Err(Error::range(&format!("budget.wishes[{i}].rung"), &accepted, rung));
             }
         }
         Ok(())

@@ -43,14 +43,14 @@ pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &Settings<'_>) -> Stri
 /// [`Status::InvalidArgument`] if the settings are others.
 pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &Settings<'_>) -> Result<Vec<usize>> {
     if bytes.len() > MOST_BYTES {
-        return Err(fault(&format!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
+        return Err(fault("", format_args!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
-    let text = std::str::from_utf8(bytes).map_err(|e| fault(&format!(": {e}")))?;
-    let whole: Table = toml::from_str(text).map_err(|e| fault(&format!(": {}", toml_fault(text, &e))))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| unread(&e))?;
+    let whole: Table = toml::from_str(text).map_err(|e| unread(&toml_fault(text, &e)))?;
     // First: what else a plan of another version holds is not known.
     let version = whole.get("version");
     if version != Some(&Value::from(i64::from(VERSION))) {
-        return Err(fault(&format!(".version must be {VERSION}, got {}", shown(version))));
+        return Err(fault(".version", format_args!("must be {VERSION}, got {}", shown(version))));
     }
     only(&whole, "", &["version", "sky", "drawn"])?;
     let (settings, drawn) = (table(&whole, "sky")?, table(&whole, "drawn")?);
@@ -60,13 +60,14 @@ pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &Settings<'_>) -> Result<V
     only(drawn, ".drawn", &names)?;
     let rungs = parts.iter().map(|part| rung_of(drawn, part)).collect::<Result<_>>()?;
     let model = text_of(settings, "model")?;
-    (sky.check_model)(model).map_err(|e| Error::new(Status::Parse, format!("plan.sky.{}", e.message)))?;
+    (sky.check_model)(model).map_err(|e| e.with_status(Status::Parse).within("plan.sky"))?;
     differs("model", model, sky.model)?;
     for &(name, own, lo, hi) in &sky.numbers {
         let found = settings.get(name);
         let value = found.and_then(Value::as_integer).filter(|v| (i64::from(lo)..=i64::from(hi)).contains(v));
         let value = value.ok_or_else(|| {
-            fault(&format!(".sky.{name} must be a whole number in [{lo}, {hi}], got {}", shown(found)))
+            let rest = format!("must be a whole number in [{lo}, {hi}], got {}", shown(found));
+            fault(&format!(".sky.{name}"), rest)
         })?;
         differs(name, value, i64::from(own))?;
     }
@@ -77,12 +78,19 @@ fn rung_of(drawn: &Table, part: &Part) -> Result<usize> {
     let found = drawn.get(part.name);
     let rung = found.and_then(Value::as_str).and_then(|name| part.rungs.iter().position(|r| *r == name));
     rung.ok_or_else(|| {
-        fault(&format!(".drawn.{} must be one of {}, got {}", part.name, part.rungs.join(", "), shown(found)))
+        let rest = format!("must be one of {}, got {}", part.rungs.join(", "), shown(found));
+        fault(&format!(".drawn.{}", part.name), rest)
     })
 }
 
-fn fault(what: &str) -> Error {
-    Error::new(Status::Parse, format!("plan{}{what}", if what.starts_with(['.', ':']) { "" } else { " " }))
+/// A fault of the plan's part at `path`.
+fn fault(path: &str, rest: impl std::fmt::Display) -> Error {
+    Error::about(Status::Parse, format!("plan{path}"), rest)
+}
+
+/// A plan that is no TOML.
+fn unread(why: &dyn std::fmt::Display) -> Error {
+    Error::new(Status::Parse, why.to_string()).within("plan")
 }
 
 fn shown(value: Option<&Value>) -> String {
@@ -93,18 +101,22 @@ fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
     let unknown = table.keys().find(|k| !known.contains(&k.as_str()));
     unknown.map_or(Ok(()), |k| {
         let k: String = k.chars().take(40).collect();
-        Err(fault(&format!("{path}.{k} is unknown: the fields are {}", known.join(", "))))
+        Err(fault(&format!("{path}.{k}"), format_args!("is unknown: the fields are {}", known.join(", "))))
     })
 }
 
 fn table<'a>(whole: &'a Table, name: &str) -> Result<&'a Table> {
     let found = whole.get(name);
-    found.and_then(Value::as_table).ok_or_else(|| fault(&format!(".{name} must be a table, got {}", shown(found))))
+    found
+        .and_then(Value::as_table)
+        .ok_or_else(|| fault(&format!(".{name}"), format_args!("must be a table, got {}", shown(found))))
 }
 
 fn text_of<'a>(table: &'a Table, name: &str) -> Result<&'a str> {
     let found = table.get(name);
-    found.and_then(Value::as_str).ok_or_else(|| fault(&format!(".sky.{name} must be a text, got {}", shown(found))))
+    found
+        .and_then(Value::as_str)
+        .ok_or_else(|| fault(&format!(".sky.{name}"), format_args!("must be a text, got {}", shown(found))))
 }
 
 /// Views draw alike only with the same sky.
@@ -152,7 +164,7 @@ mod tests {
             Ok(answer) => assert_eq!(answer, rungs, "{what}"),
             Err(e) => {
                 assert!(matches!(e.status, Status::Parse | Status::InvalidArgument), "{what}: {e:?}");
-                assert!(e.message.starts_with("plan"), "{what}: {}", e.message);
+                assert!(e.to_string().starts_with("plan"), "{what}: {}", e);
                 refused += 1;
             }
         };
@@ -181,7 +193,7 @@ mod tests {
     fn faults_name_the_field_and_what_is_accepted() {
         let text = write(&PARTS, &[0; 3], &settings());
         let read = |bytes: &[u8]| read(bytes, &PARTS, &settings());
-        let says = |from: &str, to: &str| read(text.replacen(from, to, 1).as_bytes()).unwrap_err().message;
+        let says = |from: &str, to: &str| read(text.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();
         for (from, to, want) in [
             ("version = 3", "version = 4\nparts = 5", "plan.version must be 3, got 4"),
             ("version = 3", "", "plan.version must be 3, got nothing"),
@@ -204,9 +216,9 @@ mod tests {
             assert!(says(from, to).starts_with(want), "{}", says(from, to));
         }
         let deep = format!("version = {}1{}", "[".repeat(20_000), "]".repeat(20_000));
-        assert!(read(deep.as_bytes()).unwrap_err().message.starts_with("plan: "));
-        assert!(read(&[0xff; 8]).unwrap_err().message.starts_with("plan: invalid utf-8"));
-        assert!(read(&vec![b'#'; MOST_BYTES + 1]).unwrap_err().message.contains("at most 65536 bytes"));
-        assert!(read(b"").unwrap_err().message.contains("plan.version"));
+        assert!(read(deep.as_bytes()).unwrap_err().to_string().starts_with("plan: "));
+        assert!(read(&[0xff; 8]).unwrap_err().to_string().starts_with("plan: invalid utf-8"));
+        assert!(read(&vec![b'#'; MOST_BYTES + 1]).unwrap_err().to_string().contains("at most 65536 bytes"));
+        assert!(read(b"").unwrap_err().to_string().contains("plan.version"));
     }
 }

@@ -10,7 +10,7 @@ use crate::error::{Error, Result, Status, shown};
 pub(super) fn parse(text: &str) -> Result<Planet> {
     let root = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or(0, |s| s.start);
-        file_error(text, at, Status::Parse, &format!("not TOML: {}", shown(e.message())))
+        file_error(text, at, Error::new(Status::Parse, format!("not TOML: {}", shown(e.message()))))
     })?;
     refuse_unknown(text, root.get_ref(), "")?;
     let mut planet = Planet::earth();
@@ -30,14 +30,14 @@ fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> 
             (true, DeValue::Table(inner)) => refuse_unknown(text, inner, name)?,
             (true, _) => {
                 let message = format!("`{0}` must be a section, [{0}]", shown(name));
-                return Err(file_error(text, value.span().start, Status::Parse, &message));
+                return Err(file_error(text, value.span().start, Error::new(Status::Parse, message)));
             }
             (false, _) if FIELDS.iter().any(|f| f.section == section && f.key == name) => {}
             (false, _) => {
                 let place = if section.is_empty() { "at the top".to_owned() } else { format!("in [{section}]") };
                 let known: Vec<&str> = FIELDS.iter().filter(|f| f.section == section).map(|f| f.key).collect();
                 let message = format!("unknown key `{}` {place}; known: {}", shown(name), known.join(", "));
-                return Err(file_error(text, key.span().start, Status::Parse, &message));
+                return Err(file_error(text, key.span().start, Error::new(Status::Parse, message)));
             }
         }
     }
@@ -63,16 +63,13 @@ fn read_field(text: &str, root: &DeTable<'_>, field: &Field, planet: &mut Planet
     let Some(numbers) = numbers.filter(|n| n.len() == slots.len()) else {
         let what = value.get_ref().type_str();
         let message = format!("`{}` must be {}, got another {what} or count", field.name(), field.accepted());
-        return Err(file_error(text, value.span().start, Status::Parse, &message));
+        return Err(file_error(text, value.span().start, Error::new(Status::Parse, message)));
     };
     slots.copy_from_slice(&numbers);
     let (lo, hi) = field.range;
     match numbers.iter().find(|v| !(v.is_finite() && (lo..=hi).contains(*v))) {
         None => Ok(()),
-        Some(bad) => {
-            let message = format!("{} must be {}, got {bad}", field.name(), field.accepted());
-            Err(file_error(text, value.span().start, Status::InvalidArgument, &message))
-        }
+        Some(bad) => Err(file_error(text, value.span().start, Error::range(&field.name(), &field.accepted(), bad))),
     }
 }
 
@@ -98,9 +95,9 @@ mod tests {
     fn refused(from: &str, to: &str, status: Status, needles: &[&str]) {
         assert!(GOLDEN.contains(from), "{from}");
         let e = Planet::from_toml(&GOLDEN.replacen(from, to, 1)).unwrap_err();
-        assert_eq!(e.status, status, "{}", e.message);
+        assert_eq!(e.status, status, "{}", e);
         for needle in needles {
-            assert!(e.message.contains(needle), "`{}` does not say `{needle}`", e.message);
+            assert!(e.to_string().contains(needle), "`{}` does not say `{needle}`", e);
         }
     }
 

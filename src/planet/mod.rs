@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::{Error, Result, Status},
+    error::{Error, Result},
     light::EARTH_WAVELENGTHS_NM,
 };
 
@@ -320,11 +320,11 @@ pub fn rayleigh_scattering_per_m(wavelength_nm: f64) -> f64 {
 }
 
 /// An error of a planet file at a place in its text.
-pub(crate) fn file_error(text: &str, at: usize, status: Status, message: &str) -> Error {
+pub(crate) fn file_error(text: &str, at: usize, error: Error) -> Error {
     let before = &text[..at.min(text.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    Error::new(status, format!("planet file, line {line}, column {column}: {message}"))
+    error.found_in(format_args!("planet file, line {line}, column {column}"))
 }
 
 #[cfg(test)]
@@ -384,14 +384,14 @@ mod tests {
                 let mut planet = Planet::earth();
                 (field.set)(&mut planet)[0] = bad;
                 let e = planet.check().unwrap_err();
-                assert!(e.message.contains(&field.name()) && e.message.contains(&field.accepted()), "{}", e.message);
+                assert!(e.to_string().contains(&field.name()) && e.to_string().contains(&field.accepted()), "{}", e);
             }
         }
         let inside_out = Planet { top_radius_m: 6.3e6, ..Planet::earth() };
-        assert!(inside_out.check().unwrap_err().message.contains("top_radius_m must be above bottom_radius_m"));
+        assert!(inside_out.check().unwrap_err().to_string().contains("top_radius_m must be above bottom_radius_m"));
         let mut glowing = Planet::earth();
         glowing.mie.scattering_per_m[1] *= 2.0;
-        assert!(glowing.check().unwrap_err().message.contains("mie.scattering_per_m must be at most"));
+        assert!(glowing.check().unwrap_err().to_string().contains("mie.scattering_per_m must be at most"));
         let mut flat = Planet::earth();
         (flat.rayleigh.scale_height_m, flat.mie.scale_height_m) = (0.0, 1e6);
         assert!(flat.check().is_ok());

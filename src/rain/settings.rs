@@ -90,14 +90,14 @@ impl RainSettings {
             return Ok(());
         }
         if device.caps().tier == 0 {
-            return Err(Error::unsupported("rain.model integrated: this device has no compute shaders"));
+            return Err(
+                Error::unsupported("integrated needs compute shaders, which this device lacks").within("rain.model")
+            );
         }
         let room = device.device.limits().max_storage_buffer_binding_size / STATE_BYTES;
         if u64::from(self.most_on(device)) + 4 > room {
-            return Err(Error::unsupported(format!(
-                "rain.most_drops above {} with the integrated model on this device",
-                room.saturating_sub(4)
-            )));
+            let what = format!("above {} with the integrated model on this device", room.saturating_sub(4));
+            return Err(Error::unsupported(what).within("rain.most_drops"));
         }
         Ok(())
     }

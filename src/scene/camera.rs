@@ -73,10 +73,10 @@ mod tests {
         let good = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 1.0, 1.6, 0.1);
         assert!(good.validate().is_ok());
         let scaled = Camera { view: good.view * DMat4::from_scale(DVec3::splat(2.0)), ..good };
-        assert!(scaled.validate().unwrap_err().message.contains("camera.view"));
+        assert!(scaled.validate().unwrap_err().to_string().contains("camera.view"));
         let flat = Camera { projection: DMat4::ZERO, ..good };
-        assert!(flat.validate().unwrap_err().message.contains("camera.projection"));
+        assert!(flat.validate().unwrap_err().to_string().contains("camera.projection"));
         let lost = Camera { position: DVec3::new(f64::NAN, 0.0, 0.0), ..good };
-        assert!(lost.validate().unwrap_err().message.contains("camera.position"));
+        assert!(lost.validate().unwrap_err().to_string().contains("camera.position"));
     }
 }

@@ -69,8 +69,8 @@ impl DepthMapping {
     /// [`crate::Status::InvalidArgument`].
     pub fn validate(&self) -> Result<()> {
         if let DepthKind::Logarithmic { c, far_m } = self.kind {
-            check_range("depth.logarithmic_c", c, 1e-9, 1e6, "1/m")?;
-            check_range("depth.logarithmic_far_m", far_m, 1e-3, RANGE_SKY_M, "m")?;
+            check_range("depth_mapping.logarithmic_c", c, 1e-9, 1e6, "1/m")?;
+            check_range("depth_mapping.logarithmic_far_m", far_m, 1e-3, RANGE_SKY_M, "m")?;
         }
         Ok(())
     }
@@ -152,12 +152,18 @@ impl ViewRays {
         let depth = if mapping.clip == ClipSpace::MinusOneToOne { 0.5 * (z + w) } else { z };
         let rays = if camera.is_orthographic() {
             if mapping.kind != DepthKind::Orthographic {
-                return Err(contradiction("perspective or logarithmic, but the projection's rays are parallel"));
+                return Err(contradiction(
+                    "depth_mapping.kind",
+                    "perspective or logarithmic, but the projection's rays are parallel",
+                ));
             }
             Self::parallel(x / w.w, y / w.w, depth / w.w, mapping.reversed)?
         } else {
             if mapping.kind == DepthKind::Orthographic {
-                return Err(contradiction("orthographic, but the projection's rays meet in a point"));
+                return Err(contradiction(
+                    "depth_mapping.kind",
+                    "orthographic, but the projection's rays meet in a point",
+                ));
             }
             Self::central(x, y, depth, w, mapping)?
         };
@@ -204,7 +210,8 @@ impl ViewRays {
         rays.pole.x += turn.x;
         if rays.scale <= 0.0 {
             let has = if mapping.reversed { "reversed" } else { "not reversed" };
-            return Err(contradiction(&format!("{has}, but the projection maps the near plane to the other end")));
+            let what = format!("{has}, but the projection maps the near plane to the other end");
+            return Err(contradiction("depth_mapping.reversed", &what));
         }
         Ok(rays)
     }
@@ -338,8 +345,8 @@ impl ViewRays {
     }
 }
 
-fn contradiction(what: &str) -> Error {
-    Error::new(crate::Status::InvalidArgument, format!("depth mapping says {what}"))
+fn contradiction(field: &str, what: &str) -> Error {
+    Error::invalid(field, format_args!("says {what}"))
 }
 
 /// [`ViewRays`] as shaders read it; offsets are tested against naga's.

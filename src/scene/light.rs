@@ -115,7 +115,7 @@ mod tests {
             (HostLight { outer_deg: 5.0, ..lamp() }, "light.outer_deg"),
         ] {
             let e = bad.validate().unwrap_err();
-            assert!(e.message.contains(name), "{}", e.message);
+            assert!(e.to_string().contains(name), "{}", e);
         }
         lamp().validate().unwrap();
     }

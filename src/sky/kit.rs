@@ -449,7 +449,7 @@ impl Kit {
             }
             Ok(None) => Ok(None),
             Err(e) => {
-                log::warn!("the sky's tables are built anew: {}", e.message);
+                log::warn!("the sky's tables are built anew: {}", e);
                 Ok(None)
             }
         }
@@ -467,7 +467,7 @@ impl Kit {
             .collect::<Result<Vec<_>>>()
             .and_then(|tables| cache::write(directory, cache::key(&set.planet, &self.settings)?, &tables));
         if let Err(e) = written {
-            log::warn!("the sky's tables are not kept: {}", e.message);
+            log::warn!("the sky's tables are not kept: {}", e);
         }
     }
 }

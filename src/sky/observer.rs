@@ -179,9 +179,9 @@ mod tests {
         let mut o = Observer::under_sun(&earth, 1.0, 0.5);
         assert!(o.check().is_ok());
         o.altitude_m = f64::NAN;
-        assert!(o.check().unwrap_err().message.contains("altitude_m"));
+        assert!(o.check().unwrap_err().to_string().contains("altitude_m"));
         o.altitude_m = 0.0;
         o.lamps[1] = Some(Lamp { toward: [0.0; 3], ..Lamp::sun_at_zenith_angle(&earth, 0.0) });
-        assert!(o.check().unwrap_err().message.contains("lamp.toward"));
+        assert!(o.check().unwrap_err().to_string().contains("lamp.toward"));
     }
 }

@@ -201,15 +201,16 @@ impl SkySettings {
             return Err(Error::range("wavelengths", &accepted, self.wavelengths));
         }
         // Every device draws into 2048 texels; an atlas must not be wider.
-        for (name, a, b) in [
-            ("suns x rule_azimuths", self.suns, self.rule_azimuths),
-            ("suns x azimuths", self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES)),
-            ("altitudes x 2 rule_zeniths", self.altitudes, 2 * self.rule_zeniths),
-            ("altitudes x zeniths x wavelengths/3", self.altitudes * self.layers(), self.zeniths),
-            ("air_azimuths x air_slices", self.air_azimuths, self.air_slices),
+        for (name, times, (a, b)) in [
+            ("suns", "rule_azimuths", (self.suns, self.rule_azimuths)),
+            ("suns", "azimuths", (self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES))),
+            ("altitudes", "2 rule_zeniths", (self.altitudes, 2 * self.rule_zeniths)),
+            ("altitudes", "zeniths x wavelengths/3", (self.altitudes * self.layers(), self.zeniths)),
+            ("air_azimuths", "air_slices", (self.air_azimuths, self.air_slices)),
         ] {
             if a * b > 2048 {
-                return Err(Error::range(name, "at most 2048 texels", a * b));
+                let rest = format!("x {times} must be at most 2048 texels, got {}", a * b);
+                return Err(Error::invalid(name, rest));
             }
         }
         Ok(())
@@ -226,16 +227,16 @@ mod tests {
             assert_eq!(SkyModel::from_name(name).unwrap(), model);
             assert_eq!(model.name(), name);
         }
-        assert!(SkyModel::from_name("best").unwrap_err().message.contains("directional"));
+        assert!(SkyModel::from_name("best").unwrap_err().to_string().contains("directional"));
         assert!(SkySettings::default().check().is_ok());
         let e = SkySettings { sky_panels: 0, ..Default::default() }.check().unwrap_err();
-        assert!(e.message.contains("sky_panels") && e.message.contains("[1, 32]"), "{}", e.message);
+        assert!(e.to_string().contains("sky_panels") && e.to_string().contains("[1, 32]"), "{}", e);
         let uneven = SkySettings { wavelengths: 10, ..Default::default() };
-        assert!(uneven.check().unwrap_err().message.contains("wavelengths must be a multiple of 3"));
+        assert!(uneven.check().unwrap_err().to_string().contains("wavelengths must be a multiple of 3"));
         let marched = SkySettings { wavelengths: 9, ..SkySettings::with_model(SkyModel::BruteForce) };
-        assert!(marched.check().unwrap_err().message.contains("wavelengths must be 3 with the model brute-force"));
+        assert!(marched.check().unwrap_err().to_string().contains("wavelengths must be 3 with the model brute-force"));
         assert!(SkySettings { wavelengths: 15, ..Default::default() }.check().is_ok());
         let wide = SkySettings { suns: 128, azimuths: 24, ..Default::default() };
-        assert!(wide.check().unwrap_err().message.contains("suns x azimuths"));
+        assert!(wide.check().unwrap_err().to_string().contains("suns x azimuths"));
     }
 }

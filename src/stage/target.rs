@@ -98,9 +98,10 @@ pub(crate) fn check_color(texture: &wgpu::Texture) -> Result<()> {
             | F::Rg11b10Ufloat
     ) {
         return Err(Error::unsupported(format!(
-            "color format {format:?}; supported: Rgba8Unorm, Bgra8Unorm (both with or without Srgb), Rgb10a2Unorm, \
-             Rg11b10Ufloat, Rgba16Float, Rgba32Float"
-        )));
+            "{format:?}; supported: Rgba8Unorm, Bgra8Unorm (both with or without Srgb), Rgb10a2Unorm, Rg11b10Ufloat, \
+             Rgba16Float, Rgba32Float"
+        ))
+        .within("color.format"));
     }
     check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)
 }
@@ -140,10 +141,8 @@ pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
 pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
-        return Err(Error::unsupported(format!(
-            "mask format {:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm",
-            texture.format()
-        )));
+        return Err(Error::unsupported(format!("{:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm", texture.format()))
+            .within("mask.format"));
     }
     check_of_one_sample("mask", texture, color)
 }
@@ -155,10 +154,8 @@ pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
 pub(crate) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Bgra8Unorm) {
-        return Err(Error::unsupported(format!(
-            "surface_classes format {:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm",
-            texture.format()
-        )));
+        return Err(Error::unsupported(format!("{:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm", texture.format()))
+            .within("surface_classes.format"));
     }
     check_of_one_sample("surface_classes", texture, color)
 }
@@ -172,8 +169,9 @@ pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
     let format = texture.format();
     if !matches!(format, F::Rgba8Unorm | F::Bgra8Unorm | F::Rgb10a2Unorm | F::Rgba16Float | F::Rgba32Float) {
         return Err(Error::unsupported(format!(
-            "normals format {format:?}; supported: Rgba8Unorm, Bgra8Unorm, Rgb10a2Unorm, Rgba16Float, Rgba32Float"
-        )));
+            "{format:?}; supported: Rgba8Unorm, Bgra8Unorm, Rgb10a2Unorm, Rgba16Float, Rgba32Float"
+        ))
+        .within("normals.format"));
     }
     check_of_one_sample("normals", texture, color)
 }

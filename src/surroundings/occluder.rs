@@ -122,8 +122,9 @@ impl Taken {
         let camera = Camera { position: DVec3::ZERO, view: DMat4::IDENTITY, projection: local };
         let kind = if camera.is_orthographic() { DepthKind::Orthographic } else { DepthKind::Perspective };
         let mapping = DepthMapping { kind, reversed: self.reversed, clip: self.clip };
-        let rays = ViewRays::new(&camera, &mapping)
-            .map_err(|e| Error::new(e.status, e.message.replacen("camera.projection", "clip_from_world", 1)))?;
+        let rays = ViewRays::new(&camera, &mapping).map_err(|e| {
+            e.renamed("camera.projection", "clip_from_world").renamed("depth_mapping", "clip_from_world")
+        })?;
         let w = local.row(3);
         let parallel = kind == DepthKind::Orthographic;
         let distance =
@@ -227,7 +228,7 @@ mod tests {
             (Taken { time_s: f64::INFINITY, ..taken() }, "time_s"),
         ] {
             let e = bad.check().unwrap_err();
-            assert!(e.message.contains(name), "{}", e.message);
+            assert!(e.to_string().contains(name), "{}", e);
         }
     }
 }

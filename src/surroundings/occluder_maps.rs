@@ -181,11 +181,11 @@ impl OccluderMaps {
         maps: &[OccluderMap<'_>],
     ) -> Result<()> {
         if maps.len() > MAX_OCCLUDER_MAPS {
-            return Err(Error::range("maps' count", &format!("at most {MAX_OCCLUDER_MAPS}"), maps.len()));
+            return Err(Error::range("maps.len", &format!("at most {MAX_OCCLUDER_MAPS}"), maps.len()));
         }
         let mut list = Vec::with_capacity(maps.len());
         for (i, map) in maps.iter().enumerate() {
-            let named = |e: Error| e.within(&format!("maps[{i}]."));
+            let named = |e: Error| e.within(&format!("maps[{i}]"));
             check_depth(map.depth).map_err(named)?;
             list.push(map.taken.check().map_err(named)?);
         }

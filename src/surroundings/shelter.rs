@@ -336,12 +336,12 @@ mod tests {
             (cut(&[[0.0, 0.0, 1.0, -0.3]]), "leave some"),
         ] {
             let e = bad.validate().unwrap_err();
-            assert!(e.message.contains(name), "{}", e.message);
+            assert!(e.to_string().contains(name), "{}", e);
         }
         for good in [roof(), gable(), cut(&[[0.0, 0.0, 1.0, 0.1999]]), cut(&[[1.0, 0.0, 0.0, 1e6]; 16])] {
             good.validate().unwrap();
         }
         let many = Planes::new(&[[1.0, 0.0, 0.0, 1.0]; 17]).unwrap_err();
-        assert!(many.message.contains("shelter.planes must be at most 16 planes"), "{}", many.message);
+        assert!(many.to_string().contains("shelter.planes must be at most 16 planes"), "{}", many);
     }
 }

@@ -237,7 +237,7 @@ mod tests {
     fn overrides_are_refused_by_name() {
         let e = derive_with(&Weather::default(), &Overrides { wetness: Some(f64::NAN), ..Overrides::default() })
             .unwrap_err();
-        assert!(e.message.contains("overrides.wetness"), "{}", e.message);
+        assert!(e.to_string().contains("overrides.wetness"), "{}", e);
         assert!(derive(&Weather { visibility_m: f64::NAN, ..Weather::default() }).is_err());
     }
 

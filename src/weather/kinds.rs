@@ -222,6 +222,6 @@ mod tests {
         numbers_are_dense(LoftedKind::ALL, LoftedKind::from_u32);
         numbers_are_dense(SurfaceState::ALL, SurfaceState::from_u32);
         let e = CloudKind::from_u32(99).unwrap_err();
-        assert!(e.message.contains("clouds[].kind") && e.message.contains("0..=11"), "{}", e.message);
+        assert!(e.to_string().contains("clouds[].kind") && e.to_string().contains("0..=11"), "{}", e);
     }
 }

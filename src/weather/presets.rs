@@ -69,7 +69,7 @@ fn find(name: &str) -> Result<&'static Preset> {
     PRESETS.iter().find(|p| p.name == name).ok_or_else(|| {
         let names: Vec<&str> = Weather::preset_names().collect();
         let got: String = name.chars().take(40).collect();
-        Error::range("preset", &format!("one of {}", names.join(", ")), format!("{got:?}"))
+        Error::range("name", &format!("one of {}", names.join(", ")), format!("{got:?}"))
     })
 }
 
@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn an_unknown_name_is_answered_with_the_list() {
         let e = Weather::preset("Sunny").unwrap_err();
-        assert!(e.message.contains("thunderstorm") && e.message.contains("Sunny"), "{}", e.message);
+        assert!(e.to_string().contains("thunderstorm") && e.to_string().contains("Sunny"), "{}", e);
         assert!(Weather::preset("").is_err());
     }
 

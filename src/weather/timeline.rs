@@ -85,14 +85,16 @@ impl Timeline {
         check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
         let earliest = self.changes.last().map_or(self.now_s, |c| c.start_s.max(self.now_s));
         if start_s < earliest {
-            return Err(Error::new(
-                Status::WrongOrder,
-                format!("start_time_s must not lie before the last update or change at {earliest} s, got {start_s}"),
-            ));
+            let rest = format!("must not lie before the last update or change at {earliest} s, got {start_s}");
+            return Err(Error::about(Status::WrongOrder, "start_time_s", rest));
         }
         // Of two changes that begin together with a cut, the later call counts; the earlier one never shows.
         if self.changes.len() >= MAX_CHANGES {
-            return Err(Error::range("changes", &format!("at most {MAX_CHANGES} under way or to come"), "one more"));
+            return Err(Error::range(
+                "weather",
+                &format!("one of at most {MAX_CHANGES} changes under way or to come"),
+                "one more",
+            ));
         }
         self.changes.push(Change { start_s, transition_s, to });
         Ok(())
@@ -260,7 +262,7 @@ mod tests {
             [(19.0, 0.0, "start_time_s"), (f64::NAN, 0.0, "start_time_s"), (30.0, -1.0, "transition_s")]
         {
             let e = timeline.change(clear, start, transition).unwrap_err();
-            assert!(e.message.contains(name), "{e}");
+            assert!(e.to_string().contains(name), "{e}");
             assert_eq!(e.status == Status::WrongOrder, start == 19.0);
         }
         timeline.change(clear, 30.0, 0.0).unwrap();
@@ -278,15 +280,15 @@ mod tests {
         assert_eq!(again, timeline);
         assert_eq!(again.at(33.3), timeline.at(33.3));
         let other = text.replacen("version = 1", "version = 2", 1);
-        assert!(Timeline::load(&other).unwrap_err().message.contains("version must be 1"));
+        assert!(Timeline::load(&other).unwrap_err().to_string().contains("version must be 1"));
         for cut in 0..text.len() {
             let e = Timeline::load(&text[..cut]).expect_err("cut short");
             assert_eq!(e.status, Status::Parse, "cut at {cut}");
         }
         let changed = text.replacen("transition_s = 60.0", "transition_s = 61.0", 1);
-        assert!(Timeline::load(&changed).unwrap_err().message.contains("seal"));
+        assert!(Timeline::load(&changed).unwrap_err().to_string().contains("seal"));
         let body = text.split_once('\n').unwrap().1;
         let broken = sealed(&body.replacen("transition_s = 60.0", "transition_s = nan", 1));
-        assert!(Timeline::load(&broken).unwrap_err().message.contains("finite"));
+        assert!(Timeline::load(&broken).unwrap_err().to_string().contains("finite"));
     }
 }

@@ -168,7 +168,7 @@ mod tests {
                 spoil(&mut w, bad);
                 let e = w.validate().expect_err(name);
                 assert_eq!(e.status, Status::InvalidArgument);
-                assert!(e.message.starts_with(&format!("{name} must be in [")), "{name} {bad}: {}", e.message);
+                assert!(e.to_string().starts_with(&format!("{name} must be in [")), "{name} {bad}: {}", e);
             }
         }
     }
@@ -177,15 +177,15 @@ mod tests {
     fn couplings_of_fields_are_refused() {
         let mut w = two_layers();
         w.wind = Wind { gust_m_s: Some(9.0), ..Wind::of(10.0, 0.0) };
-        assert!(w.validate().unwrap_err().message.contains("wind.gust_m_s"));
+        assert!(w.validate().unwrap_err().to_string().contains("wind.gust_m_s"));
         w = two_layers();
         w.precipitation.rate_mm_h = 1.0;
-        assert!(w.validate().unwrap_err().message.contains("precipitation.kind is none"));
+        assert!(w.validate().unwrap_err().to_string().contains("precipitation.kind is none"));
         w = two_layers();
         w.clouds = vec![CloudLayer::new(0.1, 100.0); 17];
-        assert!(w.validate().unwrap_err().message.contains("at most 16"));
+        assert!(w.validate().unwrap_err().to_string().contains("at most 16"));
         w = two_layers();
         w.sea.state = Some(10);
-        assert!(w.validate().unwrap_err().message.contains("sea.state"));
+        assert!(w.validate().unwrap_err().to_string().contains("sea.state"));
     }
 }

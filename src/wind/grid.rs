@@ -51,7 +51,7 @@ impl WindGrid {
         let count = self.nodes.iter().map(|n| *n as usize).product::<usize>();
         if self.velocities_m_s.len() != count {
             let wanted = format!("{count}, one a node");
-            return Err(Error::range("wind_grid.velocities_m_s' count", &wanted, self.velocities_m_s.len()));
+            return Err(Error::range("wind_grid.velocities_m_s.len", &wanted, self.velocities_m_s.len()));
         }
         let slow = |v: &[f32; 3]| DVec3::from(v.map(f64::from)).length() <= MAX_SPEED_M_S;
         match self.velocities_m_s.iter().position(|v| !slow(v)) {
@@ -140,10 +140,10 @@ mod tests {
             (WindGrid { nodes: [5, 4, 33], ..grid() }, "nodes[2]"),
             (WindGrid { nodes: [1, 4, 3], ..grid() }, "nodes[0]"),
             (torn, "velocities_m_s[7]"),
-            (short, "velocities_m_s' count must be 60"),
+            (short, "velocities_m_s.len must be 60"),
         ] {
             let e = bad.validate().unwrap_err();
-            assert!(e.message.contains(&format!("wind_grid.{name}")), "{}", e.message);
+            assert!(e.to_string().contains(&format!("wind_grid.{name}")), "{}", e);
         }
     }
 }

@@ -23,8 +23,7 @@ impl World {
             return Err(Error::range("rain_areas", &format!("at most {MAX_AREAS}"), areas.len()));
         }
         for (i, area) in areas.iter().enumerate() {
-            let named =
-                |e: Error| Error::new(e.status, e.message.replacen("rain_area.", &format!("rain_areas[{i}]."), 1));
+            let named = |e: Error| e.renamed("rain_area", &format!("rain_areas[{i}]"));
             self.check_region(area).map_err(named)?;
         }
         self.set.regions.clear();

@@ -49,10 +49,7 @@ fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     if other.is_empty() {
         return Ok(());
     }
-    Err(Error::new(
-        Status::InvalidArgument,
-        format!("state must be of a context that was created alike; other is {}", other.join(", ")),
-    ))
+    Err(Error::invalid("state", format!("must be of a context that was created alike; other is {}", other.join(", "))))
 }
 
 /// Where counting goes on: at the end of what `timeline` has forgotten.
@@ -155,7 +152,7 @@ impl World {
         if !self.are_valid(&saved.areas, &timeline) {
             return Err(parse_error("areas must be as they can be set"));
         }
-        let mut beside = saved.settings.checked().map_err(|e| e.within("saved state: "))?;
+        let mut beside = saved.settings.checked().map_err(|e| e.found_in("saved state"))?;
         let shelters = std::mem::take(&mut beside.shelters);
         let set = Settings { shelters, regions: saved.areas, given_sun, given_moon, utc_at_zero, undimmed: false };
         Ok(LoadedWorld {

@@ -30,7 +30,7 @@ fn an_area_rains_where_it_is_and_a_bad_one_is_refused_by_name() {
     let rates = || [0.0, 1750.0, 5000.0, 9000.0].map(|x| (rate(&world, x) * 1e3).round() * 1e-3);
     assert_eq!(rates(), [24.0, 12.0, 0.0, 3.0]);
     for (bad, wanted) in [
-        (wk_rain_area { rate_mm_h: f64::NAN, ..square }, "areas[1].rate_mm_h must be finite"),
+        (wk_rain_area { rate_mm_h: f64::NAN, ..square }, "areas[1].rate_mm_h must be finite and in [0, 500], got NaN"),
         (wk_rain_area { rim_m: 3000.0, ..shower }, "areas[1].rim_m must be in [1, 2000]"),
         (wk_rain_area { corner_count: 2, ..square }, "areas[1].corner_count must be in [3, 8]"),
         (wk_rain_area { at_s: 1e11, ..shower }, "areas[1].at_s must be in"),

@@ -221,6 +221,7 @@ fn wrong_handles_are_named_and_never_followed() {
 const WITHOUT: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
+    "wk_last_error_field",
     "wk_version",
     "wk_weather_from_preset",
     "wk_get_preset",

@@ -11,6 +11,8 @@ mod handles;
 mod limits;
 mod plan;
 mod queries;
+#[path = "../support/refusals.rs"]
+mod refusals;
 mod shelters;
 mod sky;
 mod state;

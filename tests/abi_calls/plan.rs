@@ -98,13 +98,17 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         assert!(text.starts_with(&format!("wk_view_set_budget: {names}")), "{text}");
     };
     for importance in [-0.1, 1.1] {
-        wished(&[wish(WK_PART_FOG, importance)], "budget.importance of fog must be in [0, 1], got");
+        wished(&[wish(WK_PART_FOG, importance)], "budget.wishes[0].importance must be in [0, 1], got");
+        // By its place in the list, which is not its part's number.
+        let behind = [wish(WK_PART_RAIN, 0.5), wish(WK_PART_FOG, importance), wish(WK_PART_AIR, 0.5)];
+        wished(&behind, "budget.wishes[1].importance must be in [0, 1], got");
+        wished(&[behind[0], behind[2], behind[1]], "budget.wishes[2].importance must be in [0, 1], got");
     }
     let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, got 4";
     wished(&[wish(WK_PART_FOG, 0.5), wish(4, 0.5)], &format!("budget.wishes[1].part {parts}"));
     wished(&[wish(WK_PART_FOG, 0.5); 2], "budget.wishes[1].part must be a part that is not in the list yet, got 1");
-    wished(&[at_rung(WK_PART_RAIN, 3)], "budget.rung of rain must be in [0, 2]: drops, cones, none, got 3");
-    wished(&[at_rung(WK_PART_AIR, 0); 5], "budget.wishes");
+    wished(&[at_rung(WK_PART_RAIN, 3)], "budget.wishes[0].rung must be in [0, 2] for rain: drops, cones, none, got 3");
+    wished(&[at_rung(WK_PART_AIR, 0); 5], "budget.wish_count must be at most 4, got 5");
     wished(&[wk_part_wish { has: 4, ..wish(WK_PART_AIR, 0.5) }], "budget.wishes[0].has");
     for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
         assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);
@@ -226,7 +230,7 @@ fn a_contrast_gain_left_at_zero_is_natures_and_the_report_says_what_was_drawn_wi
         drawn(&world);
         assert_eq!(report(&world).contrast_gain, applied);
     }
-    assert!(set(f64::NAN).1.contains("rain.contrast_gain must be finite"));
+    assert!(set(f64::NAN).1.contains("rain.contrast_gain must be finite and in [1, 16], got NaN"));
     for gain in [0.5, -1.0, 16.1] {
         let (status, text) = set(gain);
         assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);

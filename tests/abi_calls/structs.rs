@@ -238,7 +238,7 @@ fn floats_that_are_no_numbers_are_named() {
         for (_, field, offset, wide, count) in abi::floats().into_iter().filter(|f| f.0 == case.structure) {
             for i in 0..count {
                 let name = if count > 1 { format!("{field}[{i}]") } else { field.to_owned() };
-                let name = format!("{}.{name} must be finite, got", case.parameter);
+                let name = format!("{}.{name} must be finite", case.parameter);
                 for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                     let mut bytes = Bytes::of(case.structure, 0);
                     if wide {

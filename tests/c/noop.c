@@ -70,6 +70,7 @@ static void draw(wk_view *view, wk_texture *color, wk_texture *depth, uint64_t f
     CHECK(wk_view_record(view, &frame, WK_STAGE_ALL));
     EXPECT(wk_view_record(view, &frame, WK_STAGE_ALL) == WK_ERROR_WRONG_ORDER);
     EXPECT(strstr(wk_last_error_message(), "wk_view_record: ") != NULL);
+    EXPECT(strcmp(wk_last_error_field(), "stages") == 0);
     CHECK(wk_view_get_report(view, &report));
     EXPECT(report.frame_id == frame_id && report.passes > 0);
 }

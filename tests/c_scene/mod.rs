@@ -4,18 +4,20 @@ pub mod ground;
 pub mod loss;
 pub mod marks;
 pub mod own;
+#[path = "../support/refusals.rs"]
+mod refusals;
 pub mod veil;
 
-use std::ffi::{CStr, c_void};
+use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use crate::SIZE;
 use welkin::capi::{abi, context::*, device::*, frame::*, sky::*, status::*, texture::*, timeline::*, view::*};
 
-/// The thread's last message.
+/// The thread's last message, whose field is held against the header.
 pub fn message() -> String {
-    // SAFETY: the function promises a string.
-    unsafe { CStr::from_ptr(wk_last_error_message()) }.to_string_lossy().into_owned()
+    assert_eq!(refusals::field_fault(), None);
+    refusals::message()
 }
 
 /// Fails with the message unless the call succeeded.

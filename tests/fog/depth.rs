@@ -137,7 +137,7 @@ fn coplanar_surfaces_stay_apart_on_the_gpu_as_far_as_the_buffer_separates_them()
 #[test]
 fn contradictions_and_bad_constants_are_named() {
     let good = &cameras::all()[0];
-    let says = |camera: &Camera, mapping: DepthMapping| ViewRays::new(camera, &mapping).unwrap_err().message;
+    let says = |camera: &Camera, mapping: DepthMapping| ViewRays::new(camera, &mapping).unwrap_err().to_string();
     let wrong = DepthMapping { reversed: true, ..good.mapping };
     assert!(says(&good.camera, wrong).contains("reversed"));
     let wrong = DepthMapping { kind: DepthKind::Orthographic, ..good.mapping };

@@ -260,7 +260,8 @@ fn edges_of_the_ranges_stay_finite() {
 #[test]
 fn bad_numbers_are_refused_by_name() {
     let good = slab(150.0, 0.0, 10.0, 1.0);
-    let says = |layer: FogLayer| FogModel::new(&Law::Layer(layer), &noon(), &view(2.0, EARTH_M)).unwrap_err().message;
+    let says =
+        |layer: FogLayer| FogModel::new(&Law::Layer(layer), &noon(), &view(2.0, EARTH_M)).unwrap_err().to_string();
     assert!(says(FogLayer { extinction_per_m: f64::NAN, ..good }).contains("fog.extinction_per_m"));
     assert!(says(FogLayer { albedo: [0.5, 1.5, 0.5], ..good }).contains("fog.albedo"));
     assert!(says(slab(150.0, 10.0, 0.0, 1.0)).contains("fog.top_m"));
@@ -269,9 +270,9 @@ fn bad_numbers_are_refused_by_name() {
     let mut light = noon();
     light.sun_irradiance[1] = f64::NAN;
     let e = FogModel::new(&Law::Layer(good), &light, &view(2.0, EARTH_M)).unwrap_err();
-    assert!(e.message.contains("fog.sun_irradiance"));
+    assert!(e.to_string().contains("fog.sun_irradiance"));
     let e = FogModel::new(&Law::Layer(good), &noon(), &view(f64::NAN, EARTH_M)).unwrap_err();
-    assert!(e.message.contains("altitude_m"));
+    assert!(e.to_string().contains("altitude_m"));
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn csv_goes_through_and_faults_are_placed() {
     let says = |text: &str| {
         let e = probe_csv(device(), 1000.0, text).unwrap_err();
         assert_eq!(e.status, Status::Parse);
-        e.message
+        e.to_string()
     };
     assert!(says("").contains("line 1"));
     assert!(says("distance\n5\n").contains("distance_m"));
@@ -54,7 +54,7 @@ fn csv_goes_through_and_faults_are_placed() {
     for bad in ["nan", "-1", "inf", "1e10", "5m"] {
         assert!(says(&format!("distance_m\n{bad}\n")).starts_with("line 2, column 1"));
     }
-    assert!(probe(device(), f64::NAN, &[1.0]).unwrap_err().message.contains("visibility_m"));
-    assert!(probe(device(), 0.5, &[1.0]).unwrap_err().message.contains("visibility_m"));
+    assert!(probe(device(), f64::NAN, &[1.0]).unwrap_err().to_string().contains("visibility_m"));
+    assert!(probe(device(), 0.5, &[1.0]).unwrap_err().to_string().contains("visibility_m"));
     assert!(probe(device(), 50.0, &[]).unwrap().is_empty());
 }

@@ -11,7 +11,8 @@ use welkin::capi::{
 
 use crate::{
     dice::Dice,
-    structs::{MOST, Struct, message},
+    refusals::message,
+    structs::{MOST, Struct},
     texts,
 };
 
@@ -673,6 +674,7 @@ pub const CALLS: &[(&str, Call)] = &[
 pub const ELSEWHERE: &[&str] = &[
     "wk_status_name",
     "wk_last_error_message",
+    "wk_last_error_field",
     "wk_set_log_callback",
     "wk_device_create_for_window",
     "wk_device_create_opengl",

@@ -1,15 +1,11 @@
 //! What every answer of the C interface must be like, whatever was asked.
 
-use std::collections::BTreeSet;
+use welkin::capi::status::*;
 
-use welkin::capi::{abi, status::*};
+use crate::refusals::{PUBLIC, field_fault, message};
 
-use crate::structs::message;
-
-/// Names that a host can find in the header: fields of structs and parameters of functions.
-pub struct Judge {
-    public: BTreeSet<&'static str>,
-}
+/// What holds for every answer.
+pub struct Judge;
 
 /// Words of the inside, which say nothing to a host.
 const INTERNAL: &[&str] = &[
@@ -31,17 +27,6 @@ const INTERNAL: &[&str] = &[
 ];
 
 impl Judge {
-    pub fn new() -> Self {
-        let mut public: BTreeSet<&'static str> =
-            abi::structs().into_iter().flat_map(|s| s.3.into_iter().map(|f| f.0)).collect();
-        for call in abi::HEADER.split("WK_API").skip(1) {
-            let inside = call.split(';').next().unwrap_or_default().split('(').nth(1).unwrap_or_default();
-            let parameters = inside.trim_end_matches(')').split(',');
-            public.extend(parameters.filter_map(|p| p.rsplit([' ', '*']).next()));
-        }
-        Self { public }
-    }
-
     /// What is wrong with an answer of `function`, if anything.
     pub fn fault(&self, function: &str, status: wk_status) -> Option<String> {
         if status >= 0 {
@@ -61,9 +46,9 @@ impl Judge {
             return Some(format!("the message has {} bytes: {text:?}", what.len()));
         }
         let mut words = what.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        if !words.any(|w| self.public.contains(w)) {
+        if !words.any(|w| PUBLIC.contains(w)) {
             return Some(format!("the message names no field or parameter of the header: {text:?}"));
         }
-        None
+        field_fault()
     }
 }

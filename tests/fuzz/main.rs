@@ -6,6 +6,8 @@
 mod calls;
 mod dice;
 mod judge;
+#[path = "../support/refusals.rs"]
+mod refusals;
 mod structs;
 mod texts;
 
@@ -62,7 +64,7 @@ fn play(seed: u64, judge: &Judge, tally: &mut Tally, aloud: bool) {
         let start = Instant::now();
         let answer = call(&mut dice, &mut world);
         if aloud {
-            let text = if answer.status < 0 { structs::message() } else { String::new() };
+            let text = if answer.status < 0 { refusals::message() } else { String::new() };
             println!("    {} in {:?} {text}", answer.status, start.elapsed());
         }
         let slowest = tally.slowest.entry(function).or_default();
@@ -81,7 +83,7 @@ fn every_function_has_a_line() {
 
 #[test]
 fn random_calls_are_answered_by_name() {
-    let judge = Judge::new();
+    let judge = Judge;
     let mut tally = Tally::default();
     let only = std::env::var("WELKIN_FUZZ_SEED").ok().map(|s| s.parse::<u64>().expect("WELKIN_FUZZ_SEED is a number"));
     if let Some(seed) = only {
@@ -118,7 +120,7 @@ fn random_calls_are_answered_by_name() {
 /// Damages one kind of text at a time, many times over, and hands it to the function that reads it.
 #[test]
 fn damaged_texts_are_read_or_refused_by_name() {
-    let judge = Judge::new();
+    let judge = Judge;
     let mut tally = Tally::default();
     let many = if std::env::var_os("WELKIN_ACCEPT").is_some() { 10 } else { 1 };
     let readers = [
@@ -158,7 +160,7 @@ fn damaged_texts_are_read_or_refused_by_name() {
 /// device works beside it.
 #[test]
 fn a_lost_device_is_answered_by_every_call() {
-    let judge = Judge::new();
+    let judge = Judge;
     for seed in 0..4 {
         let mut dice = Dice::new(seed);
         let mut world = World::new();
@@ -167,7 +169,7 @@ fn a_lost_device_is_answered_by_every_call() {
             let answer = call(&mut dice, &mut world);
             let lost = answer.status == WK_ERROR_DEVICE_LOST;
             assert!(answer.faults.is_empty(), "{function}: {:?}", answer.faults);
-            let text = structs::message();
+            let text = refusals::message();
             assert!(!lost || text.contains("destroy it and create a new one"), "{function}: {text}");
             assert!(lost || judge.fault(function, answer.status).is_none(), "{function}: {} {text}", answer.status);
         }
@@ -180,7 +182,7 @@ fn a_lost_device_is_answered_by_every_call() {
 /// Three threads call at random on the same objects, exclusive ones too, and destroy what the others use: each call is answered.
 #[test]
 fn threads_that_break_the_rules_are_answered() {
-    let judge = Judge::new();
+    let judge = Judge;
     for round in 0..if std::env::var_os("WELKIN_ACCEPT").is_some() { 40 } else { 6 } {
         let mut world = World::new();
         let worlds = std::thread::scope(|scope| {

@@ -1,16 +1,10 @@
 //! Structs of the header with some fields changed at random, and the lists they point to.
 
-use std::ffi::{CStr, CString, c_void};
+use std::ffi::{CString, c_void};
 
 use welkin::capi::{abi, status::*};
 
 use crate::dice::Dice;
-
-/// The calling thread's last message.
-pub fn message() -> String {
-    // SAFETY: the function promises a string.
-    unsafe { CStr::from_ptr(wk_last_error_message()) }.to_string_lossy().into_owned()
-}
 
 /// The most elements of a list that a call is given.
 pub const MOST: u32 = 5;

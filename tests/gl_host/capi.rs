@@ -114,7 +114,7 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
         ("frame.target.color must be", |t| t.color.name = 4711),
         ("frame.target.color must be", |t| t.color.kind = WK_OPENGL_FRAMEBUFFER),
         ("frame.target.color must be given", |t| t.color.kind = WK_OPENGL_NONE),
-        ("frame.target.width and target.height must be", |t| t.width = 1),
+        ("frame.target.width must be of the size of the color image", |t| t.width = 1),
         ("frame.target.color.kind must be one of WK_OPENGL_NONE", |t| t.color.kind = 9),
         ("frame.target.multisample must be one of", |t| t.multisample = 7),
         ("frame.target.struct_type must be WK_STRUCT_TYPE_OPENGL_TARGET", |t| {
@@ -171,7 +171,7 @@ fn a_window_of_another_size_than_told_is_refused() {
             ] {
                 let (status, text) = recorded(&scene, &with(width, height), id);
                 assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{width} x {height}: {text}");
-                assert!(text.contains("frame.target.width and target.height must be the window's size now"), "{text}");
+                assert!(text.contains("frame.target.width must be with height the window's size now"), "{text}");
                 assert!(text.contains(&format!("{width} x {height} for a {relation} one")), "{text}");
             }
         }
@@ -195,7 +195,7 @@ fn a_framebuffer_of_another_size_than_told_is_refused() {
     let wrong = wk_opengl_target { width: SIZE.0 + 1, ..target(image, image) };
     let (status, text) = recorded(&scene, &wrong, 1);
     assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{text}");
-    assert!(text.contains("the size of target.color, 64 x 48"), "{text}");
+    assert!(text.contains("frame.target.width must be of the size of the color image, 64 x 48"), "{text}");
     assert_eq!(recorded(&scene, &target(image, image), 2), (WK_OK, String::new()));
     scene.destroy();
     // SAFETY: a live handle.

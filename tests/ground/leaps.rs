@@ -101,7 +101,9 @@ fn what_is_not_there_yet_is_shown_as_far_as_it_has_come() {
     // There is no state to save, a later time is not taken, an earlier one is refused, and a load ends it.
     for e in [context.save().unwrap_err(), context.state_hash().unwrap_err()] {
         assert!(
-            e.status == Status::WrongOrder && e.message.contains("wk_context_update") && e.message.contains("7000")
+            e.status == Status::WrongOrder
+                && e.to_string().contains("wk_context_update")
+                && e.to_string().contains("7000")
         );
     }
     assert_eq!(context.update_within(9000.0, Duration::ZERO).unwrap(), Status::Pending);

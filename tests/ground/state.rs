@@ -67,11 +67,11 @@ fn a_saved_ground_goes_on_as_if_nothing_had_been() {
     assert_eq!(first.save().unwrap(), second.save().unwrap());
     let mut reported = context(&host, GroundModel::Reported);
     let e = reported.load(&saved).unwrap_err();
-    assert!(e.status == Status::InvalidArgument && e.message.contains("ground_model"), "{e}");
+    assert!(e.status == Status::InvalidArgument && e.to_string().contains("ground_model"), "{e}");
     let text = String::from_utf8(saved).unwrap();
     let broken = text.replacen("film_mm = ", "film_mm = -", 1);
     let e = second.load(&resealed(&broken)).unwrap_err();
-    assert!(text != broken && e.status == Status::Parse && e.message.contains("ground must be"), "{e}");
+    assert!(text != broken && e.status == Status::Parse && e.to_string().contains("ground must be"), "{e}");
     // A context without simulation says nothing of the ground in what it saves.
     assert!(!String::from_utf8(reported.save().unwrap()).unwrap().contains("film_mm"));
     assert!(reported.ground_water().is_none());

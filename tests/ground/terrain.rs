@@ -129,7 +129,7 @@ fn a_saved_terrain_goes_on_as_if_nothing_had_been() {
         let broken = text.replacen(from, &to, 1);
         assert!(broken != text);
         let e = second.load(&resealed(&broken)).unwrap_err();
-        assert!(e.status == Status::Parse && e.message.contains("terrain"), "{e}");
+        assert!(e.status == Status::Parse && e.to_string().contains("terrain"), "{e}");
     }
     assert!(cells(&first) == cells(&second));
     // A state without a terrain takes it away; set again, it begins as the ground is.
@@ -343,7 +343,7 @@ fn a_bad_grid_is_refused_and_the_running_one_stays() {
         (GroundGrid { heights_m: vec![f32::NAN; 1200], ..grid() }, "ground_grid.heights_m[0]"),
     ] {
         let e = context.set_ground_grid(Some(bad)).unwrap_err();
-        assert!(e.status == Status::InvalidArgument && e.message.contains(name), "{e}");
+        assert!(e.status == Status::InvalidArgument && e.to_string().contains(name), "{e}");
     }
     context.set_ground_grid(Some(grid())).unwrap();
     assert!(cells(&context) == before, "the same grid again keeps its water");

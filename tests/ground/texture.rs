@@ -58,7 +58,7 @@ fn contexts() -> [Context; 3] {
 fn it_has_the_cells_and_stays_until_another_grid_comes() {
     for mut context in contexts() {
         let e = context.ground_texture().unwrap_err();
-        assert!(e.status == Status::WrongOrder && e.message.contains("ground_grid"), "{e}");
+        assert!(e.status == Status::WrongOrder && e.to_string().contains("ground_grid"), "{e}");
         context.set_ground_grid(Some(grid())).unwrap();
         let dry = assert_shown(&mut context);
         context.set_weather(&rain(12.0, 4.0), 0.0, 0.0).unwrap();

@@ -43,7 +43,7 @@ fn a_plan_is_saved_once_it_is_made() {
     bench.set(&near);
     bench.planned(&near, 1);
     let e = bench.view.save_plan().unwrap_err();
-    assert!(e.status == welkin::Status::WrongOrder && e.message.contains("not made yet"), "{e:?}");
+    assert!(e.status == welkin::Status::WrongOrder && e.to_string().contains("not made yet"), "{e:?}");
     bench.planned(&near, SETTLED);
     bench.view.save_plan().unwrap();
 }
@@ -63,7 +63,7 @@ fn a_plan_that_is_no_plan_changes_nothing() {
     ] {
         assert!(text.contains(from));
         let e = bench.view.load_plan(text.replacen(from, to, 1).as_bytes()).unwrap_err();
-        assert!(e.message.starts_with(says), "{}", e.message);
+        assert!(e.to_string().starts_with(says), "{}", e);
         assert_eq!(bench.draw(&near, true, FrameFlags(0)), before);
         assert_eq!(bench.view.plan().parts, plan.parts);
     }

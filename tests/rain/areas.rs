@@ -417,11 +417,11 @@ fn bad_areas_are_named_and_leave_the_running_ones() {
         (RainArea { at_s: nan, ..good }, "rain_areas[1].at_s"),
     ] {
         let e = host.context.set_rain_areas(&[good, bad]).unwrap_err();
-        assert!(e.message.contains(name), "{}", e.message);
+        assert!(e.to_string().contains(name), "{}", e);
         assert_eq!(host.context.state_hash().unwrap(), hash, "{name}: what ran has changed");
     }
     let e = host.context.set_rain_areas(&[good; 17]).unwrap_err();
-    assert!(e.message.contains("16"), "{}", e.message);
+    assert!(e.to_string().contains("16"), "{}", e);
     assert_eq!(host.context.rain_areas().len(), 1);
 }
 

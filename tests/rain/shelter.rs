@@ -316,7 +316,7 @@ fn what_is_no_map_is_named_and_the_maps_before_stay() {
         (vec![one, one, OccluderMap { depth: &good, taken: no_number }], "maps[2].clip_from_world"),
     ] {
         let e = host.context.set_occluder_maps(&maps).unwrap_err();
-        assert!(e.message.contains(name), "{}", e.message);
+        assert!(e.to_string().contains(name), "{}", e);
         assert_eq!(through(&mut host, &[]), kept, "the map before stays: {name}");
     }
     host.context.set_occluder_maps(&[]).unwrap();

@@ -130,9 +130,12 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
         ("frame.target.color.width must be in [1,", |i| i.width = 0),
         ("frame.target.color.samples must be 1, 2, 4 or 8", |i| i.samples = 3),
         ("frame.target.color.format must be a colour format", |i| i.format = vk::Format::D32_SFLOAT.as_raw() as u32),
-        ("frame.target.color.final_layout: VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL is for depth images", |i| {
-            i.final_layout = L::DEPTH_ATTACHMENT_OPTIMAL.as_raw() as u32;
-        }),
+        (
+            "frame.target.color.final_layout must not be VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, which is for depth images",
+            |i| {
+                i.final_layout = L::DEPTH_ATTACHMENT_OPTIMAL.as_raw() as u32;
+            },
+        ),
         ("frame.target.color.layer must be below array_layers (2)", |i| (i.array_layers, i.layer) = (2, 2)),
     ];
     for (wanted, change) in images {
@@ -143,8 +146,8 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
     }
     let many = vec![none; 17];
     let semaphores = [
-        ("frame.target.waits's count must be at most 16, got 17", 17, size_of::<wk_vulkan_semaphore>()),
-        ("frame.target.waits's stride must be", 1, 4),
+        ("frame.target.wait_count must be at most 16, got 17", 17, size_of::<wk_vulkan_semaphore>()),
+        ("frame.target.wait_stride must be", 1, 4),
         ("frame.target.waits[0].semaphore must be a live VkSemaphore", 1, size_of::<wk_vulkan_semaphore>()),
     ];
     for (wanted, count, stride) in semaphores {

@@ -1,17 +1,18 @@
 //! A window through the C functions: what befalls it is answered, and the same device, context and view draw on afterwards.
 
-use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 use std::sync::atomic::Ordering;
 
 use welkin::capi::{abi, context::*, device::*, frame::*, status::*, surface::*, view::*};
 use welkin::gpu::surface::NativeWindow;
 
+use crate::refusals;
 use crate::x11::{Server, Window, X_ERRORS};
 
+/// The thread's last message, whose field is held against the header.
 fn message() -> String {
-    // SAFETY: the function promises a string.
-    unsafe { CStr::from_ptr(wk_last_error_message()) }.to_string_lossy().into_owned()
+    assert_eq!(refusals::field_fault(), None);
+    refusals::message()
 }
 
 #[track_caller]

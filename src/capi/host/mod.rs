@@ -42,12 +42,12 @@ impl Host {
     }
 
     /// # Errors
-    /// [`Status::Unsupported`] for `what` is made for a host's own shaders where it has none.
-    pub(super) fn check_own_shaders(&self, what: &str) -> Result<()> {
+    /// [`Status::Unsupported`] about `param`, for `what` is made for a host's own shaders, of which this device has none.
+    pub(super) fn check_own_shaders(&self, param: &str, what: &str) -> Result<()> {
         match self {
             Self::Own => {
-                let text = format!("{what}: they are for hosts that draw with OpenGL, Vulkan or wgpu themselves");
-                Err(Error::unsupported(text))
+                let text = format!("{what} are for hosts that draw with OpenGL, Vulkan or wgpu themselves");
+                Err(Error::unsupported(text).within(param))
             }
             #[cfg(not(any(target_os = "macos", target_os = "ios")))]
             Self::OpenGl(_) | Self::Vulkan(_) => Ok(()),
@@ -139,15 +139,7 @@ unsafe fn target<T: layout::Layout>(p: *const c_void) -> Result<T> {
     Ok(target)
 }
 
-/// Names what the Rust side calls `color` or `cd_m2_per_unit` as the header does.
-pub(super) fn in_frame(e: Error) -> Error {
-    let starts = |names: &[&str]| names.iter().any(|n| e.message.starts_with(n));
-    let prefix = if starts(&["depth mapping", "cd_m2_per_unit"]) {
-        "frame."
-    } else if starts(&["color", "depth", "mask", "surface_classes", "normals"]) {
-        "frame.target."
-    } else {
-        ""
-    };
-    e.within(prefix)
+/// An occluder map's error with the field's name in the header: `image` is the one that holds the depth on this host.
+fn in_map(image: &'static str) -> impl Fn(Error) -> Error {
+    move |e| e.map_field(|field| field.replacen("].depth", &format!("].{image}"), 1))
 }

@@ -2,12 +2,12 @@
 
 use wgpu::hal::{api::Gles, gles::TextureInner};
 
-use super::{Host, in_frame, target};
+use super::{Host, in_map, target};
 use crate::{
     capi::{
-        context::{ContextObject, renamed},
+        context::ContextObject,
         device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
-        frame::{self, Images, wk_frame},
+        frame::{self, Images, in_frame, wk_frame},
         occluder::wk_occluder_map,
         opengl::*,
         view::ViewObject,
@@ -30,10 +30,7 @@ pub(in crate::capi) unsafe fn open(c: &wk_opengl_host_desc) -> Result<*mut wk_de
         force_tier0: c.flags & WK_DEVICE_FORCE_TIER0 != 0,
     };
     // SAFETY: the caller's promise about callbacks and contexts.
-    let opened = unsafe { adopt(&desc) }.map_err(|e| match e.status {
-        Status::InvalidArgument => e.within("desc."),
-        _ => e,
-    })?;
+    let opened = unsafe { adopt(&desc) }.map_err(|e| e.map_field(|field| format!("desc.{field}")))?;
     device::issue(opened.device, Host::OpenGl(opened.host))
 }
 
@@ -47,7 +44,10 @@ pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_
     object.lock().check_call(&frame, stages).map_err(in_frame)?;
     let gpu = object.cell.gpu();
     let entered = gpu.enter()?;
-    let images = desc.map(|desc| host.target(&gpu.device, &desc)).transpose().map_err(|e| e.within("frame."))?;
+    let images = desc
+        .map(|desc| host.target(&gpu.device, &desc))
+        .transpose()
+        .map_err(|e| e.renamed("target", "frame.target"))?;
     if let Some(images) = &images {
         frame.color = Some(&images.color);
         frame.depth = images.depth_read.as_ref();
@@ -72,23 +72,14 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     let _entered = gpu.enter()?;
     let mut images = Vec::new();
     for (i, map) in maps.clone().enumerate() {
-        let named = |e: Error| {
-            Error::new(
-                e.status,
-                e.message
-                    .replace("target.generation", &format!("maps[{i}].generation"))
-                    .replace("target.depth", "target")
-                    .replace("target", &format!("maps[{i}].opengl")),
-            )
-        };
-        let none = || {
-            Error::new(Status::InvalidArgument, format!("maps[{i}].opengl must be given on an OpenGL host's device"))
-        };
+        let (whole, image_of) = (format!("maps[{i}]"), format!("maps[{i}].opengl"));
+        let named = |e: Error| e.renamed("target.depth", &image_of).renamed("target", &whole);
+        let none = || Error::invalid(&*image_of, "must be given on an OpenGL host's device");
         let depth = image(&map.opengl).ok_or_else(none)?;
         images.push(host.depth(&gpu.device, depth, (map.width, map.height), map.generation).map_err(named)?);
     }
     let list: Vec<_> = maps.zip(&images).map(|(c, depth)| OccluderMap { depth, taken: c.taken(true) }).collect();
-    object.write().set_occluder_maps(&list).map_err(|e| renamed("].depth", "].opengl", e))
+    object.write().set_occluder_maps(&list).map_err(in_map("opengl"))
 }
 
 /// The target as the Rust side takes it; `None` without a colour image.
@@ -97,15 +88,15 @@ fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
     let (surface_classes, normals) = (image(&c.surface_classes), image(&c.normals));
     let Some(color) = color else {
         if [depth, mask, surface_classes, normals].iter().any(Option::is_some) {
-            let text = "frame.target.color must be given where depth, mask, surface_classes or normals are";
-            return Err(Error::new(Status::InvalidArgument, text));
+            let rest = "must be given where depth, mask, surface_classes or normals are";
+            return Err(Error::invalid("frame.target.color", rest));
         }
         return Ok(None);
     };
     for (name, other) in [("depth", depth), ("mask", mask)] {
         if other == Some(color) && !matches!(color, GlImage::Framebuffer { .. }) {
-            let text = format!("frame.target.{name} must be another image than frame.target.color, got the same name");
-            return Err(Error::new(Status::InvalidArgument, text));
+            let field = format!("frame.target.{name}");
+            return Err(Error::range(&field, "another image than frame.target.color", "the same name"));
         }
     }
     Ok(Some(GlTargetDesc {

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::{in_frame, target};
+use super::{in_map, target};
 use crate::{
     capi::{
         boundary::Call,
-        context::{ContextObject, renamed},
+        context::ContextObject,
         device_cell::DeviceCell,
-        frame::{self, Images, wk_frame, wk_own_target},
+        frame::{self, Images, in_frame, wk_frame, wk_own_target},
         handles::Object,
         occluder::wk_occluder_map,
         surface::SurfaceObject,
@@ -26,8 +26,7 @@ pub(in crate::capi) unsafe fn record(call: &mut Call, object: &ViewObject, c: &w
     // SAFETY: the caller's promise.
     let target = unsafe { target::<wk_own_target>(c.target)? };
     if !target.color.is_null() && !target.surface.is_null() {
-        let text = "frame.target.surface must be NULL where frame.target.color is given";
-        return Err(Error::new(Status::InvalidArgument, text));
+        return Err(Error::invalid("frame.target.surface", "must be NULL where frame.target.color is given"));
     }
     let here = &object.cell;
     let color = of_device::<TextureObject>(call, here, "frame.target.color", target.color)?;
@@ -66,8 +65,8 @@ fn check_format(param: &str, texture: &Option<Arc<TextureObject>>, accepted: &[w
         return Ok(());
     }
     let names: Vec<_> = accepted.iter().map(|f| name_of(*f)).collect();
-    let text = format!("{param} must have one of the formats {}, got {}", names.join(", "), name_of(texture.format));
-    Err(Error::unsupported(text))
+    let rest = format!("must have one of the formats {}, got {}", names.join(", "), name_of(texture.format));
+    Err(Error::about(Status::Unsupported, param, rest))
 }
 
 pub(in crate::capi) fn set_occluder_maps<'a>(
@@ -79,12 +78,12 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     for (i, map) in maps.clone().enumerate() {
         let param = format!("maps[{i}].texture");
         let found = of_device::<TextureObject>(call, &object.cell, &param, map.texture)?;
-        let none = || Error::new(Status::InvalidArgument, format!("{param} must not be NULL on an own device"));
+        let none = || Error::invalid(&*param, "must not be NULL on an own device");
         textures.push(found.ok_or_else(none)?);
     }
     let list: Vec<_> =
         maps.zip(&textures).map(|(c, t)| OccluderMap { depth: &t.texture, taken: c.taken(false) }).collect();
-    object.write().set_occluder_maps(&list).map_err(|e| renamed("].depth", "].texture", e))
+    object.write().set_occluder_maps(&list).map_err(in_map("texture"))
 }
 
 /// An object of this device, or nothing for NULL.
@@ -102,6 +101,6 @@ fn of_device<T: Object>(
     if found.device().is_some_and(|d| Arc::ptr_eq(d, here)) {
         return Ok(Some(found));
     }
-    let text = format!("{param} must belong to the view's own device, got a {} of another", T::NAME);
-    Err(Error::new(Status::BadHandle, text))
+    let rest = format!("must belong to the view's own device, got a {} of another", T::NAME);
+    Err(Error::about(Status::BadHandle, param, rest))
 }

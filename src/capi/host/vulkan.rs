@@ -4,14 +4,15 @@ use std::ffi::{CStr, c_char, c_void};
 
 use ash::vk::{self, Handle};
 
-use super::{Host, in_frame, target};
+use super::{Host, in_map, target};
 use crate::{
     capi::{
-        context::{ContextObject, renamed},
+        context::ContextObject,
         device::{self, wk_device},
         device_cell::DeviceCell,
-        frame::{self, Images, wk_frame},
-        input, layout,
+        frame::{self, Images, in_frame, wk_frame},
+        input::{self, List, Named},
+        layout,
         occluder::wk_occluder_map,
         view::ViewObject,
         vulkan::*,
@@ -33,7 +34,8 @@ type GetProc = unsafe extern "system" fn(*mut c_void, *const c_char) -> *mut c_v
 /// The header's promises about `wk_vulkan_host_desc`.
 pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_device> {
     let raw = |p: *mut c_void| p as usize as u64;
-    let (instance_count, device_count) = (c.instance_extension_count as usize, c.device_extension_count as usize);
+    let instance_count = Named("desc.instance_extension_count", c.instance_extension_count as usize);
+    let device_count = Named("desc.device_extension_count", c.device_extension_count as usize);
     // SAFETY: the caller's promise about the lists.
     let (instance_names, device_names) = unsafe {
         (
@@ -61,16 +63,13 @@ pub(in crate::capi) unsafe fn open(c: &wk_vulkan_host_desc) -> Result<*mut wk_de
         wanted_features: wgpu::Features::empty(),
     };
     // SAFETY: the caller's promise about the handles and the queue.
-    let host = unsafe { adopt(&desc) }.map_err(|e| match e.status {
-        Status::InvalidArgument => e.within("desc."),
-        _ => e,
-    })?;
+    let host = unsafe { adopt(&desc) }.map_err(|e| e.map_field(|field| format!("desc.{field}")))?;
     device::issue(host.device.clone(), Host::Vulkan(Box::new(host)))
 }
 
 /// # Safety
 /// `p` is NULL or points to `count` strings that live as long as `'a`.
-unsafe fn names<'a>(param: &str, p: *const *const c_char, count: usize) -> Result<Vec<&'a CStr>> {
+unsafe fn names<'a>(param: &str, p: *const *const c_char, count: Named) -> Result<Vec<&'a CStr>> {
     // SAFETY: the caller's promise.
     let list = unsafe { input::slice(param, p, count, MAX_NAMES)? };
     let name = |(i, p): (usize, &*const c_char)| {
@@ -84,7 +83,7 @@ unsafe fn names<'a>(param: &str, p: *const *const c_char, count: usize) -> Resul
 pub(in crate::capi) fn forget_image(cell: &DeviceCell, image: u64) -> Result<()> {
     match &*cell.host() {
         Host::Vulkan(host) => host.forget_image(vk::Image::from_raw(image)),
-        _ => Err(Error::unsupported("device must be a Vulkan host's")),
+        _ => Err(Error::about(Status::Unsupported, "device", "must be a Vulkan host's")),
     }
 }
 
@@ -128,12 +127,8 @@ pub(in crate::capi) unsafe fn record(
     let read = [("depth", &depth), ("mask", &mask), ("surface_classes", &classes), ("normals", &normals)];
     check_distinct(read, &color)?;
     // SAFETY: as above.
-    let (waits, signals) = unsafe {
-        (
-            semaphores("frame.target.waits", target.waits, target.wait_count, target.wait_stride)?,
-            semaphores("frame.target.signals", target.signals, target.signal_count, target.signal_stride)?,
-        )
-    };
+    let (waits, signals) =
+        unsafe { (semaphores(&waits_of(&target), target.waits)?, semaphores(&signals_of(&target), target.signals)?) };
     let layer = |i: &Option<Imported>| i.as_ref().map_or(0, |i| i.image.layer);
     let images = Images {
         layers: ImageLayers {
@@ -172,10 +167,9 @@ pub(in crate::capi) unsafe fn record(
         .collect();
     let over = HandOver { images: &lent, wait: waits.as_slice(), signal: signals.as_slice() };
     // SAFETY: as above; the queue is used by the header's contract.
-    unsafe { host.submit(encoder, &over) }.inspect_err(|_| view.take_back(recorded)).map_err(|e| match e.status {
-        Status::InvalidArgument => e.within("frame.target."),
-        _ => e,
-    })
+    unsafe { host.submit(encoder, &over) }
+        .inspect_err(|_| view.take_back(recorded))
+        .map_err(|e| e.map_field(|field| format!("frame.target.{field}")))
 }
 
 /// # Safety
@@ -190,12 +184,11 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
         let param = format!("maps[{i}].vulkan");
         // SAFETY: the caller's promise.
         let found = unsafe { import(host, &param, map.vulkan, ImageRole::Depth)? };
-        let none =
-            || Error::new(Status::InvalidArgument, format!("{param} must not be NULL on a Vulkan host's device"));
+        let none = || Error::invalid(&*param, "must not be NULL on a Vulkan host's device");
         let found = found.ok_or_else(none)?;
         if found.image.array_layers > 1 {
-            let text = format!("{param}.array_layers above 1: hand over an image of one layer");
-            return Err(Error::unsupported(text));
+            let field = format!("{param}.array_layers");
+            return Err(Error::about(Status::Unsupported, field, "above 1: hand over an image of one layer"));
         }
         images.push(found);
     }
@@ -204,7 +197,7 @@ pub(in crate::capi) unsafe fn set_occluder_maps<'a>(
     let gpu = object.cell.gpu();
     let label = wgpu::CommandEncoderDescriptor { label: Some("occluder maps") };
     let mut encoder = gpu.device.create_command_encoder(&label);
-    object.write().record_occluder_maps(&list, &mut encoder).map_err(|e| renamed("].depth", "].vulkan", e))?;
+    object.write().record_occluder_maps(&list, &mut encoder).map_err(in_map("vulkan"))?;
     // One image may show in several maps.
     let mut lent: Vec<(HostImage, ImageRole, &wgpu::Texture)> = Vec::new();
     for i in &images {
@@ -222,8 +215,8 @@ fn check_distinct(read: [(&str, &Option<Imported>); 4], color: &Option<Imported>
     let is_color = |i: &Imported| color.as_ref().is_some_and(|c| place(c) == place(i));
     match read.into_iter().find(|(_, image)| image.as_ref().is_some_and(is_color)) {
         Some((name, _)) => {
-            let text = format!("frame.target.{name}.image must be another image or layer than frame.target.color");
-            Err(Error::new(Status::InvalidArgument, text))
+            let rest = "must be another image or layer than frame.target.color";
+            Err(Error::invalid(format!("frame.target.{name}.image"), rest))
         }
         None => Ok(()),
     }
@@ -231,14 +224,13 @@ fn check_distinct(read: [(&str, &Option<Imported>); 4], color: &Option<Imported>
 
 /// The images, or what is wrong with all of them in one sentence.
 fn all_of<T>(images: [Result<T>; 5]) -> Result<[T; 5]> {
-    let wrong: Vec<Error> = match images {
-        [Ok(color), Ok(depth), Ok(mask), Ok(classes), Ok(normals)] => {
-            return Ok([color, depth, mask, classes, normals]);
+    match images {
+        [Ok(color), Ok(depth), Ok(mask), Ok(classes), Ok(normals)] => Ok([color, depth, mask, classes, normals]),
+        some => {
+            Error::all(some.into_iter().filter_map(Result::err))?;
+            Err(Error::new(Status::Internal, "no image is wrong"))
         }
-        some => some.into_iter().filter_map(Result::err).collect(),
-    };
-    let text = wrong.iter().map(|e| e.message.as_str()).collect::<Vec<_>>().join("; ");
-    Err(Error::new(wrong[0].status, text))
+    }
 }
 
 /// # Safety
@@ -273,6 +265,24 @@ unsafe fn import(
     Ok(Some(Imported { image, role, texture }))
 }
 
+fn waits_of(target: &wk_vulkan_target) -> List<'static> {
+    List {
+        name: "frame.target.waits",
+        count: Named("frame.target.wait_count", target.wait_count as usize),
+        stride: Named("frame.target.wait_stride", target.wait_stride as usize),
+        limit: MAX_SEMAPHORES,
+    }
+}
+
+fn signals_of(target: &wk_vulkan_target) -> List<'static> {
+    List {
+        name: "frame.target.signals",
+        count: Named("frame.target.signal_count", target.signal_count as usize),
+        stride: Named("frame.target.signal_stride", target.signal_stride as usize),
+        limit: MAX_SEMAPHORES,
+    }
+}
+
 /// Semaphores on the stack: a frame allocates nothing for them.
 struct Semaphores {
     list: [HostSemaphore; MAX_SEMAPHORES],
@@ -286,8 +296,8 @@ impl Semaphores {
 }
 
 /// # Safety
-/// `p` is NULL or points to `count` structs, `stride` bytes apart.
-unsafe fn semaphores(param: &str, p: *const wk_vulkan_semaphore, count: u32, stride: u32) -> Result<Semaphores> {
+/// `p` is NULL or points to the list's structs.
+unsafe fn semaphores(list: &List<'_>, p: *const wk_vulkan_semaphore) -> Result<Semaphores> {
     let none = HostSemaphore { semaphore: vk::Semaphore::null(), value: None };
     let mut found = Semaphores { list: [none; MAX_SEMAPHORES], count: 0 };
     let mut take = |i: usize, c: wk_vulkan_semaphore| {
@@ -298,6 +308,6 @@ unsafe fn semaphores(param: &str, p: *const wk_vulkan_semaphore, count: u32, str
         Ok(())
     };
     // SAFETY: the caller's promise.
-    unsafe { input::each(param, p, count as usize, stride as usize, MAX_SEMAPHORES, &mut take)? };
+    unsafe { input::each(list, p, &mut take)? };
     Ok(found)
 }

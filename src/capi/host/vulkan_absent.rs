@@ -2,7 +2,7 @@
 
 use crate::{
     capi::{device::wk_device, device_cell::DeviceCell, vulkan::wk_vulkan_host_desc},
-    error::{Error, Result},
+    error::{Error, Result, Status},
 };
 
 /// # Safety
@@ -12,5 +12,5 @@ pub(in crate::capi) unsafe fn open(_: &wk_vulkan_host_desc) -> Result<*mut wk_de
 }
 
 pub(in crate::capi) fn forget_image(_: &DeviceCell, _: u64) -> Result<()> {
-    Err(Error::unsupported("device must be a Vulkan host's"))
+    Err(Error::about(Status::Unsupported, "device", "must be a Vulkan host's"))
 }

@@ -111,7 +111,7 @@ impl Workshop<'_> {
         // Depth of several samples beside a resolved picture is copied to depth of one; OpenGL ES cannot do that.
         let resolved = samples == 1 && !self.ask.info.is_es();
         if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
-            let accepted = format!("an image with as many samples as target.color, {samples}");
+            let accepted = format!("an image with as many samples as color, {samples}");
             return Err(Error::range("target.depth", &accepted, other.facts.samples));
         }
         let resolve = self.resolves(desc.multisample, samples)?;
@@ -153,8 +153,9 @@ impl Workshop<'_> {
             return Err(Error::range("target.depth", "an image of one sample", part.facts.samples));
         }
         self.provide_copy(&mut part, false, 1, made)?;
-        let object =
-            part.readable(1).ok_or_else(|| Error::unsupported("target.depth must be an image that can be read"))?;
+        let object = part
+            .readable(1)
+            .ok_or_else(|| Error::about(Status::Unsupported, "target.depth", "must be an image that can be read"))?;
         let texture = self.wrap(object, part.format()?, part.facts, 1, READ)?;
         let target = GlTarget {
             id,
@@ -173,8 +174,8 @@ impl Workshop<'_> {
     /// Asks about what is only read beside colour and depth.
     fn read_part(&self, desc: GlTargetDesc, image: GlImage, side: Side) -> Result<Part> {
         if !matches!(image, GlImage::Texture { target: TEXTURE_2D, .. }) {
-            let text = format!("{} must be a texture of target GL_TEXTURE_2D", side.parameter());
-            return Err(Error::unsupported(text));
+            let rest = "must be a texture of target GL_TEXTURE_2D";
+            return Err(Error::about(Status::Unsupported, side.parameter(), rest));
         }
         self.part(desc, image, side)
     }
@@ -189,14 +190,16 @@ impl Workshop<'_> {
             _ if samples == 1 => Ok(false),
             // wgpu's shaders do not compile there: its translator takes gl_SampleID for unsigned, which only GLSL 4.00
             // converts; and OpenGL ES cannot copy to multisampled images either.
-            _ if es => Err(Error::unsupported(format!(
-                "target.color must have 1 sample on OpenGL ES, got {samples}: resolve it before this call"
-            ))),
+            _ if es => {
+                let rest = format!("must have 1 sample on OpenGL ES, got {samples}: resolve it before this call");
+                Err(Error::about(Status::Unsupported, "target.color", rest))
+            }
             Multisample::Each if self.tier0 || !self.ask.info.at_least((4, 0), (4, 0)) => {
-                Err(Error::unsupported(format!(
-                    "target.multisample must be resolve before OpenGL 4.0 and on tier 0, whose shaders cannot run per \
-                     sample, for an image with {samples} samples"
-                )))
+                let rest = format!(
+                    "must be resolve before OpenGL 4.0 and on tier 0, whose shaders cannot run per sample, for an image \
+                     with {samples} samples"
+                );
+                Err(Error::about(Status::Unsupported, "target.multisample", rest))
             }
             Multisample::Each => Ok(false),
             Multisample::Resolve => Ok(true),
@@ -209,23 +212,19 @@ impl Workshop<'_> {
         if let (Side::Depth, GlImage::Framebuffer { .. }) = (side, image)
             && image != desc.color
         {
-            return Err(Error::new(
-                Status::InvalidArgument,
-                "target.depth must be the same framebuffer as target.color where it is one",
-            ));
+            return Err(Error::invalid("target.depth", "must be the same framebuffer as color where it is one"));
         }
         let facts = image::facts(self.ask, image, side, size)?;
         if (facts.width, facts.height) != size || size.0 == 0 || size.1 == 0 {
-            let (parameter, w, h) = (side.parameter(), facts.width, facts.height);
-            return Err(Error::range(
-                "target.width and target.height",
-                &format!("the size of {parameter}, {w} x {h}"),
-                format!("{} x {}", size.0, size.1),
-            ));
+            let (w, h) = (facts.width, facts.height);
+            let field = if size.0 == w && w > 0 { "target.height" } else { "target.width" };
+            let accepted = format!("of the size of the {} image, {w} x {h}", side.noun());
+            return Err(Error::range(field, &accepted, format!("{} x {}", size.0, size.1)));
         }
         let most = self.device.limits().max_texture_dimension_2d;
         if size.0.max(size.1) > most {
-            return Err(Error::range("target.width and target.height", &format!("at most {most}"), size.0.max(size.1)));
+            let field = if size.0 > most { "target.width" } else { "target.height" };
+            return Err(Error::range(field, &format!("at most {most}"), size.0.max(size.1)));
         }
         if !matches!(facts.samples, 1 | 2 | 4 | 8 | 16) {
             return Err(Error::range(side.parameter(), "an image with 1, 2, 4, 8 or 16 samples", facts.samples));
@@ -309,12 +308,9 @@ impl Workshop<'_> {
             return Ok(framebuffer);
         }
         let (side, _, internal) = images[0];
-        Err(Error::unsupported(format!(
-            "{} must be an image that this context can draw to, {} gives {}",
-            side.parameter(),
-            spell(internal),
-            if error == NO_ERROR { spell(status) } else { spell(error) }
-        )))
+        let gives = if error == NO_ERROR { spell(status) } else { spell(error) };
+        let rest = format!("must be an image that this context can draw to, {} gives {gives}", spell(internal));
+        Err(Error::about(Status::Unsupported, side.parameter(), rest))
     }
 
     /// The picture as wgpu textures: to draw to, and to read where wgpu cannot copy that.

@@ -11,7 +11,7 @@ use super::{
     target::{Entry, GlTarget, GlTargetDesc},
     window::WindowSize,
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Status};
 
 /// Targets kept before the longest unused one goes.
 const CACHED_TARGETS: usize = 32;
@@ -131,10 +131,9 @@ impl Inner {
         let foreign = matches!(self.sharing, Sharing::Shared { .. })
             && [Some(desc.color), desc.depth].into_iter().flatten().any(|i| matches!(i, GlImage::Framebuffer { .. }));
         if foreign {
-            return Err(Error::unsupported(
-                "target.color must be a texture or renderbuffer in a shared context: framebuffers, the window's \
-                 included, are not shared; make the device in the host's own context for those",
-            ));
+            let rest = "must be a texture or renderbuffer in a shared context: framebuffers, the window's included, are \
+                        not shared; make the device in the host's own context for those";
+            return Err(Error::about(Status::Unsupported, "target.color", rest));
         }
         Ok(())
     }

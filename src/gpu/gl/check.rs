@@ -220,14 +220,14 @@ const NEEDED: &[&CStr] = &[
 pub(super) fn loader_finds_all(get: &dyn Fn(&CStr) -> *const c_void) -> Result<()> {
     match NEEDED.iter().find(|name| get(name).is_null()) {
         None => Ok(()),
-        Some(name) => Err(Error::new(
-            Status::InvalidArgument,
-            format!(
-                "get_proc must find every function of OpenGL 3.3 or OpenGL ES 3.0, got NULL for {}: the functions \
-                 of OpenGL 1.1 are often exported by the library itself and not by its address function",
+        Some(name) => {
+            let rest = format!(
+                "must find every function of OpenGL 3.3 or OpenGL ES 3.0, got NULL for {}: the functions of OpenGL 1.1 \
+                 are often exported by the library itself and not by its address function",
                 name.to_string_lossy()
-            ),
-        )),
+            );
+            Err(Error::invalid("get_proc", rest))
+        }
     }
 }
 
@@ -281,6 +281,6 @@ mod tests {
     fn a_loader_that_finds_nothing_is_named() {
         let error = loader_finds_all(&|_| std::ptr::null()).unwrap_err();
         assert_eq!(error.status, Status::InvalidArgument);
-        assert!(error.message.contains("glGetString"), "{}", error.message);
+        assert!(error.to_string().contains("glGetString"), "{}", error);
     }
 }

@@ -3,7 +3,7 @@
 use wgpu::TextureFormat as Format;
 
 use super::{image::Side, names::*};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Status};
 
 /// The colour formats a host may hand over.
 const COLOR: &[(u32, &str, Format)] = &[
@@ -102,12 +102,8 @@ pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
         return Ok(*format);
     }
     let names: Vec<_> = table.iter().map(|(_, name, _)| *name).collect();
-    Err(Error::unsupported(format!(
-        "{} must have one of the internal formats {}, got {}",
-        side.parameter(),
-        names.join(", "),
-        spell(internal)
-    )))
+    let rest = format!("must have one of the internal formats {}, got {}", names.join(", "), spell(internal));
+    Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
 /// The client format and type with which `internal` can be allocated without data.
@@ -140,7 +136,7 @@ mod tests {
         let error = format(0x8057, Side::Color).unwrap_err();
         assert_eq!(error.status, crate::Status::Unsupported);
         for part in ["target.color", "GL_RGB5_A1 (0x8057)", "GL_RGBA8", "GL_RGBA16F"] {
-            assert!(error.message.contains(part), "{}", error.message);
+            assert!(error.to_string().contains(part), "{}", error);
         }
         assert!(format(RGBA8, Side::Depth).is_err() && format(DEPTH_COMPONENT16, Side::Mask).is_err());
         // Signs need two halves or a float's; a class is a byte.
@@ -148,7 +144,7 @@ mod tests {
             [(R8, Side::Normals, "target.normals"), (RGBA16F, Side::Classes, "target.surface_classes")]
         {
             let error = format(bad, side).unwrap_err();
-            assert!(error.message.starts_with(name) && error.message.contains("GL_RGBA8"), "{}", error.message);
+            assert!(error.to_string().starts_with(name) && error.to_string().contains("GL_RGBA8"), "{}", error);
         }
         assert!(format(RGB16F, Side::Normals).is_ok() && format(R8, Side::Classes).is_ok());
     }

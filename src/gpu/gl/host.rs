@@ -43,10 +43,8 @@ impl Switch {
         if answer == 0 {
             return Ok(());
         }
-        Err(Error::new(
-            Status::WrongOrder,
-            format!("make_current must make the {} context current and return 0, got {answer}", which.name()),
-        ))
+        let rest = format!("must make the {} context current and return 0, got {answer}", which.name());
+        Err(Error::about(Status::WrongOrder, "make_current", rest))
     }
 }
 
@@ -194,7 +192,8 @@ impl GlHost {
         generation: u64,
     ) -> Result<wgpu::Texture> {
         if matches!(image, GlImage::Framebuffer { .. }) {
-            return Err(Error::unsupported("target.depth must be a texture or a renderbuffer here, not a framebuffer"));
+            let rest = "must be a texture or a renderbuffer here, not a framebuffer";
+            return Err(Error::about(Status::Unsupported, "target.depth", rest));
         }
         // Depth as its own colour: there is nothing to draw into.
         let multisample = Multisample::Each;

@@ -42,7 +42,12 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// The parameter's name in messages.
+    /// What the image holds, in messages.
+    pub(super) fn noun(self) -> &'static str {
+        &self.parameter()["target.".len()..]
+    }
+
+    /// The field's path in errors.
     pub(super) fn parameter(self) -> &'static str {
         match self {
             Self::Color => "target.color",
@@ -95,33 +100,25 @@ pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: Side, size: (u32, u32)) 
 }
 
 fn dead(side: Side, kind: &str, name: u32) -> Error {
-    let parameter = side.parameter();
-    Error::new(
-        Status::InvalidArgument,
-        format!("{parameter} must be the name of a {kind} of the host's context or its share group, got {name}"),
-    )
+    let accepted = format!("the name of a {kind} of the host's context or its share group");
+    Error::range(side.parameter(), &accepted, name)
 }
 
 fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u32)) -> Result<Facts> {
     let Ask { api, info, scratch, .. } = ask;
     let multisample = target == TEXTURE_2D_MULTISAMPLE;
     if target != TEXTURE_2D && !(multisample && info.at_least((3, 2), (3, 1))) {
-        return Err(Error::unsupported(format!(
-            "{}.target must be GL_TEXTURE_2D{}, got {}",
-            side.parameter(),
-            if info.at_least((3, 2), (3, 1)) { " or GL_TEXTURE_2D_MULTISAMPLE" } else { "" },
-            spell(target)
-        )));
+        let or = if info.at_least((3, 2), (3, 1)) { " or GL_TEXTURE_2D_MULTISAMPLE" } else { "" };
+        let rest = format!("must be GL_TEXTURE_2D{or}, got {}", spell(target));
+        return Err(Error::about(Status::Unsupported, format!("{}.target", side.parameter()), rest));
     }
     if api.IsTexture(name) == 0 {
         return Err(dead(side, "texture", name));
     }
     api.BindTexture(target, name);
     if api.take_error() != NO_ERROR {
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("{}.target must be the target that texture {name} was made with", side.parameter()),
-        ));
+        let accepted = format!("the target that texture {name} was made with");
+        return Err(Error::range(&format!("{}.target", side.parameter()), &accepted, spell(target)));
     }
     let level = |pname| {
         let mut value = 0;
@@ -134,10 +131,8 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: Side, size: (u32, u
     let samples = if multisample { level(TEXTURE_SAMPLES).max(1) } else { 1 };
     let named = if can_ask { level(TEXTURE_INTERNAL_FORMAT) } else { RGBA };
     if can_ask && (width == 0 || height == 0) {
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("{} must be a texture with storage at level 0, texture {name} has none", side.parameter()),
-        ));
+        let rest = format!("must be a texture with storage at level 0, texture {name} has none");
+        return Err(Error::invalid(side.parameter(), rest));
     }
     let internal = match named {
         // Not a sized name: the driver chose, so the bits are counted.
@@ -214,14 +209,11 @@ fn stencil_bits(api: &Api, framebuffer: u32, depth_attachment: u32) -> i32 {
 fn sized(bits: Bits, side: Side) -> Result<u32> {
     let found = if side == Side::Depth { bits.depth() } else { bits.color() };
     found.ok_or_else(|| {
-        Error::unsupported(format!(
-            "{} must have a format that can be drawn to and has a name, got {} red, {} alpha, {} depth and {} stencil bits",
-            side.parameter(),
-            bits.red,
-            bits.alpha,
-            bits.depth,
-            bits.stencil
-        ))
+        let rest = format!(
+            "must have a format that can be drawn to and has a name, got {} red, {} alpha, {} depth and {} stencil bits",
+            bits.red, bits.alpha, bits.depth, bits.stencil
+        );
+        Error::about(Status::Unsupported, side.parameter(), rest)
     })
 }
 
@@ -258,18 +250,14 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
     }
     let status = api.CheckFramebufferStatus(DRAW_FRAMEBUFFER);
     if status != FRAMEBUFFER_COMPLETE {
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("{} must be a complete framebuffer, framebuffer {name} is {}", side.parameter(), spell(status)),
-        ));
+        let rest = format!("must be a complete framebuffer, framebuffer {name} is {}", spell(status));
+        return Err(Error::invalid(side.parameter(), rest));
     }
     let attachment = match (side, name) {
         (Side::Color | Side::Mask | Side::Classes | Side::Normals, _) => match api.uint(DRAW_BUFFER0) {
             NONE => {
-                return Err(Error::new(
-                    Status::InvalidArgument,
-                    format!("{} must draw to a colour buffer, framebuffer {name} has GL_NONE", side.parameter()),
-                ));
+                let rest = format!("must draw to a colour buffer, framebuffer {name} has GL_NONE");
+                return Err(Error::invalid(side.parameter(), rest));
             }
             // The window's buffers are asked for one by one on desktop OpenGL, as GL_BACK on OpenGL ES.
             BACK if !info.is_es() => BACK_LEFT,
@@ -287,10 +275,8 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: Side, size: (u32, u32)) -> R
     api.BindFramebuffer(FRAMEBUFFER, 0);
     api.take_error();
     if side == Side::Depth && bits.depth == 0 {
-        return Err(Error::new(
-            Status::InvalidArgument,
-            format!("target.depth must name a framebuffer that has depth, framebuffer {name} has none"),
-        ));
+        let rest = format!("must name a framebuffer that has depth, framebuffer {name} has none");
+        return Err(Error::invalid(side.parameter(), rest));
     }
     let (width, height) = attached_size.unwrap_or(size);
     Ok(Facts { width, height, internal: sized(bits, side)?, samples })

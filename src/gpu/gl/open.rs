@@ -55,7 +55,7 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// destroyed as a whole.
 pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
     let Some(get_proc) = desc.get_proc else {
-        return Err(Error::new(Status::InvalidArgument, "get_proc must not be NULL"));
+        return Err(Error::invalid("get_proc", "must not be NULL"));
     };
     let user = desc.user;
     // SAFETY: the caller vouches for `get_proc` and `user`; the name is NUL-terminated.
@@ -86,7 +86,7 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
         }
         GlMode::Shared => {
             let Some(switch) = switch else {
-                return Err(Error::new(Status::InvalidArgument, "make_current must not be NULL in shared mode"));
+                return Err(Error::invalid("make_current", "must not be NULL in shared mode"));
             };
             let proof = Proof::leave(&host);
             host.Flush();

@@ -111,8 +111,8 @@ impl WindowSize {
             (_, true) => "smaller",
             _ => return Ok(()),
         };
-        let accepted = "the window's size now (tell it anew when the window is resized)";
+        let accepted = "with height the window's size now (tell it anew when the window is resized)";
         let got = format!("{width} x {height} for a {relation} one");
-        Err(Error::range("target.width and target.height", accepted, got))
+        Err(Error::range("target.width", accepted, got))
     }
 }

@@ -15,10 +15,6 @@ pub(super) struct Handles {
     pub instance_api_version: u32,
 }
 
-fn invalid(message: impl Into<String>) -> Error {
-    Error::new(Status::InvalidArgument, message)
-}
-
 fn version_text(v: u32) -> String {
     format!("{}.{}", vk::api_version_major(v), vk::api_version_minor(v))
 }
@@ -33,18 +29,18 @@ fn first_of(names: &[String]) -> String {
 /// Null pointers, half-given callbacks and impossible versions.
 pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
     let get = desc.get_instance_proc_addr;
-    let get = get.ok_or_else(|| invalid("get_instance_proc_addr must be vkGetInstanceProcAddr, got NULL"))?;
+    let get = get.ok_or_else(|| Error::range("get_instance_proc_addr", "vkGetInstanceProcAddr", "NULL"))?;
     for (name, null) in [
         ("instance", desc.instance == vk::Instance::null()),
         ("physical_device", desc.physical_device == vk::PhysicalDevice::null()),
         ("device", desc.device == vk::Device::null()),
     ] {
         if null {
-            return Err(invalid(format!("{name} must be a live Vulkan handle, got VK_NULL_HANDLE")));
+            return Err(Error::range(name, "a live Vulkan handle", "VK_NULL_HANDLE"));
         }
     }
     if desc.lock_queue.is_some() != desc.unlock_queue.is_some() {
-        return Err(invalid("lock_queue and unlock_queue must be given together or not at all"));
+        return Err(Error::invalid("lock_queue", "must be given together with unlock_queue or not at all"));
     }
     // VkApplicationInfo::apiVersion 0 means 1.0 (Vulkan specification, VkApplicationInfo).
     let v = if desc.instance_api_version == 0 { vk::API_VERSION_1_0 } else { desc.instance_api_version };
@@ -86,7 +82,8 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
     });
     if !missing.is_empty() {
         let names = first_of(&missing);
-        return Err(invalid(format!("get_instance_proc_addr must serve Vulkan 1.0, but it answers NULL for {names}")));
+        let rest = format!("must serve Vulkan 1.0, but it answers NULL for {names}");
+        return Err(Error::invalid("get_instance_proc_addr", rest));
     }
     let redirected = |name: &CStr| match dispatch::instance_substitute(name) {
         Some(s) if !address(name).is_null() => s,
@@ -128,8 +125,7 @@ pub(super) unsafe fn api_version(desc: &VulkanHostDesc<'_>, handles: &Handles, l
         Error::new(Status::NoAdapter, format!("vkEnumeratePhysicalDevices on the host's instance failed: {e}"))
     })?;
     if !devices.contains(&desc.physical_device) {
-        let message = "physical_device must be one that vkEnumeratePhysicalDevices(instance) lists";
-        return Err(invalid(message));
+        return Err(Error::invalid("physical_device", "must be one that vkEnumeratePhysicalDevices(instance) lists"));
     }
     // SAFETY: the physical device was just found in the instance's list.
     let properties = unsafe { loaded.plain.get_physical_device_properties(desc.physical_device) };
@@ -172,31 +168,32 @@ pub(super) fn extensions(
     let needed = [ash::khr::maintenance1::NAME, ash::khr::storage_buffer_storage_class::NAME];
     let missing: Vec<_> = needed.into_iter().filter(|name| !has(name)).map(CStr::to_string_lossy).collect();
     if api_version < vk::API_VERSION_1_1 && !missing.is_empty() {
-        let version = match told {
-            0 => "instance_api_version 0 means Vulkan 1.0: say there what the instance's \
-                  VkApplicationInfo::apiVersion is, raise both to 1.1 or later"
-                .to_owned(),
-            v if v < vk::API_VERSION_1_1 => {
-                format!(
-                    "instance_api_version is {}: raise it and the instance's VkApplicationInfo::apiVersion to 1.1",
-                    version_text(v)
-                )
-            }
-            _ => "physical_device serves Vulkan 1.0 only: take another".to_owned(),
+        let (field, version) = match told {
+            0 => (
+                "instance_api_version",
+                "0 means Vulkan 1.0: say there what the instance's VkApplicationInfo::apiVersion is, raise both to 1.1 or \
+                 later"
+                    .to_owned(),
+            ),
+            v if v < vk::API_VERSION_1_1 => (
+                "instance_api_version",
+                format!("is {}: raise it and the instance's VkApplicationInfo::apiVersion to 1.1", version_text(v)),
+            ),
+            _ => ("physical_device", "serves Vulkan 1.0 only: take another".to_owned()),
         };
-        lacks.push(format!(
-            "{version}, or enable {} on the device and list them in enabled_device_extensions",
-            missing.join(" and ")
-        ));
+        let missing = missing.join(" and ");
+        let rest = format!("{version}, or enable {missing} on the device and list them in enabled_device_extensions");
+        lacks.push(Error::invalid(field, rest));
     }
     if features.timeline_semaphore && api_version < vk::API_VERSION_1_2 && !has(ash::khr::timeline_semaphore::NAME) {
-        lacks.push(format!(
-            "enabled_features lists timelineSemaphore, which Vulkan {} has by VK_KHR_timeline_semaphore only: enable \
-             and list that in enabled_device_extensions, raise both versions to 1.2, or leave the feature out",
+        let rest = format!(
+            "lists timelineSemaphore, which Vulkan {} has by VK_KHR_timeline_semaphore only: enable and list that in \
+             enabled_device_extensions, raise both versions to 1.2, or leave the feature out",
             version_text(api_version),
-        ));
+        );
+        lacks.push(Error::invalid("enabled_features", rest));
     }
-    if lacks.is_empty() { Ok(()) } else { Err(invalid(lacks.join("; "))) }
+    Error::all(lacks)
 }
 
 /// Loads the device's functions with the queue calls redirected; fills in what the redirections call.
@@ -234,12 +231,13 @@ pub(super) unsafe fn load_device(
         missing.extend(names.iter().filter(|n| address(n).is_null()).map(|n| n.to_string_lossy().into_owned()));
     }
     if !missing.is_empty() {
-        return Err(invalid(format!(
-            "device must serve Vulkan {} as instance_api_version and enabled_device_extensions say, but \
-             vkGetDeviceProcAddr answers NULL for {}",
+        let rest = format!(
+            "must serve Vulkan {} as instance_api_version and enabled_device_extensions say, but vkGetDeviceProcAddr \
+             answers NULL for {}",
             version_text(api_version),
             first_of(&missing),
-        )));
+        );
+        return Err(Error::invalid("device", rest));
     }
     let redirected = |name: &CStr| dispatch::device_substitute(name).unwrap_or_else(|| address(name));
     // SAFETY: every pointer comes from the host's loader or is a substitute of the same signature.

@@ -80,11 +80,8 @@ impl VulkanHost {
                 return Err(Error::range(&name, "a live VkSemaphore", "VK_NULL_HANDLE"));
             }
             if s.value.is_some() && !self.record.enabled.timeline_semaphore {
-                let message = format!(
-                    "{name}[{i}]: a timeline value needs timelineSemaphore enabled on the host's device and listed \
-                     in enabled_features"
-                );
-                return Err(Error::new(Status::InvalidArgument, message));
+                let rest = "needs timelineSemaphore enabled on the host's device and listed in enabled_features";
+                return Err(Error::invalid(format!("{name}[{i}].value"), rest));
             }
         }
         Ok(())

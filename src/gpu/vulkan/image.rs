@@ -259,7 +259,8 @@ impl VulkanHost {
             return bad("layer", &format!("below array_layers ({})", image.array_layers), &image.layer);
         }
         let Some(format) = wgpu_format(image.format) else {
-            return Err(Error::unsupported(format!("{name}.format: Welkin does not serve {:?}", image.format)));
+            let what = format!("Welkin does not serve {:?}", image.format);
+            return Err(Error::unsupported(what).within(&format!("{name}.format")));
         };
         if format.is_depth_stencil_format() != (role == ImageRole::Depth) {
             let accepted = if role == ImageRole::Depth { "a depth format" } else { "a colour format" };
@@ -269,17 +270,17 @@ impl VulkanHost {
             return bad("samples", "1, 2, 4 or 8", &image.samples);
         }
         self.check_format(name, image, format, role)?;
-        let lacks = self.lacks(name, image, role);
-        if lacks.is_empty() { Ok(format) } else { Err(Error::new(Status::InvalidArgument, lacks.join("; "))) }
+        Error::all(self.lacks(name, image, role)).map(|()| format)
     }
 
     /// All that the host has to enable, list or create otherwise before it hands over an image that this device can
     /// hold.
-    fn lacks(&self, name: &str, image: &HostImage, role: ImageRole) -> Vec<String> {
+    fn lacks(&self, name: &str, image: &HostImage, role: ImageRole) -> Vec<Error> {
+        let field = |name_of_field: &str| format!("{name}.{name_of_field}");
         let mut lacks = Vec::new();
         if role == ImageRole::Colour && image.samples > 1 && self.record.enabled.core.sample_rate_shading == vk::FALSE {
             let feature = layouts::feature_text("VkPhysicalDeviceFeatures::sampleRateShading");
-            lacks.push(format!("{name}.samples above 1 needs {feature}, or resolve first"));
+            lacks.push(Error::invalid(field("samples"), format!("above 1 needs {feature}, or resolve first")));
         }
         let needed = if role == ImageRole::Colour {
             vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC
@@ -288,14 +289,16 @@ impl VulkanHost {
         };
         if !image.usage.contains(needed) {
             let bits = layouts::usage_names(needed & !image.usage, " and ");
-            lacks.push(format!("{name}.usage lacks {bits}, with which the image must be created"));
+            let rest = format!("lacks {bits}, with which the image must be created");
+            lacks.push(Error::invalid(field("usage"), rest));
         }
         let presents = self.record.extensions.contains(&ash::khr::swapchain::NAME);
-        for (field, layout) in [("layout", image.layout), ("final_layout", image.final_layout)] {
-            let dropped = field == "layout" && layout == vk::ImageLayout::UNDEFINED && role == ImageRole::Colour;
+        for (which, layout) in [("layout", image.layout), ("final_layout", image.final_layout)] {
+            let dropped = which == "layout" && layout == vk::ImageLayout::UNDEFINED && role == ImageRole::Colour;
             let obstacle = layouts::obstacle(layout, image, &self.record.enabled, presents).filter(|_| !dropped);
             if let Some(o) = obstacle {
-                lacks.push(format!("{name}.{field}: {} {o}", layouts::layout_name(layout)));
+                let rest = format!("must not be {}, which {o}", layouts::layout_name(layout));
+                lacks.push(Error::invalid(field(which), rest));
             }
         }
         lacks
@@ -304,7 +307,7 @@ impl VulkanHost {
     /// Whether this device serves the format for the role and sample count.
     fn check_format(&self, name: &str, image: &HostImage, format: TextureFormat, role: ImageRole) -> Result<()> {
         let raw = image.format;
-        let unsupported = |what: String| Err(Error::unsupported(format!("{name}.format: {what}")));
+        let unsupported = |what: String| Err(Error::unsupported(what).within(&format!("{name}.format")));
         if !self.device.device.features().contains(format.required_features()) {
             return unsupported(format!("this device does not serve {raw:?}"));
         }
@@ -323,8 +326,8 @@ impl VulkanHost {
             return unsupported(format!("this device does not allow {usage:?} of {raw:?}"));
         }
         if !features.flags.sample_count_supported(image.samples) {
-            let message = format!("{name}.samples: this device does not serve {} samples of {raw:?}", image.samples);
-            return Err(Error::unsupported(message));
+            let what = format!("this device does not serve {} samples of {raw:?}", image.samples);
+            return Err(Error::unsupported(what).within(&format!("{name}.samples")));
         }
         Ok(())
     }

@@ -157,8 +157,8 @@ pub unsafe fn adopt(desc: &VulkanHostDesc<'_>) -> Result<VulkanHost> {
     // SAFETY: family and index were checked against the physical device.
     let queue = unsafe { device.get_device_queue(desc.queue_family_index, desc.queue_index) };
     if queue == vk::Queue::null() {
-        let message = "queue_index must name a queue that device was created with: vkGetDeviceQueue gave NULL";
-        return Err(Error::new(Status::InvalidArgument, message));
+        let rest = "must name a queue that device was created with: vkGetDeviceQueue gave NULL";
+        return Err(Error::invalid("queue_index", rest));
     }
     let lock = desc.lock_queue.zip(desc.unlock_queue);
     let record = Arc::new(HostRecord {

@@ -52,7 +52,9 @@ mod tests {
     #[test]
     fn columns_count_characters_from_one_on_their_line() {
         let text = "METAR KDEN\nä24009KT";
-        assert!(fault(text, 13, "a", Some("b")).message.starts_with("METAR line 2, column 2: expected a, found \"b\""));
-        assert!(fault(text, 999, "a", None).message.contains("found the end"));
+        assert!(
+            fault(text, 13, "a", Some("b")).to_string().starts_with("METAR line 2, column 2: expected a, found \"b\"")
+        );
+        assert!(fault(text, 999, "a", None).to_string().contains("found the end"));
     }
 }

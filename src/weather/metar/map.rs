@@ -4,7 +4,7 @@ use super::MetarReport;
 use super::groups::CloudGroup;
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};
-use crate::error::{Error, Result, Status};
+use crate::error::{Result, Status};
 use crate::weather::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind};
 use crate::weather::model::{Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Weather, Wind};
 use crate::weather::{LN_20, air, hydrometeors, particles};
@@ -274,7 +274,7 @@ pub(super) fn report(p: &Parsed) -> Result<MetarReport> {
             swell: None,
         };
     }
-    w.validate().map_err(|e| Error::new(Status::Parse, format!("METAR line 1, column 1: {}", e.message)))?;
+    w.validate().map_err(|e| e.with_status(Status::Parse).found_in("METAR line 1, column 1"))?;
     Ok(MetarReport {
         weather: w,
         station: p.station.clone(),
