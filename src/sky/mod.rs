@@ -50,7 +50,6 @@
 
 mod cache;
 pub mod candidates;
-pub mod celestial;
 pub(crate) mod ephemeris;
 mod kit;
 mod level;
@@ -73,6 +72,7 @@ pub mod tables;
 mod uniforms;
 pub mod volume;
 
+pub use crate::scene::celestial;
 pub use kit::SkyLibrary;
 pub use light::{LightTable, Sh9};
 pub use observer::{Disc, Lamp, Observer};
