@@ -21,6 +21,7 @@ pub mod plan;
 pub mod rain;
 pub mod scene;
 pub mod sky;
+pub mod stars;
 mod surroundings;
 pub mod weather;
 pub mod wind;
