@@ -26,6 +26,7 @@ pub mod rain;
 pub mod scene;
 pub mod sky;
 mod stage;
+pub mod stars;
 mod surroundings;
 pub mod weather;
 pub mod wind;

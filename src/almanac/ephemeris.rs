@@ -9,15 +9,14 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 use solar_positioning::SolarPositions;
 
-use super::{celestial, moon, sun::Utc};
-use crate::error::Result;
+use super::moon;
+use crate::{
+    almanac::{Utc, celestial, time::UTC_RANGE_S},
+    error::Result,
+};
 
 /// Astronomical unit, m (IAU 2012).
 pub(super) const AU_M: f64 = 1.495_978_707e11;
-/// Seconds since 1970 of the years -2000 to 6000, as the sun's series has them; the last hour is left to the difference
-/// between terrestrial and universal time.
-pub(super) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_111_600.0];
-
 /// Sun and moon from the Earth's centre in the true equator and equinox of date (x to the equinox, z to the pole).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geocentric {

@@ -1,5 +1,6 @@
 //! Light in numbers that every room counts by: luminance, the three wavelengths, exposure and tone curves.
 
+pub mod spectrum;
 pub mod tone;
 
 pub use tone::{Exposure, ToneCurve};

@@ -9,6 +9,8 @@
 use std::sync::LazyLock;
 
 use super::{DOBSON_UNIT_PER_M2, Planet, rayleigh_optical_depth};
+use crate::light::spectrum::black_body;
+pub use crate::light::spectrum::{LUMINOUS_EFFICACY_LM_PER_W, apply, cie_1931, rec709_of_wavelength};
 use crate::{
     error::{Error, Result, check_range},
     light::luminance,
@@ -65,13 +67,6 @@ pub fn ozone_cross_section_m2(wavelength_nm: f64) -> f64 {
     tabulated(&OZONE_CROSS_SECTION, wavelength_nm).map_or(0.0, |s| s * 1e-26)
 }
 
-/// Planck's law per wavelength, up to a factor.
-fn black_body(wavelength_nm: f64, temperature_k: f64) -> f64 {
-    let um = wavelength_nm * 1e-3;
-    // Second radiation constant, 14387.77 um K.
-    um.powi(-5) / (14_387.77 / (um * temperature_k)).exp_m1()
-}
-
 /// Value at `x` of the broken line through three points in any order, constant outside.
 pub(crate) fn between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
@@ -97,41 +92,6 @@ pub(crate) fn power_between(at: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
         return between(at, values, x);
     }
     values[i] * (x / at[i]).powf((values[j] / values[i]).ln() / range)
-}
-
-/// Colour matching functions of the CIE 1931 standard observer (2 degrees), by the sums of lobes of Wyman, Sloan and
-/// Shirley 2013 (table 1; within 1 % of the tabulated ones' integrals). Wavelength in nm.
-pub fn cie_1931(wavelength_nm: f64) -> [f64; 3] {
-    let lobe = |mean: f64, below: f64, above: f64| {
-        let t = (wavelength_nm - mean) / if wavelength_nm < mean { below } else { above };
-        (-0.5 * t * t).exp()
-    };
-    [
-        1.056 * lobe(599.8, 37.9, 31.0) + 0.362 * lobe(442.0, 16.0, 26.7) - 0.065 * lobe(501.1, 20.4, 26.2),
-        0.821 * lobe(568.8, 46.9, 40.5) + 0.286 * lobe(530.9, 16.3, 31.1),
-        1.217 * lobe(437.0, 11.8, 36.0) + 0.681 * lobe(459.0, 26.0, 13.8),
-    ]
-}
-
-/// Luminous efficacy of radiation at 555 nm, lm/W (SI definition of the candela).
-pub const LUMINOUS_EFFICACY_LM_PER_W: f64 = 683.002;
-
-/// Linear Rec. 709 from CIE XYZ (ITU-R BT.709 primaries, D65).
-#[rustfmt::skip]
-const REC709_FROM_XYZ: [[f64; 3]; 3] = [
-    [ 3.240_969_942, -1.537_383_178, -0.498_610_760],
-    [-0.969_243_636,  1.875_967_502,  0.041_555_057],
-    [ 0.055_630_080, -0.203_976_959,  1.056_971_514],
-];
-
-/// Colour per spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
-pub fn rec709_of_wavelength(wavelength_nm: f64) -> [f64; 3] {
-    apply(&REC709_FROM_XYZ, &cie_1931(wavelength_nm)).map(|v| v * LUMINOUS_EFFICACY_LM_PER_W)
-}
-
-/// Matrix times column.
-pub fn apply(matrix: &[[f64; 3]; 3], column: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| (0..3).map(|j| matrix[i][j] * column[j]).sum())
 }
 
 /// Colour of something whose transfer is `transfer` at every wavelength, under the sun of 1 au: sums of 1 nm.
@@ -410,23 +370,11 @@ pub fn limb_darkening_mean(wavelength_nm: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::spectrum::REC709_FROM_XYZ;
 
     #[test]
-    fn eye_and_sun_have_their_known_sums() {
+    fn the_sun_has_its_known_sums() {
         let sum = |f: &dyn Fn(f64) -> f64| (360..=830).map(|nm| f(f64::from(nm))).sum::<f64>();
-        // CIE 1931: the three functions' sums over 1 nm are 106.87 (equal-energy white); the fit keeps them within 1 %.
-        for k in 0..3 {
-            let total = sum(&|nm| cie_1931(nm)[k]);
-            assert!((total / 106.87 - 1.0).abs() < 0.01, "{k}: {total}");
-        }
-        // Tabulated values of the standard observer.
-        for (nm, xyz) in
-            [(450.0, [0.3362, 0.0380, 1.7721]), (555.0, [0.5121, 1.0, 0.0057]), (600.0, [1.0622, 0.6310, 0.0008])]
-        {
-            for (ours, table) in cie_1931(nm).iter().zip(xyz) {
-                assert!((ours - table).abs() < 0.03, "{nm}: {ours} {table}");
-            }
-        }
         // Luminous solar constant: 133.3 klx (Darula, Kittler and Gueymard 2005); its chromaticity 0.3234, 0.3333.
         let sun = sun_rec709();
         assert!((luminance(&sun) / 133_334.0 - 1.0).abs() < 0.005, "{}", luminance(&sun));
@@ -434,9 +382,6 @@ mod tests {
         for c in 0..3 {
             assert!((sun[c] / luminance(&sun) / equal[c] - 1.0).abs() < 0.01, "{sun:?} {equal:?}");
         }
-        // D65 is white.
-        let white = apply(&REC709_FROM_XYZ, &[0.95047, 1.0, 1.08883]);
-        assert!(white.iter().all(|v| (v - 1.0).abs() < 5e-4), "{white:?}");
         // The solar constant's part between 360 and 830 nm.
         assert!((sum(&solar_irradiance) - 730.0).abs() < 15.0, "{}", sum(&solar_irradiance));
     }

@@ -1,0 +1,140 @@
+//! How much light a star sends and of which colour, and what the air leaves of it.
+
+use std::sync::OnceLock;
+
+use crate::light::{
+    luminance,
+    spectrum::{black_body, rec709_of_wavelength},
+};
+
+/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical Quantities,
+/// section 93; Crumey 2014, section 1.3).
+pub const MAGNITUDE_0_LUX: f64 = 2.54e-6;
+
+/// Illuminance of a star above the air on a surface that faces it, lux (Pogson 1856).
+pub fn illuminance_lux(magnitude: f64) -> f64 {
+    MAGNITUDE_0_LUX * 10f64.powf(-0.4 * magnitude)
+}
+
+/// Temperature of the black body that has a star's B-V, K (Ballesteros 2012, EPL 97, 34008, eq. 14). For B-V in [-0.4, 2.0]; values
+/// outside count as the ends.
+pub fn temperature_of_color_index(b_v: f64) -> f64 {
+    let x = 0.92 * b_v.clamp(-0.4, 2.0);
+    4600.0 * (1.0 / (x + 1.7) + 1.0 / (x + 0.62))
+}
+
+/// Colour of a black body in linear Rec. 709 (white is D65, as everywhere) of luminance 1: Planck's law and the standard observer of
+/// 1931, summed in steps of 5 nm. Light redder than Rec. 709 can show, below 1900 K, loses its negative blue.
+fn integrated_color(temperature_k: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for nm in (360..=830).step_by(5).map(f64::from) {
+        let c = rec709_of_wavelength(nm);
+        (0..3).for_each(|k| sum[k] += c[k] * black_body(nm, temperature_k));
+    }
+    let sum = sum.map(|v| v.max(0.0));
+    let total = luminance(&sum);
+    sum.map(|v| v / total)
+}
+
+/// Steps of the table of colours, in millionths of a kelvin's inverse (mired).
+const MIRED_STEP: f64 = 10.0;
+
+/// Linear Rec. 709 colour of luminance 1 of a black body of a temperature in [1000, 100000] K, from a table in steps of 10 mired,
+/// within 0.5 % of the sum over wavelengths. Any thread.
+pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
+    static TABLE: OnceLock<[[f64; 3]; 101]> = OnceLock::new();
+    let table = TABLE.get_or_init(|| std::array::from_fn(|i| integrated_color(1e6 / (MIRED_STEP * i as f64).max(1.0))));
+    let x = (1e6 / temperature_k.clamp(1e3, 1e6)) / MIRED_STEP;
+    let i = (x as usize).min(table.len() - 2);
+    let f = x - i as f64;
+    std::array::from_fn(|k| table[i][k] * (1.0 - f) + table[i + 1][k] * f)
+}
+
+/// Illuminance above the air of a star, lux a channel of linear Rec. 709.
+pub fn star_lux(magnitude: f64, temperature_k: f64) -> [f64; 3] {
+    color_of_temperature(temperature_k).map(|c| c * illuminance_lux(magnitude))
+}
+
+/// Relative air mass towards an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the horizon as at it: 38.
+pub fn air_mass(elevation_deg: f64) -> f64 {
+    let h = elevation_deg.max(0.0);
+    1.0 / (h.to_radians().sin() + 0.505_72 * (h + 6.079_95).powf(-1.6364))
+}
+
+/// Share of a star's light that the air lets through at each of the three wavelengths, towards an apparent elevation, where straight
+/// up the optical depths are `zenith_depth` (Bouguer 1729). Channel by channel, as the sky's own conversion
+/// (`sky::spectral::Conversion::per_channel`) has it.
+pub fn transmittance(zenith_depth: [f64; 3], elevation_deg: f64) -> [f64; 3] {
+    let mass = air_mass(elevation_deg);
+    zenith_depth.map(|depth| (-depth * mass).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::spectrum::apply;
+
+    /// Chromaticity x, y of a linear Rec. 709 colour (the matrix of ITU-R BT.709).
+    fn chromaticity(rec709: [f64; 3]) -> [f64; 2] {
+        const XYZ_FROM_REC709: [[f64; 3]; 3] = [
+            [0.412_390_799, 0.357_584_339, 0.180_480_788],
+            [0.212_639_006, 0.715_168_679, 0.072_192_315],
+            [0.019_330_819, 0.119_194_780, 0.950_532_152],
+        ];
+        let xyz = apply(&XYZ_FROM_REC709, &rec709);
+        let sum: f64 = xyz.iter().sum();
+        [xyz[0] / sum, xyz[1] / sum]
+    }
+
+    #[test]
+    fn five_magnitudes_are_a_hundredfold() {
+        assert!((illuminance_lux(-1.46) - 9.75e-6).abs() < 1e-7, "Sirius, 9.7 microlux");
+        assert!((illuminance_lux(1.0) / illuminance_lux(6.0) - 100.0).abs() < 1e-9);
+        // The sun: -26.74 gives about 126 to 134 klx.
+        assert!((1.2e5..1.35e5).contains(&illuminance_lux(-26.74)));
+    }
+
+    #[test]
+    fn color_indices_give_the_temperatures_of_known_stars() {
+        // Ballesteros 2012, figure 5 and text: the sun (0.65) 5780 K, Vega (0.0) 9500 to 10200 K, Betelgeuse (1.85) 3200 to 3600 K.
+        assert!((temperature_of_color_index(0.65) - 5780.0).abs() < 60.0, "{}", temperature_of_color_index(0.65));
+        assert!((9500.0..10_200.0).contains(&temperature_of_color_index(0.0)));
+        assert!((3000.0..3600.0).contains(&temperature_of_color_index(1.85)));
+        assert_eq!(temperature_of_color_index(9.0), temperature_of_color_index(2.0));
+    }
+
+    #[test]
+    fn colours_lie_on_the_planckian_locus() {
+        // CIE 15:2004 and Kim et al. 2002: chromaticities of black bodies.
+        for (t, x, y) in
+            [(2856.0, 0.4476, 0.4074), (5000.0, 0.3451, 0.3516), (6500.0, 0.3135, 0.3237), (10_000.0, 0.2807, 0.2884)]
+        {
+            let c = color_of_temperature(t);
+            let got = chromaticity(c);
+            assert!((luminance(&c) - 1.0).abs() < 1e-6, "{t}: {c:?}");
+            assert!((got[0] - x).abs() < 0.006 && (got[1] - y).abs() < 0.006, "{t}: {got:?}");
+        }
+    }
+
+    #[test]
+    fn the_table_of_colours_is_within_half_a_percent() {
+        for i in 0..200 {
+            let t = 2000.0 * 1.0195f64.powi(i);
+            let (got, want) = (color_of_temperature(t), integrated_color(t));
+            let off = (0..3).map(|k| (got[k] - want[k]).abs()).fold(0.0, f64::max);
+            assert!(off < 5e-3, "{t}: {got:?} {want:?}");
+        }
+    }
+
+    #[test]
+    fn the_air_reddens_and_dims_towards_the_horizon() {
+        // Kasten and Young 1989, table II: 1 at the zenith, 1.994 at 30, 10.3 at 5, 38 at 0 degrees.
+        for (h, mass) in [(90.0, 1.0), (30.0, 1.994), (5.0, 10.31), (0.0, 37.92)] {
+            assert!((air_mass(h) / mass - 1.0).abs() < 0.005, "{h}: {}", air_mass(h));
+        }
+        let clear = [0.07, 0.11, 0.24];
+        let [up, low] = [90.0, 2.0].map(|h| transmittance(clear, h));
+        assert!(up[0] > up[2] && low[0] / low[2] > 10.0 && low[1] < 0.2, "{up:?} {low:?}");
+        assert_eq!(transmittance([0.0; 3], 0.0), [1.0; 3]);
+    }
+}

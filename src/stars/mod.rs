@@ -1,0 +1,76 @@
+//! The night sky: stars and planets as points of light, and the glow between them.
+//!
+//! On a clear night an eye sees some thousand stars, the planets, the band of the Milky Way, and a sky that is not black even without
+//! moon and towns. This room says where each of them stands over a place at a time, how much light it sends and of which colour, what
+//! the air leaves of it, and which of them need no drawing. [`Heavens::at`] gives the places, [`StarPass`] draws the points,
+//! [`NightSky`] is the glow. The moon and the sun are the sky's.
+//!
+//! ```text
+//! let heavens = Heavens::at(utc, &place, &settings)?;             // one matrix, aberration, planets
+//! let night = NightSky::new(&heavens, altitude_m, zenith_depth, settings.airglow);
+//! let floor = night.luminance(direction);                         // cd/m^2 a channel, moonless
+//! let count = stars.prepare(&device, &settings, &view, format, depth)?;
+//! stars.draw(&mut pass);                                          // adds radiance to the target
+//! ```
+//!
+//! # Places
+//! [`catalogue()`]: 9096 stars (Yale Bright Star Catalogue), and the motions of the 49 bright ones that move
+//! fast enough to be seen to in a century. From J2000.0 to (east, north, up) leads one matrix ([`crate::almanac::celestial::celestial_to_world`]): precession
+//! (Lieske 1977), nutation (two terms), sidereal time (Aoki et al. 1982), with UT1 as UTC. Annual aberration, 0.0057 degrees, is a vector
+//! added to each direction; the Earth's speed that it needs is the orbit's slope. Refraction lifts what is low (Saemundsson 1986).
+//! Planets: the series of Simon et al. 1994, magnitudes by Mallama and Hilton 2018.
+//!
+//! # Light
+//! Magnitude 0 is 2.54e-6 lux (Allen 1973); the colour is that of a black body ([`light`]). The air takes exp(-depth X) at each of the
+//! three wavelengths, X by Kasten and Young 1989. What falls on a pixel is the illuminance over the pixel's solid angle, spread by a
+//! cubic B-spline over 4 by 4 pixels, whose weights add up to 1 wherever the star stands ([`reference::spline`]): the same light at any
+//! resolution, and no flicker.
+//!
+//! # Glow
+//! Airglow of 145 S10 (Benn and Ellison 1998) by van Rhijn 1921; zodiacal light by table 16 of Leinert et al. 1998; the Milky Way as a
+//! disc of stars and dust that integrates to the column of Flynn et al. 2006, less the catalogue's own stars ([`galaxy`]). 1 S10, a star
+//! of magnitude 10 a square degree, is 8.34e-7 cd/m^2.
+//!
+//! # Settings
+//! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
+//!
+//! # Cost
+//! 24 bytes a point on the GPU: 218 448 for the catalogue and planets, uploaded once a year of simulated time; 144 bytes of planets
+//! and a block a frame. One draw of 4 corners an instance: only stars brighter than [`StarView::faintest_lux`], as they lie in the order
+//! of their light. Each lights at most 16 pixels. On the CPU a frame pays
+//! for [`Heavens::at`], some 600 sines, and one that shows the glow for [`NightSky::new`], which looks in 32 directions.
+//!
+//! # Error
+//! `cargo test --lib stars -- --nocapture` prints these and fails where they are exceeded.
+//!
+//! | what | against | worst |
+//! |---|---|---|
+//! | 12 stars, 5 places, 1950 to 2100 | ERFA (IAU 2006/2000A) | 0.005 degrees |
+//! | planets, 1950 to 2100 | VSOP87 (libastro) | 0.03 degrees |
+//! | planets' magnitudes | Skyfield (Mallama and Hilton 2018) | 0.03 |
+//! | light of drawn stars, 320x180 to 1280x720 | their illuminance | 2 % |
+//! | zenith of a moonless night | 21.0 to 22.1 mag/arcsec^2 measured | inside |
+//!
+//! Not in it: twinkling, glare in the eye, variable stars, the discs of planets (points up to the field of strong binoculars), clouds
+//! and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
+
+pub mod catalogue;
+pub mod galaxy;
+pub mod glow;
+pub mod light;
+pub mod limits;
+mod orbits;
+pub mod passes;
+pub mod places;
+pub mod planets;
+pub mod reference;
+pub mod settings;
+pub mod uniforms;
+
+pub use catalogue::{Star, catalogue};
+pub use glow::NightSky;
+pub use passes::{StarDepth, StarPass};
+pub use places::Heavens;
+pub use planets::{Body, PlanetPlace};
+pub use settings::StarSettings;
+pub use uniforms::StarView;

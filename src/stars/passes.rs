@@ -1,0 +1,199 @@
+//! Stars on the GPU: their buffer, their block and the one draw, in a pass of the host's.
+
+use std::sync::Arc;
+
+use super::{
+    catalogue::Star,
+    planets::BODIES,
+    settings::StarSettings,
+    uniforms::{StarInstance, StarUniform, StarView},
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        pass::{self, QuadsDesc},
+    },
+};
+
+/// The host's depth as the stars read it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StarDepth<'a> {
+    /// A view of the depth alone.
+    pub view: &'a wgpu::TextureView,
+    /// Whether it has several samples a pixel.
+    pub multisampled: bool,
+}
+
+/// What a pipeline is made for: the target's format, several samples of depth, any depth at all.
+type Kind = (wgpu::TextureFormat, bool, bool);
+
+/// The stars that the buffer holds.
+struct Loaded {
+    /// The host's own; none for the catalogue's.
+    stars: Option<Arc<[Star]>>,
+    /// Whole years since J2000.0 to which they are moved.
+    year: f64,
+    /// Illuminance of each above the air, lux, the brightest first.
+    lux: Vec<f32>,
+    buffer: wgpu::Buffer,
+}
+
+/// What a view holds for stars: the buffer of all, a block, and pipelines by what they draw into.
+pub struct StarPass {
+    block: wgpu::Buffer,
+    /// For depths of one and of several samples.
+    layouts: [wgpu::BindGroupLayout; 2],
+    none: wgpu::TextureView,
+    loaded: Option<Loaded>,
+    bound: Option<(Option<wgpu::TextureView>, wgpu::BindGroup)>,
+    pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
+    /// The pipeline's kind and the instances of the next draw.
+    prepared: Option<(Kind, u32)>,
+}
+
+impl StarPass {
+    /// Makes what does not depend on the stars; the buffer comes with the first [`StarPass::prepare`].
+    pub fn new(device: &Device) -> Self {
+        let device = &device.device;
+        let block = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("stars"),
+            size: size_of::<StarUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layouts = [false, true].map(|multi| {
+            let slots = [(0, Slot::Uniform(size_of::<StarUniform>())), (1, Slot::texels(multi))];
+            bind::layout(device, "stars", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
+        });
+        let none = bind::nothing(device, wgpu::TextureFormat::Rgba8Unorm);
+        Self { block, layouts, none, loaded: None, bound: None, pipelines: Vec::new(), prepared: None }
+    }
+
+    /// Brings everything up for a draw into a target of `format` (one sample a pixel, blendable), hidden by `depth` if there is one, and
+    /// says how many points it will draw. Stars that stand still are uploaded once; moving ones once a year of the simulated time.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a setting or view out of range; a missing shader file. GPU faults come through
+    /// [`Device::check`].
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        settings: &StarSettings,
+        view: &StarView<'_>,
+        format: wgpu::TextureFormat,
+        depth: Option<StarDepth<'_>>,
+    ) -> Result<u32> {
+        view.validate()?;
+        self.load(device, settings, view.heavens.years.round())?;
+        let Some(loaded) = &self.loaded else { return Ok(0) };
+        let mut planets = view.heavens.planets.map(|p| StarInstance::of_planet(&p));
+        if !settings.planets {
+            planets.iter_mut().for_each(|p| p.lux = [0.0; 3]);
+        }
+        device.queue.write_buffer(&loaded.buffer, 0, bytemuck::bytes_of(&planets));
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&view.uniform()));
+        let bright = loaded.lux.partition_point(|lux| f64::from(*lux) > view.faintest_lux);
+        let count = (BODIES.len() + bright) as u32;
+        let kind = (format, depth.is_some_and(|d| d.multisampled), depth.is_some());
+        if !self.pipelines.iter().any(|(k, _)| *k == kind) {
+            let made = pipeline(device, &self.layouts[usize::from(kind.1)], kind)?;
+            self.pipelines.push((kind, made));
+        }
+        self.bind(&device.device, depth);
+        self.prepared = Some((kind, count));
+        Ok(count)
+    }
+
+    /// Draws what was prepared, adding it to the target. Sets group 0 and vertex buffer 0.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let (Some((kind, count)), Some(loaded), Some((_, group))) = (self.prepared, &self.loaded, &self.bound) else {
+            return;
+        };
+        let Some((_, pipeline)) = self.pipelines.iter().find(|(k, _)| *k == kind) else { return };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_vertex_buffer(0, loaded.buffer.slice(..));
+        pass.draw(0..4, 0..count);
+    }
+
+    /// Bytes on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.block.size() + self.loaded.as_ref().map_or(0, |l| l.buffer.size())
+    }
+
+    /// Fills the buffer, unless it holds these stars already: first the planets' places, then the stars, the brightest first.
+    fn load(&mut self, device: &Device, settings: &StarSettings, year: f64) -> Result<()> {
+        let same = |a: &Option<Arc<[Star]>>, b: &Option<Arc<[Star]>>| match (a, b) {
+            (None, None) => true,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        };
+        if self.loaded.as_ref().is_some_and(|l| l.year == year && same(&l.stars, &settings.stars)) {
+            return Ok(());
+        }
+        settings.validate()?;
+        let brightness = |i: &StarInstance| crate::light::luminance(&i.lux.map(f64::from)) as f32;
+        let mut stars: Vec<_> = settings.stars().iter().map(|s| StarInstance::of_star(s, year)).collect();
+        stars.sort_by(|a, b| brightness(b).total_cmp(&brightness(a)));
+        let first = size_of::<StarInstance>() * BODIES.len();
+        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("stars"),
+            size: (first + size_of::<StarInstance>() * stars.len()) as u64,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        device.check_made()?;
+        device.queue.write_buffer(&buffer, first as u64, bytemuck::cast_slice(&stars));
+        let lux = stars.iter().map(brightness).collect();
+        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, lux, buffer });
+        Ok(())
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, depth: Option<StarDepth<'_>>) {
+        if self.bound.as_ref().is_some_and(|(view, _)| view.as_ref() == depth.map(|d| d.view)) {
+            return;
+        }
+        let multi = depth.is_some_and(|d| d.multisampled);
+        let texture = depth.map_or(&self.none, |d| d.view);
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("stars"),
+            layout: &self.layouts[usize::from(multi)],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.block.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(texture) },
+            ],
+        });
+        self.bound = Some((depth.map(|d| d.view.clone()), group));
+    }
+}
+
+fn pipeline(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    (format, multi, has_depth): Kind,
+) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(if multi { "stars/points.wgsl:multi" } else { "stars/points.wgsl" })?;
+    let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
+    let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    let instances = wgpu::VertexBufferLayout {
+        array_stride: size_of::<StarInstance>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &attributes,
+    };
+    Ok(pass::quads(
+        device,
+        &QuadsDesc {
+            label: "stars",
+            vertex: (&module, "star_vertex", &[]),
+            fragment: (&module, "star_fragment", &constants),
+            layouts: &[Some(layout)],
+            buffers: &[Some(instances)],
+            format,
+        },
+    ))
+}
+
+#[cfg(test)]
+mod tests;

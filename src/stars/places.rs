@@ -1,0 +1,136 @@
+//! Where stars and planets stand over a place at a time.
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    catalogue::Star,
+    planets::{PlanetPlace, earth_velocity, planets, sun_direction},
+    settings::StarSettings,
+};
+use crate::{
+    almanac::{
+        Utc,
+        celestial::{celestial_to_world, refraction_deg},
+    },
+    error::Result,
+    scene::Place,
+};
+
+/// The heavens over a place at a time: one matrix for all stars, and what is not in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heavens {
+    /// From the equator and equinox of J2000.0 to (east, north, up): precession, nutation and the Earth's turning, or the host's own.
+    pub to_world: DMat3,
+    /// The Earth's velocity over the speed of light in the axes of J2000.0: annual aberration. 0 with a host's own matrix.
+    pub velocity: DVec3,
+    /// Julian years since J2000.0, for proper motions; 0 with a host's own matrix.
+    pub years: f64,
+    /// The sun's direction in the axes of J2000.0.
+    pub sun: DVec3,
+    /// Mercury to Uranus, whether they are drawn or not.
+    pub planets: [PlanetPlace; 6],
+}
+
+impl Heavens {
+    /// The heavens over `place` at `utc`: within 0.005 degrees from 1950 to 2100 for the stars of the catalogue that
+    /// stand still and those of which it has the motion (tested against another almanac): most of it is the catalogue's own place.
+    ///
+    /// UT1 is taken as UTC. A host's own matrix gives stars as the catalogue has them: no motion, no aberration; the planets and the sun
+    /// then stand among them as at `utc`.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a place, time or setting out of range.
+    pub fn at(utc: Utc, place: &Place, settings: &StarSettings) -> Result<Self> {
+        settings.validate()?;
+        let own = celestial_to_world(utc, place)?;
+        let (to_world, velocity, years) = match settings.celestial_to_world {
+            Some(hosts) => (hosts, DVec3::ZERO, 0.0),
+            None => (own, earth_velocity(utc), utc.julian_centuries_tt() * 100.0),
+        };
+        Ok(Self { to_world, velocity, years, sun: sun_direction(utc), planets: planets(utc) })
+    }
+
+    /// Unit vector (east, north, up) towards a direction of J2000.0 as one who moves with the Earth sees it, without refraction:
+    /// aberration to the first order in v/c, which leaves out 0.0001 degrees.
+    pub fn seen(&self, direction: DVec3) -> DVec3 {
+        self.to_world * (direction + self.velocity).normalize()
+    }
+
+    /// The same of a star, moved to the time.
+    pub fn star(&self, star: &Star) -> DVec3 {
+        self.seen(star.direction_at(self.years))
+    }
+}
+
+/// A direction (east, north, up; unit) as the air lifts it: Saemundsson 1986 times the air's density over that of 1010 hPa and 10 C
+/// (`density`, 0 without air).
+pub fn lifted(direction: DVec3, density: f64) -> DVec3 {
+    let level = direction.x.hypot(direction.y);
+    if level < 1e-6 {
+        return direction;
+    }
+    let elevation = direction.z.atan2(level);
+    let apparent = elevation + (density * refraction_deg(elevation.to_degrees(), 1010.0, 10.0)).to_radians();
+    let (s, c) = apparent.sin_cos();
+    DVec3::new(direction.x / level * c, direction.y / level * c, s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::catalogue::star;
+    use super::*;
+    use crate::almanac::celestial::direction;
+
+    /// Rows of the almanac: number of the star, time, latitude, longitude, azimuth, elevation.
+    fn almanac() -> Vec<[f64; 6]> {
+        let lines = include_str!("testdata/stars.csv").lines().filter(|l| !l.starts_with('#')).skip(1);
+        let row = |line: &str| {
+            let mut cells = line.split(',');
+            let number = cells.next().unwrap().parse().unwrap();
+            let rest: Vec<f64> = cells.skip(1).map(|c| c.parse().unwrap()).collect();
+            [number, rest[0], rest[1], rest[2], rest[3], rest[4]]
+        };
+        lines.map(row).collect()
+    }
+
+    #[test]
+    fn twelve_stars_stand_where_another_almanac_has_them() {
+        let (mut worst, rows) = (0.0f64, almanac());
+        assert_eq!(rows.len(), 12 * 5 * 5);
+        for [number, utc, latitude_deg, longitude_deg, azimuth, elevation] in rows {
+            let place = Place { latitude_deg, longitude_deg, altitude_m: 0.0 };
+            let heavens = Heavens::at(Utc(utc), &place, &StarSettings::default()).unwrap();
+            let seen = heavens.star(star(number as u16).unwrap());
+            let apart = seen.angle_between(direction(azimuth, elevation)).to_degrees();
+            worst = worst.max(apart);
+            assert!(apart < 0.005, "{number} at {utc} {latitude_deg}: {apart} degrees apart");
+        }
+        println!("worst: {worst:.5} degrees");
+    }
+
+    #[test]
+    fn a_host_may_turn_the_heavens_itself() {
+        let place = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
+        let own = DMat3::from_rotation_x(0.3);
+        let settings = StarSettings { celestial_to_world: Some(own), ..Default::default() };
+        let heavens = Heavens::at(Utc(1.7e9), &place, &settings).unwrap();
+        let sirius = star(2491).unwrap();
+        assert!((heavens.star(sirius) - own * sirius.direction).length() < 1e-12);
+        let bad = StarSettings { airglow: -1.0, ..Default::default() };
+        assert!(Heavens::at(Utc(0.0), &place, &bad).unwrap_err().message.contains("airglow"));
+        assert!(Heavens::at(Utc(f64::NAN), &place, &settings).unwrap_err().message.contains("utc"));
+    }
+
+    #[test]
+    fn the_air_lifts_what_is_low_and_turns_nothing() {
+        for elevation in [-3.0, 0.0, 10.0, 45.0, 90.0] {
+            let d = direction(123.0, elevation);
+            let up = lifted(d, 1.0);
+            let lift = up.z.asin().to_degrees() - d.z.asin().to_degrees();
+            let want = refraction_deg(elevation, 1010.0, 10.0);
+            assert!((lift - want).abs() < 1e-6 && (up.length() - 1.0).abs() < 1e-12, "{elevation}: {lift}");
+            assert!((up.y.atan2(up.x) - d.y.atan2(d.x)).abs() < 1e-9 || elevation == 90.0);
+            assert!((lifted(d, 0.0) - d).length() < 1e-12);
+        }
+    }
+}
