@@ -58,9 +58,8 @@ impl DrawnEffect for FogView {
     }
 
     fn parts(&mut self, _: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        if self.variant.is_some() && stages.has(Stages::MEDIUM) {
-            put(&candidates::FOG, &[candidates::FOG_WORK]);
-        }
+        let is_there = self.variant.is_some() && stages.has(Stages::MEDIUM);
+        put(&candidates::FOG, is_there, &[candidates::FOG_WORK]);
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {

@@ -15,10 +15,10 @@ use crate::{
 pub(super) fn present(effects: &mut Effects, shot: &Shot<'_>, stages: Stages) -> Present {
     let mut present = Present { pixels: shot.pixels(), together: together(&shot.now.scene), ..Present::default() };
     for effect in effects.each() {
-        effect.parts(shot, stages, &mut |part, steps| {
+        effect.parts(shot, stages, &mut |part, is_there, steps| {
             if let Some(place) = PARTS.iter().position(|p| p.name == part.name) {
                 let now = &mut present.parts[place];
-                now.is_there = true;
+                now.is_there = is_there;
                 now.steps[..steps.len()].copy_from_slice(steps);
             }
         });

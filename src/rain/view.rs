@@ -409,10 +409,9 @@ impl DrawnEffect for RainView {
     }
 
     fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        if stages.has(Stages::PARTICLES) && self.is_planned() {
-            let drops = self.drops(shot.device, &shot.now.scene);
-            put(&candidates::RAIN, &candidates::rain_work(shot.pixels(), drops));
-        }
+        let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
+        let drops = if is_there { self.drops(shot.device, &shot.now.scene) } else { 0 };
+        put(&candidates::RAIN, is_there, &candidates::rain_work(shot.pixels(), drops));
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {

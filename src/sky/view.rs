@@ -55,12 +55,9 @@ impl DrawnEffect for SkyView {
 
     fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
         let lamps = shot.now.scene.lamps();
-        if shot.frame.depth.is_some() && stages.has(Stages::MEDIUM) {
-            put(&candidates::AIR, &[candidates::air_work(lamps)]);
-        }
-        if stages.has(Stages::BACKGROUND) {
-            put(&candidates::SKY, &[candidates::sky_work(lamps)]);
-        }
+        let between = shot.frame.depth.is_some() && stages.has(Stages::MEDIUM);
+        put(&candidates::AIR, between, &[candidates::air_work(lamps)]);
+        put(&candidates::SKY, stages.has(Stages::BACKGROUND), &[candidates::sky_work(lamps)]);
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {

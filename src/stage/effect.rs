@@ -75,8 +75,8 @@ pub(crate) struct Drawing<'a> {
     pub around: &'a Around,
 }
 
-/// Takes a part that a picture has, and the work of each of its steps.
-pub(crate) type PutPart<'a> = dyn FnMut(&Part, &[StepWork]) + 'a;
+/// Takes a part, whether a picture has it, and the work of each of its steps.
+pub(crate) type PutPart<'a> = dyn FnMut(&Part, bool, &[StepWork]) + 'a;
 
 /// One effect of a view. `src/effects.rs` lists them and hands each what a context holds of it (`gather`); all else goes through these,
 /// in this order.
@@ -97,7 +97,7 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Names the parts that a picture of these stages has of it, and their work.
+    /// Names its parts, whether a picture of these stages has them, and their work.
     fn parts(&mut self, _shot: &Shot<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
 
     /// Adds to the composition: constants, blocks, textures.

@@ -201,7 +201,7 @@ mod tests {
         let good = Star::new(10.0, 20.0, 3.0, 6000.0);
         let refused = |star: Star, field: &str| {
             let e = star.validate("stars[3]").unwrap_err();
-            assert!(e.message.starts_with(&format!("stars[3].{field} must be")), "{}", e.message);
+            assert!(e.to_string().starts_with(&format!("stars[3].{field} must be")), "{e}");
         };
         refused(Star { direction: DVec3::new(1.0, 1.0, 0.0), ..good }, "direction");
         refused(Star { motion: DVec3::splat(f64::NAN), ..good }, "motion");

@@ -117,8 +117,8 @@ mod tests {
         let sirius = star(2491).unwrap();
         assert!((heavens.star(sirius) - own * sirius.direction).length() < 1e-12);
         let bad = StarSettings { airglow: -1.0, ..Default::default() };
-        assert!(Heavens::at(Utc(0.0), &place, &bad).unwrap_err().message.contains("airglow"));
-        assert!(Heavens::at(Utc(f64::NAN), &place, &settings).unwrap_err().message.contains("utc"));
+        assert!(Heavens::at(Utc(0.0), &place, &bad).unwrap_err().to_string().contains("airglow"));
+        assert!(Heavens::at(Utc(f64::NAN), &place, &settings).unwrap_err().to_string().contains("utc"));
     }
 
     #[test]

@@ -65,7 +65,7 @@ mod tests {
         let good = StarSettings::default();
         assert!(good.validate().is_ok() && good.stars().len() == 9096);
         let refused = |settings: StarSettings, words: &str| {
-            let message = settings.validate().unwrap_err().message;
+            let message = settings.validate().unwrap_err().to_string();
             assert!(message.starts_with(words), "{message}");
         };
         refused(StarSettings { airglow: f64::NAN, ..good.clone() }, "airglow must be in [0, 10]");
