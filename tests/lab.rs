@@ -28,6 +28,8 @@ mod plot;
 mod quadrature;
 #[path = "../examples/lab/rain.rs"]
 mod rain;
+#[path = "../examples/lab/regression/mod.rs"]
+mod regression;
 #[path = "../examples/lab/report.rs"]
 mod report;
 #[path = "../examples/lab/scenes.rs"]
@@ -66,7 +68,7 @@ impl Drop for Scratch {
     }
 }
 
-fn run(arguments: &[&str]) -> welkin::Result<()> {
+fn run(arguments: &[&str]) -> welkin::Result<bool> {
     command::run(&arguments.iter().map(|a| (*a).to_owned()).collect::<Vec<_>>())
 }
 

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use welkin::candidates::{Candidate, Effect, candidate};
 use welkin::{Error, Result, Status};
 
-use crate::{chart, compare, growth, report, stability};
+use crate::{chart, compare, growth, regression, report, stability};
 
 const USAGE: &str = "usage: lab chart [sky|fog|rain|quadrature]    cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
        lab compare A B [--scene NAME]     two candidates' pictures side by side
        lab report                         everything on one HTML page
+       lab scenes DIR [--scene PART]      a PNG of every scene; of those whose names contain PART
+       lab scenes OLD NEW                 what differs between two such folders
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
 
 /// What was asked for.
@@ -56,13 +58,16 @@ fn find_candidate(name: &str) -> Result<Candidate> {
     found.ok_or_else(|| usage(&faults.join("\n")))
 }
 
-/// Does what the arguments ask for.
+/// Does what the arguments ask for. False where pictures that were compared differ.
 ///
 /// # Errors
 /// Unknown commands, effects, candidates, maps, scenes and options; files; the GPU.
-pub fn run(arguments: &[String]) -> Result<()> {
+pub fn run(arguments: &[String]) -> Result<bool> {
     let (words, options) = parse(arguments)?;
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    if let ["scenes", old, new] = words.as_slice() {
+        return regression::compare(old.as_ref(), new.as_ref());
+    }
     match words.as_slice() {
         ["chart"] => ["quadrature", "fog", "rain", "sky"].iter().try_for_each(|c| chart::run(c, &options)),
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
@@ -72,7 +77,10 @@ pub fn run(arguments: &[String]) -> Result<()> {
         ["compare", a, b] => compare::run(&find_candidate(a)?, &find_candidate(b)?, &options),
         ["compare", ..] => Err(usage("compare needs two candidates")),
         ["report"] => report::run(&options),
+        ["scenes", dir] => regression::draw(dir.as_ref(), options.scene.as_deref()),
+        ["scenes", ..] => Err(usage("scenes needs one folder to draw into, or two to compare")),
         [] => Err(usage("no command")),
         other => Err(usage(&format!("unknown command `{}`", other.join(" ")))),
     }
+    .map(|()| true)
 }

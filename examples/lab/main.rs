@@ -1,7 +1,7 @@
 //! The lab: speed charted against accuracy, growth of cost, and maps of where methods fail.
 //!
 //! `make lab ARGS="chart sky"`. Results are kept row by row: a run that was stopped is continued by the same command.
-//! Wrong arguments: a message on standard error, exit code 2, nothing written.
+//! Wrong arguments: a message on standard error, exit code 2, nothing written; pictures that differ: exit code 1.
 
 #[path = "../../tests/rain/brute.rs"]
 #[allow(dead_code)] // The tests need more of it.
@@ -17,6 +17,7 @@ mod picture;
 mod plot;
 mod quadrature;
 mod rain;
+mod regression;
 mod report;
 mod scenes;
 mod sky;
@@ -29,7 +30,8 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match command::run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         Err(e) => {
             eprintln!("lab: {e}");
             ExitCode::from(2)

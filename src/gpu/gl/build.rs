@@ -264,8 +264,7 @@ impl Workshop<'_> {
         let size = (part.facts.width, part.facts.height);
         let mut outcome = Ok(());
         for internal in std::iter::once(part.facts.internal).chain(others.iter().copied()) {
-            let texture = image::make_texture(self.ask.api, internal, size, samples);
-            made.textures.push(texture);
+            let texture = self.storage(part.side, internal, size, samples, made)?;
             let to = self.end(&[(part.side, Object::Texture(texture, target_of(samples)), internal)], made)?;
             outcome = blit::copy(self.ask.api, from, to, mask(part.side, internal), size);
             if outcome.is_ok() {
@@ -274,6 +273,16 @@ impl Workshop<'_> {
             }
         }
         outcome
+    }
+
+    /// A texture of ours like one of the host's images.
+    fn storage(&self, side: Side, internal: u32, size: (u32, u32), samples: u32, made: &mut Made) -> Result<u32> {
+        let api = self.ask.api;
+        api.take_error();
+        let texture = image::make_texture(api, internal, size, samples);
+        made.textures.push(texture);
+        let error = api.take_error();
+        if error == NO_ERROR { Ok(texture) } else { Err(refused(side, internal, "copy", error)) }
     }
 
     fn end(&self, images: &[(Side, Object, u32)], made: &mut Made) -> Result<End> {
@@ -308,9 +317,7 @@ impl Workshop<'_> {
             return Ok(framebuffer);
         }
         let (side, _, internal) = images[0];
-        let gives = if error == NO_ERROR { spell(status) } else { spell(error) };
-        let rest = format!("must be an image that this context can draw to, {} gives {gives}", spell(internal));
-        Err(Error::about(Status::Unsupported, side.parameter(), rest))
+        Err(refused(side, internal, "draw to", if error == NO_ERROR { status } else { error }))
     }
 
     /// The picture as wgpu textures: to draw to, and to read where wgpu cannot copy that.
@@ -331,8 +338,8 @@ impl Workshop<'_> {
         }
         let internal = part.facts.internal;
         let from = self.end(&[(Side::Color, object, internal)], made)?;
-        let texture = image::make_texture(self.ask.api, internal, (part.facts.width, part.facts.height), samples);
-        made.textures.push(texture);
+        let size = (part.facts.width, part.facts.height);
+        let texture = self.storage(Side::Color, internal, size, samples, made)?;
         let ours = Object::Texture(texture, target_of(samples));
         let to = self.end(&[(Side::Color, ours, internal)], made)?;
         part.reading = Some(Copied { from, to, texture, drawn_to: false });
@@ -430,6 +437,21 @@ impl Workshop<'_> {
         // SAFETY: the texture was made by this device, respects the description and holds the host's pixels.
         Ok(unsafe { self.device.create_texture_from_hal::<Gles>(texture, &desc, uses) })
     }
+}
+
+/// What this context cannot do with an image, with a format that always serves.
+fn refused(side: Side, internal: u32, verb: &str, answer: u32) -> Error {
+    let parameter = side.parameter();
+    let (internal, answer_text) = (spell(internal), spell(answer));
+    if answer == OUT_OF_MEMORY {
+        let text = format!("there is no memory to {verb} {parameter}, an image of {internal}");
+        return Error::new(Status::OutOfMemory, text);
+    }
+    let serves = if side == Side::Depth { "GL_DEPTH_COMPONENT24" } else { "GL_RGBA8" };
+    let rest = format!(
+        "must be an image that this context can {verb} ({serves} always is one), {internal} gives {answer_text}"
+    );
+    Error::about(Status::Unsupported, parameter, rest)
 }
 
 /// The state wgpu finds a texture in: it must be one that the usage allows.

@@ -106,9 +106,13 @@ pub(super) fn format(internal: u32, side: Side) -> Result<Format> {
     Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
-/// The client format and type with which `internal` can be allocated without data.
+/// The client format and type with which `internal` can be allocated without data. OpenGL ES takes those of its table alone
+/// (OpenGL ES 3.0 specification, table 3.2): an image without alpha is allocated without it.
 pub(super) fn allocation(internal: u32) -> (u32, u32) {
     match internal {
+        R8 => (RED, UNSIGNED_BYTE),
+        RGB8 | SRGB8 => (RGB, UNSIGNED_BYTE),
+        RGB16F => (RGB, HALF_FLOAT),
         RGB10_A2 => (RGBA, UNSIGNED_INT_2_10_10_10_REV),
         RGBA16F => (RGBA, HALF_FLOAT),
         RGBA32F => (RGBA, FLOAT),
@@ -147,6 +151,13 @@ mod tests {
             assert!(error.to_string().starts_with(name) && error.to_string().contains("GL_RGBA8"), "{}", error);
         }
         assert!(format(RGB16F, Side::Normals).is_ok() && format(R8, Side::Classes).is_ok());
+    }
+
+    #[test]
+    fn every_accepted_format_is_spelled_by_name() {
+        for (internal, name, _) in [COLOR, DEPTH, MASK, NORMALS].concat() {
+            assert_eq!(spell(internal), format!("{name} (0x{internal:04X})"));
+        }
     }
 
     #[test]

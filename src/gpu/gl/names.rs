@@ -160,7 +160,14 @@ pub(crate) fn spell(value: u32) -> String {
         DEPTH_COMPONENT32F => "GL_DEPTH_COMPONENT32F",
         DEPTH24_STENCIL8 => "GL_DEPTH24_STENCIL8",
         DEPTH32F_STENCIL8 => "GL_DEPTH32F_STENCIL8",
+        RGB8 => "GL_RGB8",
         RGBA8 => "GL_RGBA8",
+        SRGB8 => "GL_SRGB8",
+        SRGB8_ALPHA8 => "GL_SRGB8_ALPHA8",
+        RGB10_A2 => "GL_RGB10_A2",
+        RGBA16F => "GL_RGBA16F",
+        R11F_G11F_B10F => "GL_R11F_G11F_B10F",
+        RGBA32F => "GL_RGBA32F",
         _ => return format!("0x{value:04X}"),
     };
     format!("{known} (0x{value:04X})")
