@@ -1,5 +1,7 @@
 //! The night sky between the stars: airglow, zodiacal light and the Milky Way.
 
+use std::f64::consts::TAU;
+
 use glam::{DMat3, DVec3};
 
 use super::{
@@ -13,8 +15,8 @@ use super::{
 const SQUARE_DEGREES_PER_SR: f64 = 3_282.806_35;
 /// Luminance of 1 S10, one star of magnitude 10 a square degree, cd/m^2: its illuminance over a square degree, 8.3e-7.
 pub const S10_CD_M2: f64 = MAGNITUDE_0_LUX * 1e-4 * SQUARE_DEGREES_PER_SR;
-/// Airglow at the zenith at night near the sun's least activity, seen from the ground, S10 (Benn and Ellison 1998, New Astronomy
-/// Reviews 42, 503: La Palma).
+/// Airglow at the zenith at night near the sun's least activity, S10 (Benn and Ellison 1998, La Palma Technical Note 115: 2.5 times the
+/// zodiacal light at the ecliptic's pole).
 const AIRGLOW_S10: f64 = 145.0;
 /// Height of the glowing layer, m, and the depth below its top over which it fades for one who rises through it (Leinert et al. 1998,
 /// section 6).
@@ -24,9 +26,9 @@ const AIRGLOW_DEPTH_M: f64 = 1e4;
 const EARTH_RADIUS_M: f64 = 6.371e6;
 /// Directions whose mean stands for the dome of the sky.
 const DOME: u32 = 32;
-/// Colours as black bodies, K: of airglow B-V = 0.9 (Benn and Ellison 1998), of the zodiacal light the sun's (Leinert et al. 1998,
-/// section 8.3), of faint stars B-V = 0.75.
-const AIRGLOW_K: f64 = 5000.0;
+/// Colours as black bodies, K: of airglow that of the dark sky, B-V = 0.8 (Benn and Ellison 1998), of the zodiacal light the sun's
+/// (Leinert et al. 1998, section 8), of faint stars one of B-V = 0.75.
+const AIRGLOW_K: f64 = 5280.0;
 const ZODIACAL_K: f64 = 5772.0;
 const STARLIGHT_K: f64 = 5400.0;
 
@@ -121,7 +123,7 @@ pub struct NightSky {
 
 impl NightSky {
     /// The glow over a place `altitude_m` above the sea where the air's optical depths straight up are `zenith_depth`. `airglow`: its
-    /// strength, 1 at the sun's least activity, up to about 2 at the greatest.
+    /// strength, 1 at the sun's least activity, 1.7 at the greatest (the sky is then brighter by 0.4 magnitudes, Benn and Ellison 1998).
     pub fn new(heavens: &Heavens, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         let from_world = heavens.to_world.transpose();
         let to_ecliptic = ecliptic_to_equator().transpose();
@@ -171,6 +173,16 @@ impl NightSky {
         let left = transmittance(self.zenith_depth, level.z.asin().to_degrees());
         let above = self.above_air(level);
         std::array::from_fn(|k| above[k] * left[k] + self.lit_air[k] * (1.0 - left[k]))
+    }
+}
+
+impl NightSky {
+    /// Illuminance of the glow on level ground, lux a channel: the mean over the dome. The catalogue's stars, 6e-5 lux, are not in it.
+    pub fn level_lux(&self) -> [f64; 3] {
+        (0..DOME).map(dome_direction).fold([0.0; 3], |sum, direction| {
+            let luminance = self.luminance(direction);
+            std::array::from_fn(|k| sum[k] + luminance[k] * direction.z * TAU / f64::from(DOME))
+        })
     }
 }
 
@@ -283,7 +295,12 @@ mod tests {
                 }
             }
         }
-        // Horizon and zenith are alike within a factor of two.
+        // Moonless ground has 0.5 to 1.5 mlux from the sky alone; the dome's few directions stand for all of them.
+        let lux = luminance(&sky.level_lux());
+        println!("level ground {:.2} mlux", 1e3 * lux);
+        assert!((5e-4..1.5e-3).contains(&lux), "{lux}");
+        // Horizon and zenith are alike within a factor of two; at 1.5 air masses the sky is brighter by 0.25 magnitudes (Benn and
+        // Ellison 1998).
         let dome = |e: f64| {
             (0..36)
                 .map(|a| luminance(&sky.luminance(crate::almanac::celestial::direction(10.0 * f64::from(a), e))))
@@ -291,6 +308,8 @@ mod tests {
         };
         let ratio = dome(0.0) / dome(90.0);
         assert!((0.5..2.0).contains(&ratio), "{ratio}");
+        let slanting = 2.5 * (dome(41.8) / dome(90.0)).log10();
+        assert!((0.1..0.4).contains(&slanting), "{slanting}");
         assert_eq!(sky.luminance(-DVec3::Z + DVec3::X), sky.luminance(DVec3::X), "below the horizon as at it");
     }
 }

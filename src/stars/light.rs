@@ -7,8 +7,8 @@ use crate::light::{
     spectrum::{black_body, rec709_of_wavelength},
 };
 
-/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical Quantities,
-/// section 93; Crumey 2014, section 1.3).
+/// Illuminance of a star of magnitude 0 above the air on a surface that faces it, lux (Allen 1973, Astrophysical Quantities;
+/// Crumey 2014, MNRAS 442, 2600).
 pub const MAGNITUDE_0_LUX: f64 = 2.54e-6;
 
 /// Illuminance of a star above the air on a surface that faces it, lux (Pogson 1856).

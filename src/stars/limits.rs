@@ -10,7 +10,7 @@ const LUX_PER_FOOT_CANDLE: f64 = 10.763_91;
 const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 
 /// Least illuminance at the eye of a star that can be seen against a background of `background_cd_m2`, lux: Hecht's law as Schaefer
-/// (1990, PASP 102, 212, eqs. 16 to 18, after Knoll, Tousey and Hulburt 1946) has it,
+/// (1990, PASP 102, 212, after Knoll, Tousey and Hulburt 1946) has it,
 ///
 /// `I = C (1 + (K B)^(1/2))^2`, with log C = -9.80 and log K = -1.90 for rods, -8.35 and -5.90 for cones,
 ///

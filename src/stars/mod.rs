@@ -14,10 +14,10 @@
 //! ```
 //!
 //! # Places
-//! [`catalogue()`]: 9096 stars (Yale Bright Star Catalogue), and the motions of the 49 bright ones that move
-//! fast enough to be seen to in a century. From J2000.0 to (east, north, up) leads one matrix ([`crate::almanac::celestial::celestial_to_world`]): precession
-//! (Lieske 1977), nutation (two terms), sidereal time (Aoki et al. 1982), with UT1 as UTC. Annual aberration, 0.0057 degrees, is a vector
-//! added to each direction; the Earth's speed that it needs is the orbit's slope. Refraction lifts what is low (Saemundsson 1986).
+//! [`catalogue()`]: 9096 stars (Yale Bright Star Catalogue), and the proper motions of 49 bright ones that move most. One matrix
+//! ([`crate::almanac::celestial::celestial_to_world`]) leads from J2000.0 to (east, north, up): precession (Lieske 1977), nutation (two
+//! terms), sidereal time (Aoki et al. 1982), with UT1 as UTC. Annual aberration, 0.0057 degrees, is a vector added to each direction; the
+//! Earth's speed that it needs is the orbit's slope. Refraction lifts what is low (Saemundsson 1986).
 //! Planets: the series of Simon et al. 1994, magnitudes by Mallama and Hilton 2018.
 //!
 //! # Light
@@ -27,9 +27,9 @@
 //! resolution, and no flicker.
 //!
 //! # Glow
-//! Airglow of 145 S10 (Benn and Ellison 1998) by van Rhijn 1921; zodiacal light by table 16 of Leinert et al. 1998; the Milky Way as a
-//! disc of stars and dust that integrates to the column of Flynn et al. 2006, less the catalogue's own stars ([`galaxy`]). 1 S10, a star
-//! of magnitude 10 a square degree, is 8.34e-7 cd/m^2.
+//! Airglow of 145 S10 at the zenith (Benn and Ellison 1998), brighter below by van Rhijn 1921; zodiacal light by table 16 of Leinert et
+//! al. 1998; the Milky Way as a disc of stars and dust with the luminosity of Flynn et al. 2006, less the catalogue's own stars
+//! ([`galaxy`]). 1 S10, a star of magnitude 10 a square degree, is 8.34e-7 cd/m^2. The air dims all three and scatters the dome's mean back.
 //!
 //! # Settings
 //! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
@@ -37,8 +37,8 @@
 //! # Cost
 //! 24 bytes a point on the GPU: 218 448 for the catalogue and planets, uploaded once a year of simulated time; 144 bytes of planets
 //! and a block a frame. One draw of 4 corners an instance: only stars brighter than [`StarView::faintest_lux`], as they lie in the order
-//! of their light. Each lights at most 16 pixels. On the CPU a frame pays
-//! for [`Heavens::at`], some 600 sines, and one that shows the glow for [`NightSky::new`], which looks in 32 directions.
+//! of their light. Each lights at most 16 pixels. On the CPU a frame pays for [`Heavens::at`], some 900 sines and cosines, and one that
+//! shows the glow for [`NightSky::new`], which looks in 32 directions.
 //!
 //! # Error
 //! `cargo test --lib stars -- --nocapture` prints these and fails where they are exceeded.

@@ -12,7 +12,7 @@ pub const PEAK_WEIGHT: f64 = 4.0 / 9.0;
 /// Stars fade in from the faintest drawn to this many times its light: half a magnitude.
 pub const FADE: f64 = 1.585;
 
-/// The cubic B-spline (Schoenberg 1946; Unser 1999, eq. 3): `2/3 - a^2 + a^3 / 2` for `a = |x| < 1`, `(2 - a)^3 / 6` up to 2.
+/// The cubic B-spline (Schoenberg 1946; Unser 1999): `2/3 - a^2 + a^3 / 2` for `a = |x| < 1`, `(2 - a)^3 / 6` up to 2.
 ///
 /// Its values at whole steps from any place on add up to exactly 1, and so do their products on a grid of pixels: a star's light is the
 /// same wherever it stands between pixels. Its standard deviation is 0.577 pixels.

@@ -19,7 +19,7 @@ pub struct StarSettings {
     pub planets: bool,
     /// From the equator and equinox of J2000.0 to (east, north, up), in place of the Earth's own turning: a rotation. `None` by default.
     pub celestial_to_world: Option<DMat3>,
-    /// Strength of the airglow, [0, 10]: 1, the default, near the sun's least activity, about 2 at the greatest.
+    /// Strength of the airglow, [0, 10]: 1, the default, near the sun's least activity, 1.7 at the greatest.
     pub airglow: f64,
 }
 

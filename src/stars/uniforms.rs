@@ -135,7 +135,7 @@ impl StarInstance {
     }
 }
 
-/// Temperature of a black body of a planet's colour, K: its B-V (Mallama, Krobusek and Pavlov 2017, Icarus 282, 19, table 5).
+/// Temperature of a black body of a planet's colour, K: its B-V (Mallama, Krobusek and Pavlov 2017, Icarus 282, 19).
 pub fn planet_temperature_k(body: Body) -> f64 {
     let b_v = match body {
         Body::Mercury => 0.97,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec2, DVec3};
 use welkin::{
     Result,
-    context::{Context, GroundModel},
+    context::Context,
     fog::{
         CompatibilityLaw, DistanceKind, FogLayer, Law, Patches, Phase, Profile, koschmieder_extinction_per_m,
         laws::Curve,
@@ -13,7 +13,7 @@ use welkin::{
     frame::{Exposure, FrameFlags, Stages, ToneCurve},
     glass::{Pane, Windscreen, WiperArm},
     gpu::Device,
-    ground::SurfaceClass,
+    ground::{GroundModel, SurfaceClass},
     rain::{AreaMotion, AreaRain, AreaShape, OccluderMap, RainArea, RainModel, RainSettings, Taken},
     scene::{Axes, ClipSpace, HostLight, Place, WorldFrame, WorldKind},
     sky::{SkyModel, SkySettings},

@@ -31,8 +31,7 @@ pub fn draw(dir: &Path, part: Option<&str>) -> Result<()> {
     let mut drawn = 0;
     for scene in scenes.iter().filter(|s| part.is_none_or(|p| s.name.contains(p))) {
         let began = Instant::now();
-        let Some(picture) =
-            devices.draw(scene).map_err(|e| Error::new(e.status, format!("{}: {}", scene.name, e.message)))?
+        let Some(picture) = devices.draw(scene).map_err(|e| Error::new(e.status, format!("{}: {}", scene.name, e)))?
         else {
             eprintln!("{}: left out, this machine has no device for it", scene.name);
             continue;
@@ -144,7 +143,7 @@ mod tests {
         std::fs::rename(new.join(file), new.join("another.png")).unwrap();
         assert!(!compare(&old, &new).unwrap());
         let e = draw(&new, Some("no such scene")).unwrap_err();
-        assert!(e.message.contains("--scene"), "{e}");
+        assert!(e.to_string().contains("--scene"), "{e}");
         std::fs::remove_dir_all(&dir).unwrap();
     }
 

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, DVec4};
 use welkin::{
     Result,
-    context::{Context, GroundModel},
+    context::Context,
     fog::Law,
     frame::{ColorSpace, Exposure, FrameFlags, Stages, ToneCurve},
     glass::Windscreen,
     gpu::Device,
+    ground::GroundModel,
     rain::RainSettings,
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, WorldFrame},
     sky::{SkySettings, sun::direction},
