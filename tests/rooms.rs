@@ -215,3 +215,67 @@ fn functions_fit_a_screen() {
         functions("impl A {\n    pub fn a(\n    ) {\n        b();\n    }\n}\n\nunsafe extern \"C\" fn c() {\n}\n");
     assert_eq!(two, [("a".to_string(), 4), ("c".to_string(), 2)]);
 }
+
+/// Words of an identifier, in lower case.
+fn words_of(identifier: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = '_';
+    for c in identifier.chars() {
+        if c == '_' || (c.is_uppercase() && before.is_lowercase()) {
+            words.push(String::new());
+        }
+        if c != '_' {
+            words.last_mut().expect("one at least").extend(c.to_lowercase());
+        }
+        before = c;
+    }
+    words
+}
+
+/// The identifiers of a file of Rust that name an effect; its comments and texts left out.
+fn effects_named_in(text: &str) -> BTreeSet<String> {
+    const NAMES: [&str; 15] = [
+        "sky",
+        "star",
+        "stars",
+        "cloud",
+        "clouds",
+        "fog",
+        "rain",
+        "snow",
+        "ground",
+        "glass",
+        "windscreen",
+        "sea",
+        "lightning",
+        "soil",
+        "flakes",
+    ];
+    // What light does at a place is no effect.
+    const LIGHT: [&str; 4] = ["ground", "ground_albedo", "sky_lux", "GroundLight"];
+    let code: String = text.lines().map(|l| l.split("//").next().expect("a first part").to_string() + "\n").collect();
+    let outside_texts: String = code.split('"').step_by(2).collect::<Vec<_>>().join(" ");
+    let identifiers = outside_texts.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let names = |i: &&str| words_of(i).iter().any(|w| NAMES.contains(&w.as_str()));
+    identifiers.filter(names).filter(|i| !LIGHT.contains(i)).map(str::to_string).collect()
+}
+
+#[test]
+fn identifiers_that_name_an_effect_are_found() {
+    let found = effects_named_in("let x = self.set_rain_areas(GroundView::new(\"fog\"), sky_lux); // snow\n");
+    assert_eq!(found, BTreeSet::from(["GroundView".to_string(), "set_rain_areas".to_string()]));
+}
+
+#[test]
+fn frame_and_context_name_no_effect() {
+    for (room, path) in files("src", "rs") {
+        if room == "frame" || room == "context" {
+            let found = effects_named_in(&read(&path));
+            assert!(
+                found.is_empty(),
+                "{} names {found:?}: that belongs in src/effects.rs or src/front",
+                path.display()
+            );
+        }
+    }
+}

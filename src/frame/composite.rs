@@ -139,7 +139,7 @@ impl Composite {
         composition: &Composition,
     ) -> Option<wgpu::BindGroup> {
         let [Some(between), Some(on_surfaces)] = &composition.blocks else { return None };
-        let [before, on_ground, terrain] = composition.textures.each_ref().map(Option::as_ref);
+        let [before, cells, terrain] = composition.textures.each_ref().map(Option::as_ref);
         let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);
@@ -160,7 +160,7 @@ impl Composite {
                 entry(2, depth_view.as_ref().unwrap_or(no_depth)),
                 entry(3, mask_view.as_ref().unwrap_or(&self.none)),
                 entry(5, before.unwrap_or(&self.none)),
-                entry(7, on_ground.unwrap_or(&self.none)),
+                entry(7, cells.unwrap_or(&self.none)),
                 entry(8, terrain.unwrap_or(&self.none)),
                 entry(9, classes.as_ref().unwrap_or(&self.none)),
                 entry(10, normals.as_ref().unwrap_or(&self.none)),

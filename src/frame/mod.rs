@@ -17,7 +17,7 @@ mod view;
 pub use crate::effects::PARTS;
 pub use crate::gpu::Shared;
 pub use crate::light::tone::{self, Exposure, ToneCurve};
-pub use crate::stage::{ColorSpace, CostItem, Costs, Frame, FrameFlags, ImageLayers, RainReport, Report, Stages};
+pub use crate::stage::{ColorSpace, CostItem, Costs, Frame, FrameFlags, ImageLayers, Report, Stages};
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;
 pub use view::View;

@@ -41,7 +41,7 @@ struct Looked {
     unit: f64,
     white: f64,
     /// The sky may be in the picture already.
-    with_sky: bool,
+    with_background: bool,
 }
 
 /// The watch over one view's unit.
@@ -56,13 +56,13 @@ pub(super) struct UnitWatch {
 
 impl UnitWatch {
     /// Goes on with a readback under way, and looks at the picture of this frame if its turn has come; `white_cd_m2` is the
-    /// luminance of white on level ground, `with_sky` says that BACKGROUND may be in the picture already.
+    /// luminance of white on level ground, `with_background` says that BACKGROUND may be in the picture already.
     pub fn watch(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
-        (white_cd_m2, with_sky): (f64, bool),
+        (white_cd_m2, with_background): (f64, bool),
     ) {
         self.advance(device);
         let Some(color) = frame.color else { return };
@@ -108,7 +108,8 @@ impl UnitWatch {
             );
         }
         let (unit, white) = (frame.cd_m2_per_unit, white_cd_m2);
-        self.looked = Some(Looked { format: color.format(), width: color.width(), pitch, rows, unit, white, with_sky });
+        self.looked =
+            Some(Looked { format: color.format(), width: color.width(), pitch, rows, unit, white, with_background });
         self.state.store(RECORDED, Ordering::Release);
     }
 
@@ -169,6 +170,6 @@ fn brightest(bytes: &[u8], looked: &Looked) -> Option<f64> {
         all.extend(green.filter(|l| l.is_finite() && *l > 0.0));
     }
     all.sort_unstable_by(f64::total_cmp);
-    let last = if looked.with_sky { all.len() / 5 } else { all.len().saturating_sub(1) };
+    let last = if looked.with_background { all.len() / 5 } else { all.len().saturating_sub(1) };
     all.get(last).copied()
 }

@@ -36,6 +36,7 @@ mod view;
 
 pub use crate::falling::area::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea};
 pub use crate::falling::{MAX_AREAS, drops, ice, sizes};
+pub use crate::stage::RainReport;
 pub use crate::surroundings::{
     MAX_OCCLUDER_MAPS, MAX_PLANES, MAX_SHELTERS, OccluderMap, Planes, Shelter, Taken, shelter,
 };
