@@ -311,7 +311,7 @@ fn what_is_no_map_is_named_and_the_maps_before_stay() {
     let no_number = Taken { clip_from_world: taken.clip_from_world * f64::NAN, ..taken };
     for (maps, name) in [
         (vec![one; 5], "at most 4"),
-        (vec![one, OccluderMap { depth: &colour, taken }], "maps[1].depth format Rgba8Unorm"),
+        (vec![one, OccluderMap { depth: &colour, taken }], "maps[1].depth.format: Rgba8Unorm"),
         (vec![OccluderMap { depth: &small, taken }], "maps[0].depth.width"),
         (vec![one, one, OccluderMap { depth: &good, taken: no_number }], "maps[2].clip_from_world"),
     ] {
