@@ -207,7 +207,7 @@ impl Glass {
     }
 
     /// One step of the water's, where there is any.
-    #[allow(clippy::too_many_arguments, reason = "each is another's business")]
+    #[allow(clippy::too_many_arguments, reason = "the step's inputs, which only this call brings together")]
     fn take_step(
         &mut self,
         device: &Device,
