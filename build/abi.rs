@@ -174,7 +174,7 @@ fn kind(model: &Model, ty: &syn::Type) -> (String, usize) {
             let (kind, inner) = kind(model, &a.elem);
             (kind, inner * n.base10_parse::<usize>().expect("a length"))
         }
-        syn::Type::Ptr(_) => ("Kind::Pointer".into(), 1),
+        syn::Type::Ptr(_) => ("FieldKind::Pointer".into(), 1),
         _ => (plain_kind(model, &type_name(ty)), 1),
     }
 }
@@ -193,16 +193,16 @@ fn plain_kind(model: &Model, name: &str) -> String {
         _ => "",
     };
     if !simple.is_empty() {
-        return format!("Kind::{simple}");
+        return format!("FieldKind::{simple}");
     }
     let is = |list: &[String]| list.iter().any(|n| n == name);
     let enums: Vec<String> = model.sections.iter().flat_map(|s| &s.enums).map(|e| e.name.clone()).collect();
     let structs: Vec<String> = model.sections.iter().flat_map(|s| &s.structs).map(|s| s.name.clone()).collect();
     if is(&enums) {
-        return format!("Kind::Enum(&{})", name.to_uppercase());
+        return format!("FieldKind::Enum(&{})", name.to_uppercase());
     }
     if is(&structs) {
-        return format!("Kind::Struct(&{})", name.to_uppercase());
+        return format!("FieldKind::Struct(&{})", name.to_uppercase());
     }
     let target = model.aliases.get(name).unwrap_or_else(|| panic!("no type {name} in the C interface"));
     kind(model, target).0

@@ -17,6 +17,7 @@
 #endif
 #ifndef WELKIN_NO_EXCEPTIONS
 #include <stdexcept>
+#include <string>
 #endif
 
 namespace welkin {

@@ -2,7 +2,12 @@
 //! valgrind. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
-use std::{fs, path::Path, path::PathBuf, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    sync::atomic::{AtomicU32, Ordering},
+};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -30,8 +35,10 @@ fn library() -> PathBuf {
 
 /// Compiles one of the C programs beside these tests.
 fn program(name: &str, options: &[&str], library: Option<&Path>) -> PathBuf {
-    // The tests run at the same time: each has a folder of its own.
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("library-{}", std::process::id()));
+    // The tests run at the same time, in one process or several: each has a folder of its own.
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    let folder = format!("library-{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     fs::create_dir_all(&dir).expect("the target directory is writable");
     let source = root().join(name);
     let cpp = name.ends_with(".cpp");

@@ -3,6 +3,9 @@
 //! wgpu allocates in every encoder and pass. So allocations are counted against the same wgpu calls made by hand, and, where
 //! there are line tables, some frames' allocations are asked who made them: the innermost caller that is wgpu's or Welkin's.
 
+#[path = "support/textures.rs"]
+mod textures;
+
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     backtrace::Backtrace,
@@ -24,6 +27,8 @@ use welkin::{
     scene::{Camera, WorldKind},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
+
+use textures::texture;
 
 struct Counting;
 
@@ -119,21 +124,6 @@ struct RustHost {
     times: wgpu::Buffer,
 }
 
-fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    let color = if format.has_depth_aspect() { U::empty() } else { U::COPY_SRC | U::COPY_DST };
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: 64, height: 36, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | color,
-        view_formats: &[],
-    })
-}
-
 /// A compute shader that does nothing to `buffer`.
 fn idle(device: &wgpu::Device, buffer: &wgpu::Buffer) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
     let ty = wgpu::BindingType::Buffer {
@@ -187,12 +177,12 @@ impl RustHost {
             })
         });
         let (idle, held) = idle(&device.device, &list);
-        let color = texture(&device, wgpu::TextureFormat::Rgba16Float);
+        let color = texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1);
         Self {
             target: color.create_view(&Default::default()),
             color,
-            copy: texture(&device, wgpu::TextureFormat::Rgba16Float),
-            depth: texture(&device, wgpu::TextureFormat::Depth32Float),
+            copy: texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1),
+            depth: texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1),
             device,
             context,
             view,

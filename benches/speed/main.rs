@@ -1,7 +1,7 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
 //! (record, first, fog, glass, ground, parts, rain, sky).
 
-#[path = "../../tests/depth_texture/mod.rs"]
+#[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
 mod first;
 mod fog;

@@ -346,7 +346,7 @@ fn rain_chart(lab: &Lab, options: &Options) -> Result<()> {
             RainMethod::Offered(settings) => settings,
             // As many quads as it draws.
             RainMethod::Source(lod) => {
-                RainSettings { model: RainModel::Drops, most_drops: Some(lod.drawn()), ..RainSettings::default() }
+                RainSettings { model: RainModel::Drops, most_drops: Some(lod.drop_count()), ..RainSettings::default() }
             }
         };
         let units = format!("{:.4e}", c.work.frame(640 * 360, true).at(&Price::default()));

@@ -91,7 +91,7 @@ impl Ephemeris {
         let knots = match &*kept {
             Some((known, knots)) if *known == first => knots,
             before => {
-                let knots = follow(before.as_ref(), first)?;
+                let knots = knots_from(before.as_ref(), first)?;
                 &kept.insert((first, knots)).1
             }
         };
@@ -100,7 +100,7 @@ impl Ephemeris {
 }
 
 /// The four knots from number `first` on, taken from those `before` where they are among them.
-fn follow(before: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geocentric; 4]> {
+fn knots_from(before: Option<&(f64, [Geocentric; 4])>, first: f64) -> Result<[Geocentric; 4]> {
     let knot = |i: usize| {
         let number = first + i as f64;
         let known = before.and_then(|(from, knots)| {

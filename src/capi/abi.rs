@@ -2,7 +2,7 @@
 
 use super::{
     boundary,
-    layout::{FUNCTIONS, Kind, STRUCTS},
+    layout::{FUNCTIONS, FieldKind, STRUCTS},
 };
 
 /// The header as it should be committed.
@@ -41,8 +41,8 @@ pub fn floats() -> Vec<(&'static str, &'static str, usize, bool, usize)> {
     let mut found = Vec::new();
     for s in STRUCTS {
         for f in s.fields {
-            if matches!(f.kind, Kind::F32 | Kind::F64) {
-                found.push((s.name, f.name, f.offset, matches!(f.kind, Kind::F64), f.count));
+            if matches!(f.kind, FieldKind::F32 | FieldKind::F64) {
+                found.push((s.name, f.name, f.offset, matches!(f.kind, FieldKind::F64), f.count));
             }
         }
     }
@@ -75,8 +75,8 @@ pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     for s in STRUCTS {
         for f in s.fields.iter().skip(3) {
             match f.kind {
-                Kind::Enum(info) => found.push((s.name, f.name, f.offset, info.wide)),
-                Kind::U32 if f.name.starts_with("reserved") => found.push((s.name, f.name, f.offset, false)),
+                FieldKind::Enum(info) => found.push((s.name, f.name, f.offset, info.wide)),
+                FieldKind::U32 if f.name.starts_with("reserved") => found.push((s.name, f.name, f.offset, false)),
                 _ => {}
             }
         }
@@ -90,7 +90,7 @@ pub fn integers() -> Vec<(&'static str, &'static str, usize, usize, usize)> {
     for s in STRUCTS {
         let tagged = s.fields.first().is_some_and(|f| f.name == "struct_size");
         for f in s.fields.iter().skip(if tagged { 3 } else { 0 }) {
-            if !matches!(f.kind, Kind::F32 | Kind::F64 | Kind::Pointer | Kind::Struct(_)) {
+            if !matches!(f.kind, FieldKind::F32 | FieldKind::F64 | FieldKind::Pointer | FieldKind::Struct(_)) {
                 found.push((s.name, f.name, f.offset, f.kind.size(), f.count));
             }
         }

@@ -12,7 +12,7 @@ use crate::error::{Error, Result, Status};
 /// What a field holds.
 #[derive(Clone, Copy, Debug)]
 #[allow(dead_code, reason = "the kinds that this version's structs do not use yet")]
-pub(crate) enum Kind {
+pub(crate) enum FieldKind {
     U8,
     U16,
     U32,
@@ -31,7 +31,7 @@ pub(crate) enum Kind {
 pub(crate) struct Field {
     pub name: &'static str,
     pub offset: usize,
-    pub kind: Kind,
+    pub kind: FieldKind,
     pub count: usize,
     /// What its documentation says it accepts, such as `[0, 1]`; empty if it says no range.
     pub range: &'static str,
@@ -94,7 +94,7 @@ pub(crate) const fn struct_size<T>() -> u32 {
     size_of::<T>() as u32
 }
 
-impl Kind {
+impl FieldKind {
     /// Bytes of one element.
     pub(crate) fn size(self) -> usize {
         match self {
@@ -148,16 +148,16 @@ unsafe fn check_fields(param: &dyn Display, base: *const u8, info: &'static Stru
 unsafe fn check_element(name: &Named<'_>, at: *const u8, field: &Field) -> Result<()> {
     let float = match field.kind {
         // SAFETY: the caller's promise.
-        Kind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
+        FieldKind::F32 => f64::from(unsafe { at.cast::<f32>().read_unaligned() }),
         // SAFETY: the caller's promise.
-        Kind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
+        FieldKind::F64 => unsafe { at.cast::<f64>().read_unaligned() },
         // SAFETY: the caller's promise; the width is the type's.
-        Kind::Enum(info) if info.wide => return info.check(name, unsafe { at.cast::<u64>().read_unaligned() }),
+        FieldKind::Enum(info) if info.wide => return info.check(name, unsafe { at.cast::<u64>().read_unaligned() }),
         // SAFETY: as above.
-        Kind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }.into()),
+        FieldKind::Enum(info) => return info.check(name, unsafe { at.cast::<u32>().read_unaligned() }.into()),
         // SAFETY: the caller's promise.
-        Kind::Struct(info) => return unsafe { check_fields(name, at, info, info.size) },
-        Kind::U32 if field.name.starts_with("reserved") => {
+        FieldKind::Struct(info) => return unsafe { check_fields(name, at, info, info.size) },
+        FieldKind::U32 if field.name.starts_with("reserved") => {
             // SAFETY: the caller's promise.
             let value = unsafe { at.cast::<u32>().read_unaligned() };
             return if value == 0 { Ok(()) } else { Err(Error::range(&name.to_string(), "0", value)) };

@@ -59,16 +59,16 @@ impl Frame<'_> {
             (&scene.sun, ground.sun_lux, &scene.moon, ground.moon_lux)
         };
         let level = |light: &crate::moment::Light| light.direction.z.max(0.0);
-        let sky = [0, 1, 2].map(|i| ground.sky_lux[i] + rest[i] * level(other));
+        let diffuse = [0, 1, 2].map(|i| ground.sky_lux[i] + rest[i] * level(other));
         let albedo = scene.planet.ground_albedo;
-        let up = [0, 1, 2].map(|i| albedo[i] * (sky[i] + facing[i] * level(main)));
+        let up = [0, 1, 2].map(|i| albedo[i] * (diffuse[i] + facing[i] * level(main)));
         let numbers =
             Numbers { space: self.color_space, unit: self.cd_m2_per_unit, exposure, curve: context.tone_curve() };
         let zip = |a: [f64; 3], b: [f64; 3], f: &dyn Fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
         Ok(FrameLight {
             direction: scene.world_to_enu.transpose() * main.direction,
-            direct: zip(sky, facing, &|sky, facing| numbers.of(sky + facing) - numbers.of(sky)),
-            ambient: sky.map(|e| numbers.of(e)),
+            direct: zip(diffuse, facing, &|diffuse, facing| numbers.of(diffuse + facing) - numbers.of(diffuse)),
+            ambient: diffuse.map(|e| numbers.of(e)),
             ambient_below: up.map(|e| numbers.of(e)),
             exposure,
         })

@@ -48,7 +48,7 @@ pub(super) struct LensUniform {
 
 /// The lattice that the lens shows.
 #[derive(Clone, Copy)]
-pub(super) struct Shown {
+pub(super) struct LensLattice {
     pub cell_m: f64,
     pub size: [u32; 2],
     /// Whether there is water on it.
@@ -59,7 +59,7 @@ pub(super) struct Shown {
 }
 
 impl LensUniform {
-    pub fn of(screen: &Windscreen, plane: &Plane, frame: &LensFrame<'_>, shown: &Shown) -> Result<Self> {
+    pub fn of(screen: &Windscreen, plane: &Plane, frame: &LensFrame<'_>, shown: &LensLattice) -> Result<Self> {
         let rays = Rays::of(&frame.camera.projection)?;
         let to_glass = DMat3::from_cols(plane.u, plane.v, plane.out).transpose();
         let clip = rays.to_clip() * to_glass.transpose();

@@ -6,11 +6,11 @@ use glam::{DVec2, DVec3};
 
 use super::{
     LensFrame, MAX_STEPS, Plane, Reach, STEPS_PER_S, Windscreen,
-    lens::{LensUniform, Shown},
+    lens::{LensLattice, LensUniform},
     passes::{GlassKit, Lattice, LensPass, LensVariant, Work},
     reach_pass::{MapReach, Mapped},
     reference::Cells,
-    step::{Acting, Tables, seed_key},
+    step::{StepConditions, Tables, seed_key},
 };
 use crate::{
     error::Result,
@@ -61,7 +61,7 @@ pub(crate) struct Glass {
     /// Simulation time of the last frame, and the windscreen then.
     last: Option<(f64, Windscreen)>,
     plane: Option<Plane>,
-    acting: Option<Acting>,
+    acting: Option<StepConditions>,
     /// Of the last frame: what boxes let through, and whether there were maps.
     reach: (Reach, bool),
     lattice: Option<Lattice>,
@@ -81,11 +81,11 @@ fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
-fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Conditions) -> Acting {
+fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Conditions) -> StepConditions {
     let up = moment.camera.rotation() * moment.up;
     // Steps of 50 m: a road's ups and downs must not cost new tables.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
-    Acting {
+    StepConditions {
         cell_m: plane.lattice().0,
         rain: DropSizes::new(&weather.precipitation, factor_in(&weather.air, level)),
         exposed: screen.exposed,
@@ -168,7 +168,7 @@ impl Glass {
             let screen = self.between(before, moment.time_s, time_s);
             let mut acts = acting(&screen, &plane, moment, &(moment.weather)(time_s));
             acts.cell_m = cell_m;
-            self.one(device, kit, (&acts, &screen), moment.seed, (step, size), before, moment.time_s);
+            self.take_step(device, kit, (&acts, &screen), moment.seed, (step, size), before, moment.time_s);
         }
         self.step = Some(now);
         self.record(device, kit, encoder, moment, mapped.as_ref())
@@ -194,7 +194,7 @@ impl Glass {
         device: &Device,
         kit: &GlassKit,
         moment: &AtGlass<'_>,
-        acts: &Acting,
+        acts: &StepConditions,
         (now, size): (i64, [u32; 2]),
     ) {
         self.step = Some(now);
@@ -206,13 +206,13 @@ impl Glass {
         }
     }
 
-    /// One step.
-    #[allow(clippy::too_many_arguments, reason = "each is another's business")]
-    fn one(
+    /// One step of the water's, where there is any.
+    #[allow(clippy::too_many_arguments, reason = "the step's inputs, which only this call brings together")]
+    fn take_step(
         &mut self,
         device: &Device,
         kit: &GlassKit,
-        (acts, screen): (&Acting, &Windscreen),
+        (acts, screen): (&StepConditions, &Windscreen),
         seed: u64,
         (step, size): (i64, [u32; 2]),
         before: Option<(f64, Windscreen)>,
@@ -226,7 +226,7 @@ impl Glass {
         self.moisture = if rains { 1.0 } else { self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s()) };
         let lattice = self.lattice.get_or_insert_with(|| Lattice::new(device, kit, size, MAX_STEPS as usize + 1));
         if was_dry {
-            let dry = Acting { exposed: 0.0, ..*acts };
+            let dry = StepConditions { exposed: 0.0, ..*acts };
             lattice.add(&self.tables.at((&dry, &self.reach.0), seed, step, lattice.size, &[None; 2]), Work::Declare);
         }
         let earlier = match before {
@@ -268,7 +268,7 @@ impl Glass {
         // Large beads: as heavy as the largest that a cell holds.
         let large = self.tables.flow();
         let size = lattice.map_or(plane.lattice().1, |l| l.size);
-        let shown = Shown { cell_m: acts.cell_m, size, wet, flow: large, key: self.key };
+        let shown = LensLattice { cell_m: acts.cell_m, size, wet, flow: large, key: self.key };
         let uniform = LensUniform::of(&self.screen, &plane, frame, &shown)?;
         let variant =
             LensVariant { format: frame.picture.format(), encoded: frame.encoded, has_mask: frame.mask.is_some() };

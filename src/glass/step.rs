@@ -50,7 +50,7 @@ pub struct StepUniform {
 
 /// What acts on the glass during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Acting {
+pub struct StepConditions {
     /// Edge of a cell, m.
     pub cell_m: f64,
     /// The rain.
@@ -71,7 +71,7 @@ pub struct Acting {
     pub temperature_c: f64,
 }
 
-impl Acting {
+impl StepConditions {
     /// The drops that arrive.
     pub fn arrivals(&self) -> Arrivals {
         Arrivals::of(&self.rain, self.exposed, self.up, self.approach_m_s)
@@ -88,7 +88,7 @@ impl Acting {
 
 /// The part of a step's numbers that follows from what acts; kept while nothing changes.
 pub struct Tables {
-    of: Option<Acting>,
+    of: Option<StepConditions>,
     numbers: StepUniform,
 }
 
@@ -115,7 +115,7 @@ pub fn seed_key(seed: u64) -> u32 {
 }
 
 impl Tables {
-    fn follow(&mut self, acting: &Acting) {
+    fn update(&mut self, acting: &StepConditions) {
         if self.of != Some(*acting) {
             self.numbers = numbers(acting);
             self.of = Some(*acting);
@@ -123,11 +123,11 @@ impl Tables {
     }
 
     /// Whether drops arrive at all.
-    pub fn arrive(&mut self, acting: &Acting) -> bool {
+    pub fn arrive(&mut self, acting: &StepConditions) -> bool {
         if acting.exposed <= 0.0 || acting.rain.number_per_m3() <= 0.0 {
             return false;
         }
-        self.follow(acting);
+        self.update(acting);
         self.numbers.arrive[0] > 0
     }
 
@@ -140,13 +140,13 @@ impl Tables {
     /// The numbers of `step`. `arms` are the wipers with their blades' angles before and now, rad.
     pub fn at(
         &mut self,
-        (acting, reach): (&Acting, &Reach),
+        (acting, reach): (&StepConditions, &Reach),
         seed: u64,
         step: i64,
         size: [u32; 2],
         arms: &[Option<(WiperArm, [f64; 2])>; 2],
     ) -> StepUniform {
-        self.follow(acting);
+        self.update(acting);
         let mut n = self.numbers;
         n.key = [key(seed, step as u64), seed_key(seed), size[0], size[1]];
         n.declared[2] = step as u32;
@@ -159,7 +159,7 @@ impl Tables {
     }
 }
 
-fn numbers(acting: &Acting) -> StepUniform {
+fn numbers(acting: &StepConditions) -> StepUniform {
     let mut n = StepUniform::zeroed();
     let arrivals = acting.arrivals();
     let per_cell = acting.cell_m * acting.cell_m / STEPS_PER_S;
@@ -192,7 +192,7 @@ fn numbers(acting: &Acting) -> StepUniform {
 }
 
 /// A class of beads, and whether it rests anywhere on the glass.
-fn bead(acting: &Acting, volume: f64, loss: f64) -> ([i32; 4], bool) {
+fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     let r = laws::radius_m(volume);
     let held = laws::retention_n(r);
     let pull = acting.down * (laws::WATER * laws::GRAVITY * volume);
@@ -268,8 +268,8 @@ mod tests {
     use super::*;
     use crate::gpu::shader;
 
-    pub fn driving(rain_mm_h: f64) -> Acting {
-        Acting {
+    pub fn driving(rain_mm_h: f64) -> StepConditions {
+        StepConditions {
             cell_m: 0.004,
             rain: DropSizes::of_rain(rain_mm_h, 1.0),
             exposed: 1.0,
@@ -306,7 +306,7 @@ mod tests {
         for rate in [0.0, 1e-9, 500.0] {
             for approach_m_s in [-400.0, 0.0, 400.0] {
                 for airflow_m_s in [-100.0, 0.0, 100.0] {
-                    let acting = Acting { approach_m_s, airflow_m_s, relative_humidity: 0.0, ..driving(rate) };
+                    let acting = StepConditions { approach_m_s, airflow_m_s, relative_humidity: 0.0, ..driving(rate) };
                     let n = numbers(&acting);
                     assert!(n.arrive[0] >= n.arrive[1] && n.arrive[1] >= n.arrive[2]);
                     assert!(n.beads.iter().all(|b| b[1].abs() <= 58_000 && b[2].abs() <= 58_000 && b[0] >= 0));

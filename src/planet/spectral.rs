@@ -299,7 +299,7 @@ impl Conversion {
 }
 
 /// A plain model of what air does to sunlight, for the fit.
-struct Air {
+struct AirSample {
     haze: f64,
     sun_masses: f64,
     ozone_masses: f64,
@@ -309,17 +309,17 @@ struct Air {
 
 /// The family of the fit. A list made by plain loops: chained flattening iterators compile to a read of an inner iterator
 /// that is not there yet, harmless but reported by valgrind in a host's program.
-fn airs() -> [Air; 144] {
+fn airs() -> [AirSample; 144] {
     const HAZES: [f64; 3] = [0.03, 0.2, 0.6];
     const SUN_MASSES: [f64; 6] = [1.0, 1.5, 2.5, 5.0, 10.0, 20.0];
     std::array::from_fn(|i| {
         let (sun_masses, haze) = (SUN_MASSES[i / 8 % 6], HAZES[i / 48]);
         let ozone = if i / 4 % 2 == 0 { 1.0 } else { 2.0 };
-        Air { haze, sun_masses, ozone_masses: sun_masses * ozone, kind: (i % 4) as u8 }
+        AirSample { haze, sun_masses, ozone_masses: sun_masses * ozone, kind: (i % 4) as u8 }
     })
 }
 
-impl Air {
+impl AirSample {
     fn transfer(&self, nm: f64) -> f64 {
         let gas = rayleigh_optical_depth(nm);
         let haze = self.haze * (nm / 550.0).powf(-1.3);

@@ -64,7 +64,7 @@ impl RainMethod {
                     Work { view: drawn.view.plus(STEP, f64::from(n)), view_bytes: u64::from(n) * STATE_BYTES, ..drawn }
                 }
             },
-            Self::Source(lod) => drops(lod.drawn()),
+            Self::Source(lod) => drops(lod.drop_count()),
         }
     }
 }

@@ -28,9 +28,9 @@ pub(super) struct CrownPass {
 }
 
 /// Which shaders a frame needs: for depth of several samples, with rims of areas near, with occluder maps.
-pub(super) type Kind = [bool; 3];
+pub(super) type CrownKind = [bool; 3];
 
-fn key(kind: Kind) -> usize {
+fn key(kind: CrownKind) -> usize {
     kind.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
 }
 
@@ -61,7 +61,12 @@ impl CrownPass {
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn prepare(&mut self, device: &Device, [frame, around]: [&wgpu::BindGroupLayout; 2], kind: Kind) -> Result<()> {
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        [frame, around]: [&wgpu::BindGroupLayout; 2],
+        kind: CrownKind,
+    ) -> Result<()> {
         let [multi, areas, maps] = kind;
         let make = &mut self.makes[key(kind)];
         if make.is_none() {
@@ -89,7 +94,7 @@ impl CrownPass {
         &self,
         pass: &mut wgpu::ComputePass<'_>,
         [frame, around]: [&wgpu::BindGroup; 2],
-        kind: Kind,
+        kind: CrownKind,
         slots: u32,
     ) {
         let Some(make) = &self.makes[key(kind)] else { return };
@@ -101,7 +106,7 @@ impl CrownPass {
     }
 
     /// Draws them; group 0 is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, [multi, ..]: Kind, slots: u32) {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, [multi, ..]: CrownKind, slots: u32) {
         let Some(draw) = &self.draws[usize::from(multi)] else { return };
         pass.set_pipeline(draw);
         pass.set_vertex_buffer(0, self.crowns.slice(..));

@@ -45,7 +45,7 @@ pub(super) struct CullPass {
     /// With and without states.
     marks: [Option<wgpu::ComputePipeline>; 2],
     order: Option<wgpu::ComputePipeline>,
-    /// Likewise, with and without rims of areas near, and occluder maps.
+    /// Indexed by whether drops are stepped, and whether area rims and occluder maps are in use.
     makes: [Option<wgpu::ComputePipeline>; 8],
     /// For each kind of depth.
     draws: [Option<wgpu::RenderPipeline>; 4],

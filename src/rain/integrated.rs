@@ -70,7 +70,7 @@ pub(crate) struct Left {
 }
 
 /// The wind that varies in space as a camera finds it: its place in cells of the grid.
-pub(crate) type Around<'a> = (&'a WindGrid, DVec3);
+pub(crate) type GridWind<'a> = (&'a WindGrid, DVec3);
 
 impl StepUniform {
     /// From what was `left` to now; none where there is nothing to step.
@@ -80,7 +80,7 @@ impl StepUniform {
         air: &Air,
         left: Option<Left>,
         carried: &dyn Fn(f64) -> DVec3,
-        around: Option<Around<'_>>,
+        around: Option<GridWind<'_>>,
         capacity: u32,
     ) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();

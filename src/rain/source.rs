@@ -37,7 +37,7 @@ impl Default for SourceLod {
 
 impl SourceLod {
     /// Drops that are drawn.
-    pub fn drawn(&self) -> u32 {
+    pub fn drop_count(&self) -> u32 {
         self.seeds * (1 + self.copies)
     }
 
@@ -52,7 +52,7 @@ impl SourceLod {
         if all <= 0.0 {
             return 0.0;
         }
-        let scale = f64::from(self.drawn()) * discs / all / (4.0 * std::f64::consts::PI * self.reach_m.powi(2));
+        let scale = f64::from(self.drop_count()) * discs / all / (4.0 * std::f64::consts::PI * self.reach_m.powi(2));
         let wanted = 0.5 * classes.extinction_per_m * (self.reach_m - NEAREST_M);
         let steps = 4000;
         let first = NEAREST_M / self.reach_m;
@@ -77,7 +77,7 @@ impl SourceLod {
         let growth = self.growth(classes);
         let all = classes.table.last().map_or(0.0, |row| f64::from(row[2]));
         let part = |r: u32| (f64::from(r) + 0.5) / 4_294_967_296.0;
-        let mut list = Vec::with_capacity(self.drawn() as usize);
+        let mut list = Vec::with_capacity(self.drop_count() as usize);
         for index in 0..self.seeds {
             let [a, b, c] = random3([seed, 0xcafe, index]).map(part);
             let [kind, ..] = random3([seed, 0xcaff, index]).map(part);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     Classes,
     cull_pass::source_layout,
-    integrated::{Around, Left, StepUniform},
+    integrated::{GridWind, Left, StepUniform},
     lattice::SHELLS,
     passes::STARTS,
     uniforms::{Air, RainUniform, StreakCamera},
@@ -118,7 +118,7 @@ impl StepPass {
             (self.states, self.left, self.groups) = (Some((capacity, buffer)), None, None);
         }
         let capacity = self.states.as_ref().map_or(0, |(c, _)| *c);
-        let around = stepped.around.map(|(grid, cells)| -> Around<'_> { (grid, cells) });
+        let around = stepped.around.map(|(grid, cells)| -> GridWind<'_> { (grid, cells) });
         self.take_wind(device, stepped.around.map(|(grid, _)| grid));
         self.bind(device, blocks);
         let left = self.left.filter(|_| !stepped.anew);

@@ -1,5 +1,7 @@
 //! The rain of a view: what it draws of what falls, from scene and camera.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
@@ -24,6 +26,7 @@ use crate::{
         rounding,
     },
     weather::Falling,
+    wind::WindGrid,
 };
 
 /// What a view holds for its drops.
@@ -354,10 +357,7 @@ impl RainView {
             let all = ConeUniform::new(block.seed, &there, &camera, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share * self.settings.contrast_gain)
         });
-        let around = now.wind_grid.map(|g| {
-            let to_enu = now.weather.world.frame_at(g.origin).world_to_enu;
-            (g, g.cells_at(now.eye, to_enu))
-        });
+        let around = grid_wind(now);
         let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
             classes: &classes,
             shot: &camera,
@@ -472,4 +472,11 @@ impl DrawnEffect for RainView {
     fn forget_picture(&mut self) {
         self.layer.forget_picture();
     }
+}
+
+/// The host's wind that varies in space, and where the camera is in it.
+fn grid_wind<'a>(now: &Moment<'a>) -> Option<(&'a Arc<WindGrid>, DVec3)> {
+    let grid = now.wind_grid?;
+    let to_enu = now.weather.world.frame_at(grid.origin).world_to_enu;
+    Some((grid, grid.cells_at(now.eye, to_enu)))
 }

@@ -1,6 +1,6 @@
 //! The ways to draw a sky that are charted against each other, with what they cost.
 
-use super::recipe::{Kind, Name, passes};
+use super::recipe::{Name, PassKind, passes};
 use super::settings::{SkyModel, SkySettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
@@ -243,11 +243,11 @@ pub fn work(s: &SkySettings) -> Work {
     for pass in passes(s) {
         let count = texels(pass.draws[0]) * f64::from(s.layers());
         let per_texel = pass.texel_cost(s);
-        let marches = matches!(pass.kind, Kind::Gather | Kind::IsotropicGather | Kind::Once);
+        let marches = matches!(pass.kind, PassKind::Gather | PassKind::IsotropicGather | PassKind::Once);
         let lookups = match pass.kind {
-            Kind::Gather if s.model.is_directional() && pass.order > 1 => 4.0 * per_texel,
-            Kind::Gather if pass.order > 1 => per_texel,
-            Kind::Scatter | Kind::Light => f64::from(2 * s.rule_zeniths * s.rule_azimuths),
+            PassKind::Gather if s.model.is_directional() && pass.order > 1 => 4.0 * per_texel,
+            PassKind::Gather if pass.order > 1 => per_texel,
+            PassKind::Scatter | PassKind::Light => f64::from(2 * s.rule_zeniths * s.rule_azimuths),
             _ => 0.0,
         };
         let samples = if marches { per_texel } else { 0.0 };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bytemuck::bytes_of;
 use wgpu::util::DeviceExt as _;
 
-use super::recipe::{Kind, Pass};
+use super::recipe::{Pass, PassKind};
 use super::settings::SkySettings;
 use super::uniforms::{DimsUniform, JobUniform};
 use crate::error::Result;
@@ -96,7 +96,7 @@ pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
 pub(crate) struct Builder {
     shared_layout: wgpu::BindGroupLayout,
     tables_layout: wgpu::BindGroupLayout,
-    pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
+    pipelines: Vec<(PassKind, wgpu::RenderPipeline)>,
     pub sampler: wgpu::Sampler,
 }
 
@@ -137,7 +137,7 @@ impl Builder {
         let shared = [block, block, block, Slot::Sampler, Slot::DynamicUniform(0)];
         let shared_layout = layout(device, "sky build", &shared);
         let tables_layout = layout(device, "sky build tables", &[Slot::Filtered; 6]);
-        let mut pipelines: Vec<(Kind, wgpu::RenderPipeline)> = Vec::new();
+        let mut pipelines: Vec<(PassKind, wgpu::RenderPipeline)> = Vec::new();
         for pass in passes {
             if pipelines.iter().all(|(k, _)| *k != pass.kind) {
                 let layouts = [&shared_layout, &tables_layout];
@@ -148,7 +148,7 @@ impl Builder {
     }
 
     /// The pipeline of a kind that is among the passes given to `new`.
-    pub fn pipeline(&self, kind: Kind) -> Option<&wgpu::RenderPipeline> {
+    pub fn pipeline(&self, kind: PassKind) -> Option<&wgpu::RenderPipeline> {
         self.pipelines.iter().find(|(k, _)| *k == kind).map(|(_, p)| p)
     }
 
@@ -328,13 +328,13 @@ fn pipeline(
 ) -> Result<wgpu::RenderPipeline> {
     let target: wgpu::ColorTargetState = TABLE_FORMAT.into();
     let entry = match pass.kind {
-        Kind::Norm => "norm",
-        Kind::Gather => "gather",
-        Kind::Scatter => "scatter",
-        Kind::Light => "light",
-        Kind::IsotropicGather => "isotropic_gather",
-        Kind::IsotropicScatter => "isotropic_scatter",
-        Kind::Once => "once",
+        PassKind::Norm => "norm",
+        PassKind::Gather => "gather",
+        PassKind::Scatter => "scatter",
+        PassKind::Light => "light",
+        PassKind::IsotropicGather => "isotropic_gather",
+        PassKind::IsotropicScatter => "isotropic_scatter",
+        PassKind::Once => "once",
     };
     let directional = f64::from(u8::from(settings.model.is_directional()));
     let desc = FullscreenDesc {

@@ -5,7 +5,7 @@ use super::uniforms::LIGHT_TILES;
 
 /// What a build pass does; the names are the entry points of `sky/build.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum PassKind {
     Norm,
     Gather,
     Scatter,
@@ -78,7 +78,7 @@ impl Name {
 /// One pass.
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
-    pub kind: Kind,
+    pub kind: PassKind,
     /// Order that is gathered, and whether the orders after it are added as a series.
     pub order: u32,
     pub last: bool,
@@ -88,7 +88,7 @@ pub(crate) struct Pass {
 }
 
 impl Pass {
-    fn new(kind: Kind, order: u32, last: bool, reads: [Name; 6], draws: &[Name]) -> Self {
+    fn new(kind: PassKind, order: u32, last: bool, reads: [Name; 6], draws: &[Name]) -> Self {
         Self { kind, order, last, reads, draws: draws.to_vec() }
     }
 
@@ -96,10 +96,10 @@ impl Pass {
     pub fn texel_cost(&self, s: &SkySettings) -> f64 {
         let directions = f64::from(2 * s.rule_zeniths * s.rule_azimuths);
         match self.kind {
-            Kind::Gather | Kind::IsotropicGather => f64::from(4 * s.build_panels),
-            Kind::Once => f64::from(4 * s.sky_panels),
-            Kind::Scatter => 0.3 * directions,
-            Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.2 * directions,
+            PassKind::Gather | PassKind::IsotropicGather => f64::from(4 * s.build_panels),
+            PassKind::Once => f64::from(4 * s.sky_panels),
+            PassKind::Scatter => 0.3 * directions,
+            PassKind::Norm | PassKind::Light | PassKind::IsotropicScatter => 0.2 * directions,
         }
     }
 
@@ -107,8 +107,8 @@ impl Pass {
     /// it, so that each frame pays the same.
     pub fn texel_time(&self, s: &SkySettings) -> f64 {
         match self.kind {
-            Kind::Scatter => 0.24 * self.texel_cost(s),
-            Kind::Norm | Kind::Light | Kind::IsotropicScatter => 0.34 * self.texel_cost(s),
+            PassKind::Scatter => 0.24 * self.texel_cost(s),
+            PassKind::Norm | PassKind::Light | PassKind::IsotropicScatter => 0.34 * self.texel_cost(s),
             _ => self.texel_cost(s),
         }
     }
@@ -116,7 +116,7 @@ impl Pass {
 
 /// The passes of a model.
 pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
-    let mut out = vec![Pass::new(Kind::Norm, 0, false, [Name::Nothing; 6], &[Name::Norms])];
+    let mut out = vec![Pass::new(PassKind::Norm, 0, false, [Name::Nothing; 6], &[Name::Norms])];
     match s.model {
         SkyModel::Directional | SkyModel::BruteForce => directional(s, &mut out),
         SkyModel::IsotropicTables => isotropic(&mut out),
@@ -128,7 +128,7 @@ pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
 /// Light that is gathered along the quadrature: reads the order's source and the light of the order before.
 fn gather(order: u32, source: Name, light: Name) -> Pass {
     let reads = [source, Name::Nothing, light, Name::Nothing, Name::Nothing, Name::Norms];
-    Pass::new(Kind::Gather, order, false, reads, &[Name::Radiances])
+    Pass::new(PassKind::Gather, order, false, reads, &[Name::Radiances])
 }
 
 /// Adds the light of what was gathered last to the sum: `from` is read, `to` drawn.
@@ -136,7 +136,7 @@ fn light(order: u32, last: bool, from: Name, to: Name) -> Pass {
     let n = order as usize;
     let (before, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));
     let reads = [Name::Nothing, Name::Radiances, before, Name::Nothing, from, Name::Nothing];
-    Pass::new(Kind::Light, order, last, reads, &[now, to])
+    Pass::new(PassKind::Light, order, last, reads, &[now, to])
 }
 
 fn directional(s: &SkySettings, out: &mut Vec<Pass>) {
@@ -153,14 +153,14 @@ fn directional(s: &SkySettings, out: &mut Vec<Pass>) {
         out.push(light(order, last, from, to));
         let (from, to) = pick(Name::Sources, Name::PartSources);
         let reads = [before, Name::Radiances, Name::Nothing, from, Name::Nothing, Name::Nothing];
-        out.push(Pass::new(Kind::Scatter, order, last, reads, &[now, to]));
+        out.push(Pass::new(PassKind::Scatter, order, last, reads, &[now, to]));
     }
 }
 
 fn isotropic(out: &mut Vec<Pass>) {
-    out.push(Pass::new(Kind::IsotropicGather, 1, false, [Name::Nothing; 6], &[Name::Radiances, Name::Transfer]));
+    out.push(Pass::new(PassKind::IsotropicGather, 1, false, [Name::Nothing; 6], &[Name::Radiances, Name::Transfer]));
     let reads = [Name::Transfer, Name::Radiances, Name::Nothing, Name::Nothing, Name::Nothing, Name::Nothing];
-    out.push(Pass::new(Kind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
+    out.push(Pass::new(PassKind::IsotropicScatter, 1, false, reads, &[Name::Sources]));
     out.push(gather(1, Name::Nothing, Name::Nothing));
     out.push(light(1, false, Name::Lights, Name::PartLights));
     // All orders after the first at once.
@@ -169,7 +169,7 @@ fn isotropic(out: &mut Vec<Pass>) {
 }
 
 fn table3d(out: &mut Vec<Pass>) {
-    out.push(Pass::new(Kind::Once, 1, false, [Name::Nothing; 6], &[Name::OnceGas, Name::OnceHaze]));
+    out.push(Pass::new(PassKind::Once, 1, false, [Name::Nothing; 6], &[Name::OnceGas, Name::OnceHaze]));
     out.push(gather(1, Name::Nothing, Name::Nothing));
     out.push(light(1, false, Name::PartLights, Name::Lights));
 }

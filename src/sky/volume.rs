@@ -108,7 +108,7 @@ impl ObserverPasses {
 
 /// What a lamp's tables were drawn for.
 #[derive(Clone, Copy, PartialEq)]
-struct Drawn {
+struct DrawnFor {
     /// The planet's tables.
     set: u64,
     /// Those that lie over them, and their share.
@@ -122,7 +122,7 @@ struct Fade {
     /// The sky's and the air's that fade out, and that fade in.
     first: [Layered; 2],
     next: [Layered; 2],
-    drawn: [Option<Drawn>; LAMPS],
+    drawn: [Option<DrawnFor>; LAMPS],
     /// How each layer of both is read.
     groups: [[Vec<wgpu::BindGroup>; 2]; 2],
 }
@@ -160,7 +160,7 @@ pub struct SkyVolume {
     view_group: wgpu::BindGroup,
     /// Whose sources the group holds, where pixels march through them.
     marched: Option<Arc<TableSet>>,
-    drawn: [Option<Drawn>; LAMPS],
+    drawn: [Option<DrawnFor>; LAMPS],
     /// Made when first something fades in.
     fade: Option<Box<Fade>>,
     written: ViewUniform,
@@ -231,7 +231,7 @@ impl SkyVolume {
         let lamps = || lamps.iter().flatten().copied();
         let mu_s: [Option<f64>; LAMPS] = std::array::from_fn(|i| lamps().nth(i).map(|l| l.toward[2]));
         let drawn = match tables.shown().cloned() {
-            Some(shown) => self.follow(encoder, tables, &shown, observer, mu_s)?,
+            Some(shown) => self.update_lamps(encoder, tables, &shown, observer, mu_s)?,
             None => false,
         };
         let altitude_m = self.drawn[0].map_or(observer.altitude_m, |d| d.altitude_m).max(0.0);
@@ -256,7 +256,7 @@ impl SkyVolume {
     }
 
     /// Draws what of the lamps' tables does not serve any more; whether there was anything.
-    fn follow(
+    fn update_lamps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         tables: &SkyTables,
@@ -265,7 +265,7 @@ impl SkyVolume {
         mu_s: [Option<f64>; LAMPS],
     ) -> Result<bool> {
         let altitude_m = observer.altitude_m;
-        let serves = |drawn: &Option<Drawn>, mu_s: f64| {
+        let serves = |drawn: &Option<DrawnFor>, mu_s: f64| {
             let step = if tables.is_busy() { SUN_STEP.1 } else { SUN_STEP.0 };
             drawn.filter(|d| match observer.exact {
                 true => d.altitude_m == altitude_m && d.mu_s == mu_s,
@@ -280,7 +280,7 @@ impl SkyVolume {
         let moved = lamps().any(|(i, mu_s)| serves(&self.drawn[i], mu_s).is_none());
         let mut drawn = false;
         for (i, mu_s) in lamps() {
-            let now = Drawn { set: shown.id, over: None, altitude_m, mu_s };
+            let now = DrawnFor { set: shown.id, over: None, altitude_m, mu_s };
             let kept = self.drawn[i].filter(|_| !moved);
             let over = fading.map(|(next, share)| (next.id, share));
             match kept {
@@ -292,7 +292,7 @@ impl SkyVolume {
                         && self.is_ready(i, &d, shown) =>
                 {
                     self.lay_over(encoder, i, 1.0);
-                    self.drawn[i] = Some(Drawn { set: shown.id, over: None, ..d });
+                    self.drawn[i] = Some(DrawnFor { set: shown.id, over: None, ..d });
                     drawn = true;
                 }
                 Some(d) if d.set == shown.id && (d.over.is_none() || d.over.map(|o| o.0) == over.map(|o| o.0)) => {}
@@ -315,19 +315,19 @@ impl SkyVolume {
                 }
                 self.lay_over(encoder, i, share);
                 drawn = true;
-                self.drawn[i] = Some(Drawn { over: Some((next.id, share)), ..d });
+                self.drawn[i] = Some(DrawnFor { over: Some((next.id, share)), ..d });
             }
         }
         Ok(drawn)
     }
 
     /// Whether lamp `i`'s tables of what fades in are those of `set`, for the place of `d`.
-    fn is_ready(&self, i: usize, d: &Drawn, set: &TableSet) -> bool {
-        let wanted = Drawn { set: set.id, over: None, ..*d };
+    fn is_ready(&self, i: usize, d: &DrawnFor, set: &TableSet) -> bool {
+        let wanted = DrawnFor { set: set.id, over: None, ..*d };
         self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
     }
 
-    fn write_observer(&self, tables: &SkyTables, i: usize, of: &Drawn) {
+    fn write_observer(&self, tables: &SkyTables, i: usize, of: &DrawnFor) {
         let edges = EdgesUniform::of(&tables.air(), of.altitude_m);
         let (altitude, mu_s) = (of.altitude_m.max(0.0) as f32, of.mu_s as f32);
         let uniform = ObserverUniform { altitude, mu_s, unused: [0.0; 2], edges };
@@ -366,7 +366,7 @@ impl SkyVolume {
         let passes = self.kit.observer_passes()?;
         let targets = if is_next {
             let fade = self.fade.get_or_insert_with(|| Box::new(Fade::new(&self.device, &self.kit)));
-            fade.drawn[i] = self.drawn[i].map(|d| Drawn { set: set.id, over: None, ..d });
+            fade.drawn[i] = self.drawn[i].map(|d| DrawnFor { set: set.id, over: None, ..d });
             fade.next.each_ref()
         } else {
             [&self.sky, &self.air]

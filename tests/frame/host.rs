@@ -8,8 +8,9 @@ use welkin::{
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
     scene::Camera,
-    sky::SkySettings,
 };
+
+use crate::{coarse_sky::coarse_sky, textures};
 
 /// A device, a context and one view, with targets of `size`.
 pub struct Host {
@@ -23,21 +24,7 @@ pub struct Host {
 pub const SIZE: (u32, u32) = (160, 90);
 
 pub fn texture(device: &Device, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    let mut usage = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
-    if samples == 1 {
-        usage |= U::COPY_DST;
-    }
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
+    textures::texture(device, SIZE, format, samples)
 }
 
 pub fn camera() -> Camera {
@@ -46,18 +33,7 @@ pub fn camera() -> Camera {
 
 /// A coarse sky, built in an instant: these tests ask how frames are composed, not how right the sky is.
 pub fn coarse() -> ContextDesc {
-    let sky = SkySettings {
-        orders: 4,
-        suns: 32,
-        altitudes: 14,
-        zeniths: 11,
-        azimuths: 7,
-        rule_zeniths: 6,
-        rule_azimuths: 8,
-        build_panels: 2,
-        ..SkySettings::default()
-    };
-    ContextDesc { sky, ..ContextDesc::default() }
+    ContextDesc { sky: coarse_sky(), ..ContextDesc::default() }
 }
 
 impl Host {

@@ -1,5 +1,7 @@
 //! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
 
+#[path = "../support/coarse_sky.rs"]
+mod coarse_sky;
 mod froxels;
 mod host;
 mod measure;
@@ -9,6 +11,8 @@ mod refused;
 mod spaces;
 mod stability;
 mod stages;
+#[path = "../support/textures.rs"]
+mod textures;
 mod threads;
 mod tiers;
 mod unit;

@@ -8,7 +8,10 @@ use welkin::{
     scene::Camera,
 };
 
-use crate::host::{Host, SIZE, camera};
+use crate::{
+    host::{Host, SIZE, camera},
+    textures::texture,
+};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
@@ -61,16 +64,7 @@ fn stages_out_of_order_and_unknown_bits_are_refused() {
 #[test]
 fn a_target_that_does_not_fit_is_refused_by_name() {
     let mut host = Host::new(FORMAT);
-    let small = host.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE.0, height: 8, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
+    let small = texture(&host.device, (SIZE.0, 8), wgpu::TextureFormat::Depth32Float, 1);
     let mut frame = Frame::new(1, camera(), &host.color, Some(&small));
     let e = host.view.record(&host.context, &frame, Stages::ALL).unwrap_err();
     assert!(e.to_string().contains("depth") && e.to_string().contains("160 x 90"), "{e}");

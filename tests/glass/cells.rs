@@ -7,7 +7,7 @@ use welkin::{
         Pane, Reach, Windscreen, WiperArm,
         laws::volume_factor,
         reference::Cells,
-        step::{Acting, Tables, VOLUME_UNIT_M3},
+        step::{StepConditions, Tables, VOLUME_UNIT_M3},
     },
     gpu::{Device, DeviceOptions},
     rain::RainSurface,
@@ -24,8 +24,8 @@ fn glass(host: &Host) -> Cells {
 }
 
 /// What the host's windscreen comes to.
-fn acting(rate_mm_h: f64) -> Acting {
-    Acting {
+fn acting(rate_mm_h: f64) -> StepConditions {
+    StepConditions {
         cell_m: 0.004,
         rain: DropSizes::of_rain(rate_mm_h, 1.0),
         exposed: 1.0,
@@ -39,10 +39,10 @@ fn acting(rate_mm_h: f64) -> Acting {
 }
 
 /// The same under the host's own weather, to the bit.
-pub fn acting_on(host: &Host, rate_mm_h: f64) -> Acting {
+pub fn acting_on(host: &Host, rate_mm_h: f64) -> StepConditions {
     let weather = host.context.conditions_at(DVec3::new(0.0, 0.0, 3.0), 0.0).unwrap();
     let rain = DropSizes::new(&weather.precipitation, factor_in(&weather.air, 0.0));
-    Acting { rain, temperature_c: weather.air.temperature_c, ..acting(rate_mm_h) }
+    StepConditions { rain, temperature_c: weather.air.temperature_c, ..acting(rate_mm_h) }
 }
 
 fn wiper(position: f64) -> WiperArm {
@@ -73,7 +73,7 @@ fn the_gpu_has_the_bits_of_the_twin() {
 fn has_the_bits_of_the_twin(mut host: Host) {
     let screen = Windscreen { airflow_m_s: 3.0, ..upright() };
     host.view.set_windscreen(Some(&screen)).unwrap();
-    let acts = Acting { airflow_m_s: 3.0, ..acting_on(&host, 80.0) };
+    let acts = StepConditions { airflow_m_s: 3.0, ..acting_on(&host, 80.0) };
     let mut tables = Tables::default();
     host.at(50.0, Stages::PREPARE, FrameFlags(0)).unwrap();
     let mut twin = Cells::declared(&tables.at((&acts, &Reach::ALL), 7, 3000, [100, 60], &[None; 2]));
@@ -99,7 +99,7 @@ fn has_the_bits_of_the_twin(mut host: Host) {
 #[test]
 fn drops_arrive_as_the_flux_says() {
     // Four seconds on 960 cm^2, from dry glass in saturated air, with no weight: nothing runs, nothing dries.
-    let acts = Acting { relative_humidity: 1.0, down: DVec2::ZERO, ..acting(20.0) };
+    let acts = StepConditions { relative_humidity: 1.0, down: DVec2::ZERO, ..acting(20.0) };
     let (mut tables, size) = (Tables::default(), [100, 60]);
     let mut cells = Cells::dry(size);
     for step in 0..240 {
@@ -257,7 +257,7 @@ fn two_blades_clear_both_their_sectors() {
 
 #[test]
 fn a_bead_beyond_the_critical_size_runs_and_leaves_a_lane_with_gaps() {
-    let acts = Acting { exposed: 0.0, relative_humidity: 1.0, ..acting(20.0) };
+    let acts = StepConditions { exposed: 0.0, relative_humidity: 1.0, ..acting(20.0) };
     let (mut tables, size) = (Tables::default(), [40, 60]);
     let volume = |r: f64| (volume_factor() * r.powi(3) / VOLUME_UNIT_M3) as u32;
     let run = |r: f64, tables: &mut Tables| {

@@ -9,9 +9,10 @@ use welkin::{
     glass::{Pane, Windscreen},
     gpu::{Device, DeviceOptions, readback},
     scene::Camera,
-    sky::SkySettings,
     weather::{Precipitation, PrecipitationKind, Weather},
 };
+
+use crate::{coarse_sky::coarse_sky, textures::texture};
 
 pub struct Host {
     pub device: Arc<Device>,
@@ -23,32 +24,7 @@ pub struct Host {
 
 /// A coarse sky, built in an instant.
 fn coarse(seed: u64) -> ContextDesc {
-    let sky = SkySettings {
-        orders: 4,
-        suns: 32,
-        altitudes: 14,
-        zeniths: 11,
-        azimuths: 7,
-        rule_zeniths: 6,
-        rule_azimuths: 8,
-        build_panels: 2,
-        ..SkySettings::default()
-    };
-    ContextDesc { sky, seed, ..ContextDesc::default() }
-}
-
-pub fn texture(device: &Device, format: wgpu::TextureFormat, (width, height): (u32, u32)) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-        view_formats: &[],
-    })
+    ContextDesc { sky: coarse_sky(), seed, ..ContextDesc::default() }
 }
 
 pub fn camera() -> Camera {
@@ -81,7 +57,7 @@ impl Host {
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
         context.set_weather(&rain(rate_mm_h), 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
-        let color = texture(&device, format, size);
+        let color = texture(&device, size, format, 1);
         Self { device, context, view, color, frame_id: 0 }
     }
 

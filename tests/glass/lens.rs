@@ -8,7 +8,10 @@ use welkin::{
     scene::{Camera, DepthKind, DepthMapping},
 };
 
-use crate::host::{Host, camera, texture, upright};
+use crate::{
+    host::{Host, camera, upright},
+    textures::texture,
+};
 
 const SIZE: (u32, u32) = (320, 180);
 const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -28,7 +31,7 @@ fn nothing_is_drawn_beside_the_pane_or_under_the_mask() {
     let corners = [(-0.4, -0.3), (0.0, -0.3), (0.0, 0.3), (-0.4, 0.3)].map(|(x, y)| DVec3::new(x, y, -0.3));
     let screen = Windscreen { pane: Pane::Quad(corners), fogging: 0.7, ..upright() };
     host.view.set_windscreen(Some(&screen)).unwrap();
-    let mask = texture(&host.device, PLAIN, SIZE);
+    let mask = texture(&host.device, SIZE, PLAIN, 1);
     let rows: Vec<u8> = (0..SIZE.0 * SIZE.1).flat_map(|i| if i / SIZE.0 >= 120 { [255; 4] } else { [0; 4] }).collect();
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
     host.device.queue.write_texture(mask.as_image_copy(), &rows, layout, mask.size());
@@ -173,18 +176,7 @@ fn film_lies_in_arcs_about_each_pivot() {
 fn what_the_lens_cannot_draw_is_refused_by_name() {
     let mut host = Host::new(PLAIN, SIZE, 10.0);
     host.view.set_windscreen(Some(&upright())).unwrap();
-    let several = host.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: host.color.size(),
-        mip_level_count: 1,
-        sample_count: 4,
-        dimension: wgpu::TextureDimension::D2,
-        format: PLAIN,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let several = texture(&host.device, SIZE, PLAIN, 4);
     let frame = Frame::new(1, camera(), &several, None);
     let e = host.view.record(&host.context, &frame, Stages::LENS).unwrap_err();
     assert!(e.status == Status::Unsupported && e.to_string().contains("color.samples"), "{e}");

@@ -9,7 +9,10 @@ use welkin::{
     weather::{Surface, SurfaceState, Weather, Wind},
 };
 
-use crate::host::{Hit, Host, SIZE, ground, look, ray};
+use crate::{
+    host::{Hit, Host, SIZE, ground, look, ray},
+    textures::texture,
+};
 
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 2.0);
 
@@ -181,16 +184,7 @@ fn sky_and_masked_pixels_stay_and_one_call_equals_the_stages_one_by_one() {
             assert!((a[c] - b[c]).abs() <= 1e-4 * a[c].abs() + 1e-3, "{a:?} {b:?}");
         }
     }
-    let mask = host.device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: host.color.size(),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+    let mask = texture(&host.device, SIZE, wgpu::TextureFormat::R8Unorm, 1);
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0), rows_per_image: None };
     let ones = vec![255u8; (SIZE.0 * SIZE.1) as usize];
     host.device.queue.write_texture(mask.as_image_copy(), &ones, rows, mask.size());

@@ -9,9 +9,10 @@ use welkin::{
     gpu::{Device, DeviceOptions, readback},
     ground::SurfaceClass,
     scene::{Camera, DepthMapping, ViewRays},
-    sky::SkySettings,
     weather::{Surface, SurfaceState, Weather, Wind},
 };
+
+use crate::{coarse_sky::coarse_sky, textures::texture};
 
 pub const SIZE: (u32, u32) = (160, 90);
 
@@ -36,20 +37,6 @@ pub struct Host {
     pub color: wgpu::Texture,
     pub depth: wgpu::Texture,
     frame_id: u64,
-}
-
-fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-        view_formats: &[],
-    })
 }
 
 pub fn look(position: DVec3, azimuth_deg: f64, elevation_deg: f64, fov: f64) -> Camera {
@@ -92,25 +79,14 @@ impl Host {
 
     pub fn on(device: Arc<Device>) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
-        // A coarse sky, built in an instant.
-        let sky = SkySettings {
-            orders: 4,
-            suns: 32,
-            altitudes: 14,
-            zeniths: 11,
-            azimuths: 7,
-            rule_zeniths: 6,
-            rule_azimuths: 8,
-            build_panels: 2,
-            ..SkySettings::default()
-        };
-        let mut context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).unwrap();
+        let mut context =
+            Context::new(device.clone(), shared, ContextDesc { sky: coarse_sky(), ..ContextDesc::default() }).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
         // What most tests ask of is asphalt.
         context.set_default_surface_class(SurfaceClass::Paved);
         let view = View::new(&context).unwrap();
-        let color = texture(&device, wgpu::TextureFormat::Rgba32Float);
-        let depth = texture(&device, wgpu::TextureFormat::R32Float);
+        let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+        let depth = texture(&device, SIZE, wgpu::TextureFormat::R32Float, 1);
         Self { device, context, view, color, depth, frame_id: 0 }
     }
 
@@ -163,7 +139,7 @@ impl Host {
 
     /// An image beside the picture, of its size, from its bytes row by row from the top.
     pub fn image(&self, format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::Texture {
-        let image = texture(&self.device, format);
+        let image = texture(&self.device, SIZE, format, 1);
         let bytes_per_row = Some(bytes.len() as u32 / SIZE.1);
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
         self.device.queue.write_texture(image.as_image_copy(), bytes, rows, image.size());
@@ -174,20 +150,11 @@ impl Host {
     pub fn depth_24(&self, depths: &[f64]) -> wgpu::Texture {
         let device = &self.device.device;
         let floats: Vec<f32> = depths.iter().map(|d| *d as f32).collect();
-        let source = texture(&self.device, wgpu::TextureFormat::R32Float);
+        let source = texture(&self.device, SIZE, wgpu::TextureFormat::R32Float, 1);
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 4), rows_per_image: None };
         self.device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(&floats), rows, source.size());
         let format = wgpu::TextureFormat::Depth24Plus;
-        let depth = device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: source.size(),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
+        let depth = texture(&self.device, SIZE, format, 1);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
             source: wgpu::ShaderSource::Wgsl(DEPTH_SHADER.into()),
@@ -246,7 +213,7 @@ impl Host {
     }
 
     pub fn use_half_floats(&mut self) {
-        self.color = texture(&self.device, wgpu::TextureFormat::Rgba16Float);
+        self.color = texture(&self.device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
     }
 
     /// The picture with these stages drawn over it.

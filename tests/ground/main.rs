@@ -1,6 +1,8 @@
 //! Water on the ground: as it is drawn onto a host's picture. One binary, so that it links once.
 
 mod classes;
+#[path = "../support/coarse_sky.rs"]
+mod coarse_sky;
 mod drawn;
 mod hills;
 mod host;
@@ -10,3 +12,5 @@ mod rings;
 mod state;
 mod terrain;
 mod texture;
+#[path = "../support/textures.rs"]
+mod textures;

@@ -1,8 +1,12 @@
 //! The plan against pictures: what it leaves out is within the tolerance, what it keeps is needed.
 
+#[path = "../support/coarse_sky.rs"]
+mod coarse_sky;
 mod kept;
 mod rain;
 mod scenes;
+#[path = "../support/textures.rs"]
+mod textures;
 mod time;
 
 use scenes::{Bench, Shot};

@@ -9,9 +9,10 @@ use welkin::{
     gpu::{Device, DeviceOptions, readback},
     plan::{Budget, Plan},
     scene::Camera,
-    sky::SkySettings,
     weather::Weather,
 };
+
+use crate::{coarse_sky::coarse_sky, textures::texture};
 
 /// Size of the pictures.
 pub const SIZE: (u32, u32) = (192, 108);
@@ -111,34 +112,11 @@ impl Bench {
     pub fn new() -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
-        // Coarse tables, built soon: these tests ask what is drawn, not how right it is.
-        let sky = SkySettings {
-            orders: 4,
-            suns: 32,
-            altitudes: 14,
-            zeniths: 11,
-            azimuths: 7,
-            rule_zeniths: 6,
-            rule_azimuths: 8,
-            build_panels: 2,
-            ..SkySettings::default()
-        };
-        let context = Context::new(device.clone(), shared, ContextDesc { sky, ..Default::default() }).unwrap();
+        let context =
+            Context::new(device.clone(), shared, ContextDesc { sky: coarse_sky(), ..Default::default() }).unwrap();
         let (view, plain) = (View::new(&context).unwrap(), View::new(&context).unwrap());
-        let texture = |format| {
-            use wgpu::TextureUsages as U;
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-                view_formats: &[],
-            })
-        };
-        let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
+        let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
+        let depth = texture(&device, SIZE, wgpu::TextureFormat::R32Float, 1);
         let host = (Vec::new(), Vec::new());
         Self { device, context, view, plain, color, depth, time_s: 0.0, frame_id: 0, white: 1.0, host }
     }

@@ -3,9 +3,11 @@
 mod area_textures;
 mod areas;
 mod brute;
+#[path = "../support/coarse_sky.rs"]
+mod coarse_sky;
 mod cones;
 mod culled;
-#[path = "../depth_texture/mod.rs"]
+#[path = "../support/depth_texture.rs"]
 mod depth_texture;
 mod drops;
 mod dry_places;
@@ -25,3 +27,5 @@ mod stability;
 mod stereo;
 mod stones;
 mod streaks;
+#[path = "../support/textures.rs"]
+mod textures;

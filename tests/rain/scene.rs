@@ -9,9 +9,10 @@ use welkin::{
     gpu::{Device, DeviceOptions, readback},
     rain::{Planes, Shelter},
     scene::{Camera, DepthMapping, ViewRays},
-    sky::SkySettings,
     weather::{Precipitation, PrecipitationKind, Weather},
 };
+
+use crate::{coarse_sky::coarse_sky, textures::texture};
 
 pub const NEAR_M: f64 = 0.1;
 
@@ -54,22 +55,6 @@ pub fn rain(rate_mm_h: f64, wind_m_s: f64) -> Weather {
     weather
 }
 
-fn texture(device: &Device, size: (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    // Not all drivers draw into single floats; the depth is only uploaded.
-    let drawn = if format == wgpu::TextureFormat::R32Float { U::empty() } else { U::RENDER_ATTACHMENT | U::COPY_SRC };
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: drawn | U::TEXTURE_BINDING | U::COPY_DST,
-        view_formats: &[],
-    })
-}
-
 impl Host {
     pub fn new(size: (u32, u32)) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
@@ -78,23 +63,12 @@ impl Host {
 
     pub fn on(device: Arc<Device>, size: (u32, u32)) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
-        let sky = SkySettings {
-            orders: 4,
-            suns: 32,
-            altitudes: 14,
-            zeniths: 11,
-            azimuths: 7,
-            rule_zeniths: 6,
-            rule_azimuths: 8,
-            build_panels: 2,
-            ..SkySettings::default()
-        };
-        let desc = ContextDesc { sky, seed: 11, ..ContextDesc::default() };
+        let desc = ContextDesc { sky: coarse_sky(), seed: 11, ..ContextDesc::default() };
         let mut context = Context::new(device.clone(), shared, desc).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
         let view = View::new(&context).unwrap();
-        let color = texture(&device, size, wgpu::TextureFormat::Rgba16Float);
-        let depth = texture(&device, size, wgpu::TextureFormat::R32Float);
+        let color = texture(&device, size, wgpu::TextureFormat::Rgba16Float, 1);
+        let depth = texture(&device, size, wgpu::TextureFormat::R32Float, 1);
         let aspect = f64::from(size.0) / f64::from(size.1);
         let camera = Camera::look_to(DVec3::new(0.0, 0.0, 1.7), DVec3::Y, DVec3::Z, 0.9, aspect, NEAR_M);
         Self {

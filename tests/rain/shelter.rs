@@ -19,6 +19,7 @@ use crate::{
     depth_texture::depth_texture,
     pictures::{paint, save},
     scene::{Host, NEAR_M, rain, upright},
+    textures::texture,
 };
 
 /// Radiance of the host's picture: far above what drops send at night, within half floats.
@@ -294,24 +295,12 @@ fn what_is_no_map_is_named_and_the_maps_before_stay() {
     host.context.set_occluder_maps(&[one]).unwrap();
     let kept = through(&mut host, &[]);
     assert!(open.iter().any(|v| *v < 0.99) && kept.iter().all(|v| *v == 1.0), "the map keeps the rain off");
-    let texture = |w: u32, format| {
-        host.device.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: w, height: w, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        })
-    };
-    let colour = texture(64, wgpu::TextureFormat::Rgba8Unorm);
-    let small = texture(4, wgpu::TextureFormat::R32Float);
+    let colour = texture(&host.device, (64, 64), wgpu::TextureFormat::Rgba8Unorm, 1);
+    let small = texture(&host.device, (4, 4), wgpu::TextureFormat::R32Float, 1);
     let no_number = Taken { clip_from_world: taken.clip_from_world * f64::NAN, ..taken };
     for (maps, name) in [
         (vec![one; 5], "at most 4"),
-        (vec![one, OccluderMap { depth: &colour, taken }], "maps[1].depth format Rgba8Unorm"),
+        (vec![one, OccluderMap { depth: &colour, taken }], "maps[1].depth.format: Rgba8Unorm"),
         (vec![OccluderMap { depth: &small, taken }], "maps[0].depth.width"),
         (vec![one, one, OccluderMap { depth: &good, taken: no_number }], "maps[2].clip_from_world"),
     ] {

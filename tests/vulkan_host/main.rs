@@ -14,6 +14,8 @@ mod marks;
 mod refusals;
 mod reuse;
 mod sharing;
+#[path = "../support/textures.rs"]
+mod textures;
 mod veil;
 mod weather;
 

@@ -11,6 +11,7 @@ use welkin::gpu::{Device, DeviceOptions, readback};
 use welkin::scene::Camera;
 
 use crate::host::{Host, Setup};
+use crate::textures::texture;
 use crate::{Picture, SIZE, adopted};
 
 /// A context and a view on `device`, with the sun in the picture.
@@ -32,21 +33,8 @@ fn frame<'a>(color: &'a wgpu::Texture, depth: &'a wgpu::Texture) -> Frame<'a> {
 fn on_own_device(depth: f32) -> Vec<u8> {
     let options = DeviceOptions { backends: wgpu::Backends::VULKAN, ..Default::default() };
     let device = Device::headless(&options).unwrap();
-    let texture = |format| {
-        device.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::COPY_SRC
-                | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        })
-    };
-    let (color, depths) = (texture(wgpu::TextureFormat::Rgba8Unorm), texture(wgpu::TextureFormat::Depth32Float));
+    let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba8Unorm, 1);
+    let depths = texture(&device, SIZE, wgpu::TextureFormat::Depth32Float, 1);
     let mut encoder = device.device.create_command_encoder(&Default::default());
     let (color_view, depth_view) = (color.create_view(&Default::default()), depths.create_view(&Default::default()));
     drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

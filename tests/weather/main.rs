@@ -1,6 +1,8 @@
 //! The weather from outside: reports, presets, what follows from them, how one becomes another, and what is accepted.
 
 mod accepted;
+#[path = "../support/coarse_sky.rs"]
+mod coarse_sky;
 mod drawn;
 #[path = "../frame/host.rs"]
 #[allow(dead_code, reason = "tests of frames use all of it")]
@@ -9,3 +11,5 @@ mod host;
 mod random;
 mod reports;
 mod seams;
+#[path = "../support/textures.rs"]
+mod textures;

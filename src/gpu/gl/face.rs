@@ -72,7 +72,7 @@ extern "system" fn get_string(name: u32) -> *const u8 {
         };
         match instead {
             Some(text) => text.as_ptr().cast(),
-            // SAFETY: the host's own glGetString, its context current: the caller of `Shown::show` saw to it.
+            // SAFETY: the host's own glGetString, its context current: the caller of `FaceGuard::show` saw to it.
             None => unsafe { (face.real)(name) },
         }
     })
@@ -89,9 +89,9 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
 }
 
 /// The face is shown on this thread as long as this lives.
-pub(super) struct Shown(());
+pub(super) struct FaceGuard(());
 
-impl Shown {
+impl FaceGuard {
     /// Shows the current context; `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks.
     pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool) -> Option<Self> {
         let real = api.GetString?;
@@ -128,7 +128,7 @@ impl Shown {
     }
 }
 
-impl Drop for Shown {
+impl Drop for FaceGuard {
     fn drop(&mut self) {
         FACE.set(None);
     }

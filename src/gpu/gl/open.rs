@@ -12,7 +12,7 @@ use super::{
     GlHostDesc, GlMode, WhichContext,
     api::Api,
     check::{self, GlInfo},
-    face::Shown,
+    face::FaceGuard,
     host::{Backend, GlHost, Inner, Sharing, Switch},
     image,
     mark::Mark,
@@ -205,9 +205,9 @@ struct Parts {
 /// Opens wgpu on the current context, whose state is a fresh one's.
 fn open(api: &Api, info: &GlInfo, get: &dyn Fn(&CStr) -> *const c_void, desc: &GlHostDesc) -> Result<Opened> {
     let refused = |text: String| Error::new(Status::NoAdapter, text);
-    let shown = Shown::show(api, info, desc.force_tier0);
+    let shown = FaceGuard::show(api, info, desc.force_tier0);
     let loader = |name: &str| match CString::new(name) {
-        Ok(name) => Shown::resolve(&name, get(&name)),
+        Ok(name) => FaceGuard::resolve(&name, get(&name)),
         Err(_) => std::ptr::null(),
     };
     let options = wgpu::GlBackendOptions {

@@ -1,0 +1,17 @@
+//! A coarse sky, built in an instant, for tests that ask what is drawn and not how right the sky is.
+
+use welkin::sky::SkySettings;
+
+pub fn coarse_sky() -> SkySettings {
+    SkySettings {
+        orders: 4,
+        suns: 32,
+        altitudes: 14,
+        zeniths: 11,
+        azimuths: 7,
+        rule_zeniths: 6,
+        rule_azimuths: 8,
+        build_panels: 2,
+        ..SkySettings::default()
+    }
+}
