@@ -307,8 +307,10 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * host's wgpu device. All later calls are the same for all four.
  *
  * Make one device per native queue or context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is lost
- * (driver reset, unplugged) every call answers WK_ERROR_DEVICE_LOST: destroy the views, contexts and the device,
- * create them again, and load the saved state.
+ * (driver reset, unplugged) every call that needs it answers WK_ERROR_DEVICE_LOST: those that create, build, draw, read
+ * or write what lies on it, and wk_context_get_ambient. A context's weather, time, settings, other queries and state need
+ * no GPU and go on: save the state with wk_context_save, destroy the views, contexts and the device, create them again,
+ * and load the state.
  * ====================================================================================================
  */
 

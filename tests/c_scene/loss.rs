@@ -2,9 +2,12 @@
 
 use std::ptr::{null, null_mut};
 
-use welkin::capi::{abi, context::*, device::*, frame::*, status::*, texture::*, timeline::*, veil::*, view::*};
+use welkin::capi::{
+    abi, conditions::*, context::*, device::*, frame::*, occluder::*, query::*, rain::*, status::*, texture::*,
+    timeline::*, veil::*, view::*, weather::*,
+};
 
-use super::{Scene, init, message};
+use super::{Scene, init, message, ok};
 
 /// Loses the device as a driver's reset would, and asks of everything that reaches it; a host's of its `shaders` too.
 pub fn lose_and_ask(device: *mut wk_device, scene: &Scene, frame: &wk_frame, shaders: bool) {
@@ -30,13 +33,44 @@ pub fn lose_and_ask(device: *mut wk_device, scene: &Scene, frame: &wk_frame, sha
             check("veil", wk_view_get_frame_textures(scene.view, &mut veil));
         }
         assert!(context.is_null() && view.is_null() && texture.is_null() && veil.light == 0);
-        // What needs no GPU may go on, but in no other way.
-        let (mut hash, mut bytes) = (0, 0);
-        let check = |what: &str, status: wk_status| {
-            assert!(matches!(status, WK_OK | WK_ERROR_DEVICE_LOST), "{what}: {status} {}", message());
-        };
-        check("update", wk_context_update(scene.context, 60.0));
-        check("hash", wk_context_state_hash(scene.context, &mut hash));
-        check("save", wk_context_save(scene.context, null_mut(), 0, &mut bytes));
+        let (mut ambient, here) = (init::<wk_ambient>("wk_ambient"), [0.0, 0.0, 2.0]);
+        check("maps", wk_context_set_occluder_maps(scene.context, null(), 0, 0));
+        check("ambient", wk_context_get_ambient(scene.context, &here, &mut ambient));
+    }
+    save_and_go_on(scene);
+}
+
+/// What the header promises of a lost device: weather, time, queries and state go on, and another device's context takes the state.
+fn save_and_go_on(scene: &Scene) {
+    let (mut before, mut after, mut size) = (0, 0, 0);
+    let mut conditions = init::<wk_conditions>("wk_conditions");
+    // SAFETY: numbers alone.
+    let mut light = unsafe { std::mem::zeroed::<wk_ground_light>() };
+    let (here, weather) = ([0.0, 0.0, 2.0], wk_weather { visibility_m: 1234.0, ..init("wk_weather") });
+    // SAFETY: live handles, locals with the sizes given.
+    unsafe {
+        ok(wk_context_update(scene.context, 60.0));
+        ok(wk_context_set_weather(scene.context, &weather, 60.0, 0.0));
+        ok(wk_context_update(scene.context, 120.0));
+        ok(wk_context_get_conditions(scene.context, &here, 120.0, &mut conditions));
+        assert!((conditions.visibility_m - 1234.0).abs() < 1.0, "{}", conditions.visibility_m);
+        let row = size_of::<[f64; 3]>() as u32;
+        ok(wk_context_get_light(scene.context, &here, 1, row, &mut light, size_of::<wk_ground_light>() as u32));
+        ok(wk_context_set_shelters(scene.context, null(), 0, 0));
+        ok(wk_view_set_rain(scene.view, null()));
+        ok(wk_context_state_hash(scene.context, &mut before));
+        ok(wk_context_save(scene.context, null_mut(), 0, &mut size));
+        let mut state = vec![0_u8; size];
+        ok(wk_context_save(scene.context, state.as_mut_ptr().cast(), size, &mut size));
+        ok(wk_context_load(scene.context, state.as_ptr().cast(), size));
+        let desc = wk_device_desc { backends: WK_BACKEND_NOOP, ..init("wk_device_desc") };
+        let mut device = null_mut();
+        ok(wk_device_create(&desc, &mut device));
+        let next = Scene::new(device);
+        ok(wk_context_load(next.context, state.as_ptr().cast(), size));
+        ok(wk_context_state_hash(next.context, &mut after));
+        assert_eq!(before, after);
+        next.destroy();
+        ok(wk_device_destroy(device));
     }
 }

@@ -1,6 +1,7 @@
 //! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
 
 pub mod ground;
+pub mod limited;
 pub mod loss;
 pub mod marks;
 pub mod own;

@@ -1,7 +1,7 @@
 //! Memory that runs out: what the driver cannot give is refused as that, nothing is lost, and what fits is drawn as before.
 //! The limit is on the whole process, so each case runs in one of its own.
 
-use std::{process::Command, ptr::null_mut};
+use std::ptr::null_mut;
 
 use welkin::capi::{device::*, frame::*, status::*, texture::*, view::*};
 
@@ -9,7 +9,9 @@ use welkin::gpu::gl::GlMode;
 
 use crate::SIZE;
 use crate::c_scene::{
-    init, message, ok,
+    init,
+    limited::{MIB, in_a_process, is_limited, leave},
+    message, ok,
     own::{Own, Size, different, still_frame, wet_scene},
 };
 use crate::{
@@ -18,50 +20,6 @@ use crate::{
     egl::{Api, Window},
     host::Host,
 };
-
-const MIB: u64 = 1 << 20;
-
-#[repr(C)]
-struct Limit {
-    now: u64,
-    most: u64,
-}
-
-unsafe extern "C" {
-    fn setrlimit(resource: i32, limit: *const Limit) -> i32;
-}
-
-/// Leaves this process so much address space beyond what it has; `None` lifts the limit.
-fn leave(bytes: Option<u64>) {
-    const RLIMIT_AS: i32 = 9;
-    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
-    let has: u64 = pages.split(' ').next().unwrap().parse().unwrap();
-    let now = bytes.map_or(u64::MAX, |b| has * 4096 + b);
-    // SAFETY: a live pointer.
-    assert_eq!(unsafe { setrlimit(RLIMIT_AS, &Limit { now, most: u64::MAX }) }, 0);
-}
-
-const CHILD: &str = "WELKIN_TEST_OF_MEMORY";
-
-/// Runs the test `name` again in a process that may run out of memory; whether this is that process.
-fn in_a_process(name: &str) -> bool {
-    if std::env::var_os(CHILD).is_some() {
-        return true;
-    }
-    let mut child = Command::new(std::env::current_exe().unwrap());
-    let out = child.args(["--exact", name, "--nocapture"]).env(CHILD, "1").output().unwrap();
-    let text = [out.stdout, out.stderr].map(|t| String::from_utf8_lossy(&t).into_owned()).concat();
-    assert!(out.status.success(), "{}\n{text}", out.status);
-    false
-}
-
-/// Whether the device's memory is the process's, which the limit is on. A card has its own, and no test should fill that.
-fn is_limited(device: *mut wk_device) -> bool {
-    let mut caps = init::<wk_caps>("wk_caps");
-    // SAFETY: live pointers.
-    ok(unsafe { wk_device_get_caps(device, &mut caps) });
-    caps.software == 1
-}
 
 /// Makes textures until one is refused; how many there were.
 fn fill(device: *mut wk_device, desc: &wk_texture_desc) -> Vec<*mut wk_texture> {

@@ -11,6 +11,7 @@ mod host;
 mod images;
 mod loss;
 mod marks;
+mod memory;
 mod refusals;
 mod reuse;
 mod sharing;

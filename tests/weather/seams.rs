@@ -159,8 +159,12 @@ struct Steepest {
 /// first `followed` where between [`PLACES`] moments they change most, followed by halves down to the microsecond.
 fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Steepest {
     let ends: Vec<_> = seams.iter().map(|t| f(*t)).collect();
+    let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
+    let place = |k: usize| from_s + (to_s - from_s) * k as f64 / PLACES as f64;
+    let grid: Vec<_> = if followed == 0 { Vec::new() } else { (0..=PLACES).map(|k| f(place(k))).collect() };
     let part = |i: usize, a: &[f64], b: &[f64]| {
-        let larger_end = ends.iter().map(|end| end[i].abs()).fold(0.0, f64::max);
+        // What a change brings may have gone by the next seam, where another change overtook it: it was there between.
+        let larger_end = ends.iter().chain(&grid).map(|at| at[i].abs()).fold(0.0, f64::max);
         let size = a[i].abs().max(b[i].abs()).max(1e-3 * larger_end);
         if a[i] == b[i] { 0.0 } else { (b[i] - a[i]).abs() / (size * MOST) }
     };
@@ -177,9 +181,6 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
     if followed == 0 {
         return worst;
     }
-    let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
-    let place = |k: usize| from_s + (to_s - from_s) * k as f64 / PLACES as f64;
-    let grid: Vec<_> = (0..=PLACES).map(|k| f(place(k))).collect();
     for i in 0..followed.min(ends[0].len()) {
         let steep = |k: &usize| part(i, &grid[*k], &grid[*k + 1]);
         let k = (0..PLACES).max_by(|a, b| steep(a).total_cmp(&steep(b))).unwrap();

@@ -390,7 +390,7 @@ fn pass_into<'e>(
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: None,
         color_attachments: if deep { &[] } else { &colors },
-        depth_stencil_attachment: deep.then(|| wgpu::RenderPassDepthStencilAttachment {
+        depth_stencil_attachment: deep.then_some(wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,

@@ -27,8 +27,10 @@ use super::{
     world::{World, hill_grid, shelters},
 };
 
-/// Lights with what they are called: azimuth and elevation of the sun, and of the moon.
-const LIGHTS: [(&str, [f64; 2], Option<[f64; 2]>); 4] = [
+/// What a light is called, azimuth and elevation of the sun, and of the moon.
+type Lights = (&'static str, [f64; 2], Option<[f64; 2]>);
+
+const LIGHTS: [Lights; 4] = [
     ("day", [140.0, 40.0], None),
     ("low-sun", [10.0, 4.0], None),
     ("moon", [300.0, -30.0], Some([20.0, 25.0])),
