@@ -279,3 +279,24 @@ fn frame_and_context_name_no_effect() {
         }
     }
 }
+
+/// Every `` `file` `function` `` of a numbered line of ARCHITECTURE.md.
+fn hops() -> Vec<(String, String)> {
+    let text = read(&root().join("ARCHITECTURE.md"));
+    let is_numbered = |l: &&str| l.split_once(". `").is_some_and(|(n, _)| n.parse::<u32>().is_ok());
+    let pairs = |line: &str| {
+        let marked: Vec<String> = line.split('`').skip(1).step_by(2).map(str::to_string).collect();
+        marked.chunks_exact(2).map(|p| (p[0].clone(), p[1].clone())).collect::<Vec<_>>()
+    };
+    text.lines().filter(is_numbered).filter(|l| l.contains("` `")).flat_map(pairs).collect()
+}
+
+#[test]
+fn the_ways_through_the_code_lead_past_functions_that_stand_there() {
+    let hops = hops();
+    assert!(hops.len() > 15, "{hops:?}");
+    for (file, function) in hops {
+        let text = read(&root().join(&file));
+        assert!(text.contains(&format!("fn {function}")), "{file} has no function {function}");
+    }
+}
