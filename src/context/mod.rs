@@ -112,7 +112,7 @@ impl Context {
     /// # Errors
     /// As [`derive()`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
     pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
-        self.world.timeline.change(derive(weather)?, start_s, transition_s)?;
+        self.world.change_weather(derive(weather)?, start_s, transition_s)?;
         self.follow()
     }
 
@@ -127,7 +127,7 @@ impl Context {
         start_s: f64,
         transition_s: f64,
     ) -> Result<()> {
-        self.world.timeline.change(derive_with(weather, overrides)?, start_s, transition_s)?;
+        self.world.change_weather(derive_with(weather, overrides)?, start_s, transition_s)?;
         self.follow()
     }
 

@@ -124,8 +124,9 @@ impl ConeUniform {
                 let life = LIFE_S * f64::from(1u32 << j);
                 let turns = air.time_s / life + 0.5 * f64::from(p);
                 let age = turns - turns.floor();
-                let since = age * life;
-                let moved = carried(air.time_s - since) - (fall + shot.velocity_m_s) * since;
+                // The same number in every frame of a set's life.
+                let born_s = (turns.floor() - 0.5 * f64::from(p)) * life;
+                let moved = carried(born_s) - (fall + shot.velocity_m_s) * (age * life);
                 let chance = random3([seed, (2 * j as u32) | p | 0x7000_0000, turns.floor() as i64 as u32]);
                 let share = 1.0 - (2.0 * age - 1.0).abs();
                 let [x, y] = [chance[0], chance[1]].map(|r| f64::from(r) / 4_294_967_296.0);

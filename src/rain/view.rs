@@ -26,7 +26,7 @@ use crate::{
         rounding,
     },
     weather::Falling,
-    wind::WindGrid,
+    wind::{Remembered, WindGrid},
 };
 
 /// What a view holds for its drops.
@@ -42,6 +42,8 @@ pub(crate) struct RainView {
     local: Option<Local>,
     areas: Option<Box<AreaPass>>,
     ice: Ice,
+    /// The wind when sets of cones were born.
+    births: Remembered,
     /// What was drawn last, and in which frame.
     drawn: (u64, RainReport),
 }
@@ -63,6 +65,7 @@ impl RainView {
             local: None,
             areas: None,
             ice: Ice::default(),
+            births: Remembered::default(),
             drawn: (u64::MAX, RainReport::default()),
         }
     }
@@ -350,7 +353,9 @@ impl RainView {
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - c.air.station_altitude_m;
-        let carried = |from| wind.since(from);
+        // Taken out, since what follows changes the rest.
+        let births = std::mem::take(&mut self.births);
+        let carried = |from| wind.since(from, &births);
         let cones = (wet && self.has_cones(now)).then(|| {
             let there = self.falling_at(device, scene);
             local.iter_mut().for_each(|l| l.set_cones(there.extinction_per_m));
@@ -385,7 +390,9 @@ impl RainView {
             stones: stones
                 .map(|s| StoneDraw::new(&s, s.uniform(camera.position_m, height_m, air.displacement_m, air.time_s))),
         };
-        self.layer.draw(device, to.encoder, &drawn, shot.color.texture, frame.depth_layer())?;
+        let done = self.layer.draw(device, to.encoder, &drawn, shot.color.texture, frame.depth_layer());
+        self.births = births;
+        done?;
         let drops = block.shells > 0;
         Ok(RainReport {
             drops: classes.per_shell * block.shells + stones.map_or(0, |s| s.drawn),

@@ -1,5 +1,7 @@
 //! The wind over a timeline, and what it has carried up to a moment.
 
+use std::cell::{Cell, RefCell};
+
 use glam::DVec3;
 
 use super::{Blowing, Drift, Wind};
@@ -12,6 +14,8 @@ pub(crate) struct WindOver<'a> {
     pub timeline: &'a Timeline,
     /// How far it had carried the air when the last change ended that the timeline has forgotten.
     pub kept: Drift,
+    /// Another number for every timeline of every context, and after every change of one.
+    pub revision: u64,
 }
 
 impl<'a> WindOver<'a> {
@@ -46,10 +50,69 @@ impl Carrying<'_> {
     }
 
     /// How far the wind has carried the air since a moment, m, and before what the timeline knows with the wind of its first one.
-    pub fn since(&self, from_s: f64) -> DVec3 {
+    pub fn since(&self, from_s: f64, remembered: &Remembered) -> DVec3 {
         let known_s = from_s.max(self.over.timeline.known_from_s()).min(self.time_s);
-        let first = self.over.at(known_s);
+        let first = remembered.at(&self.over, known_s);
         let since = self.now.drift.displacement_m - first.drift.displacement_m;
         (since + first.velocity_m_s() * (known_s - from_s)).extend(0.0)
+    }
+}
+
+/// Moments that are remembered: more than a frame asks for.
+const REMEMBERED: usize = 16;
+
+/// The wind at moments that many frames ask for: a walk over the timeline each, worked out once until the timeline changes.
+#[derive(Default)]
+pub(crate) struct Remembered {
+    revision: Cell<u64>,
+    /// By the bits of the time; the oldest gives its place to the next.
+    winds: RefCell<Vec<(u64, Blowing)>>,
+    next: Cell<usize>,
+}
+
+impl Remembered {
+    fn at(&self, over: &WindOver<'_>, time_s: f64) -> Blowing {
+        let mut winds = self.winds.borrow_mut();
+        if self.revision.replace(over.revision) != over.revision {
+            winds.clear();
+        }
+        if let Some((_, found)) = winds.iter().find(|(bits, _)| *bits == time_s.to_bits()) {
+            return *found;
+        }
+        let found = over.at(time_s);
+        if winds.len() < REMEMBERED {
+            let room = REMEMBERED - winds.len();
+            winds.reserve_exact(room);
+            winds.push((time_s.to_bits(), found));
+        } else {
+            let place = self.next.get() % REMEMBERED;
+            winds[place] = (time_s.to_bits(), found);
+            self.next.set(place + 1);
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weather::{Weather, derive};
+
+    #[test]
+    fn what_is_remembered_is_what_a_walk_finds_and_goes_with_the_timeline() {
+        let wind = Wind::new(7);
+        let remembered = Remembered::default();
+        let mut weather = Weather::default();
+        for (revision, speed) in [(1, 4.0), (2, 11.0)] {
+            weather.wind.speed_m_s = speed;
+            let timeline = Timeline::new(derive(&weather).unwrap());
+            let over = WindOver { wind: &wind, timeline: &timeline, kept: Drift::ZERO, revision };
+            // More moments than there is room for, some of them again.
+            for i in 0..40 {
+                let time_s = f64::from(i % 23) * 1.5;
+                assert_eq!(remembered.at(&over, time_s), over.at(time_s), "{revision} {i}");
+            }
+            assert_eq!(remembered.winds.borrow().len(), REMEMBERED);
+        }
     }
 }

@@ -17,7 +17,7 @@ mod tests;
 
 use glam::{DVec2, DVec3};
 
-pub(crate) use carrying::{Carrying, WindOver};
+pub(crate) use carrying::{Carrying, Remembered, WindOver};
 use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};

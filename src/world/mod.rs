@@ -13,7 +13,13 @@ mod saved;
 mod saved_settings;
 mod scene;
 
-use std::{cell::OnceCell, sync::Arc};
+use std::{
+    cell::OnceCell,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 use glam::DVec3;
 
@@ -94,6 +100,8 @@ pub(crate) struct World {
     /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
     color: [[f64; 3]; 3],
     pub timeline: Timeline,
+    /// Another number for every timeline of every world, and after every change of one.
+    timeline_revision: u64,
     wind: Wind,
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
     pub drifted: Drift,
@@ -106,6 +114,12 @@ pub(crate) struct World {
     couplings: Couplings,
     /// Revision of the rain areas and static shelters.
     pub surroundings_revision: u64,
+}
+
+/// A number that no timeline has had.
+fn next_revision() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// What a world is made of.
@@ -137,6 +151,7 @@ impl World {
             exposure,
             tone,
             timeline: Timeline::new(weather),
+            timeline_revision: next_revision(),
             wind: Wind::new(seed),
             drifted: Drift::ZERO,
             set: Settings {
@@ -157,9 +172,20 @@ impl World {
         })
     }
 
+    /// Changes the weather; see [`Timeline::change`].
+    ///
+    /// # Errors
+    /// As [`Timeline::change`]; the weather stays as it was.
+    pub fn change_weather(&mut self, to: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
+        self.timeline.change(to, start_s, transition_s)?;
+        self.timeline_revision = next_revision();
+        Ok(())
+    }
+
     /// The weather over all places and times.
     pub fn over(&self) -> WeatherOver<'_> {
-        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted };
+        let revision = self.timeline_revision;
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted, revision };
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
     }
 

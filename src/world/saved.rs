@@ -83,6 +83,7 @@ impl World {
             exposure: _,
             color: _,
             timeline: _,
+            timeline_revision: _,
             wind: _,
             drifted: _,
             set: _,
@@ -169,6 +170,7 @@ impl World {
         use std::mem::swap;
         swap(&mut self.time_s, &mut other.time_s);
         swap(&mut self.timeline, &mut other.timeline);
+        self.timeline_revision = super::next_revision();
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.set, &mut other.set);
         swap(&mut self.exposure, &mut other.beside.exposure);
