@@ -1,6 +1,6 @@
 //! What the wind lifts comes in gusts: how unevenly, by the law of grains that hop along the ground.
 
-use super::conditions::WindProfile;
+use super::{conditions::WindProfile, smoothstep};
 
 /// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground (Bagnold 1941;
 /// for dry snow 7.7 m/s, Li and Pomeroy 1997).
@@ -14,6 +14,10 @@ pub fn carried(speed_m_s: f64) -> f64 {
     speed_m_s * (speed_m_s * speed_m_s - LIFTING_M_S * LIFTING_M_S).max(0.0)
 }
 
+/// What gusts carry on the mean, m^3/s^3, below which the wind lifts nothing, and from which on its unevenness counts in full: what a
+/// calmer wind still carries was lifted before and has mixed.
+const CALM: [f64; 2] = [1e-3, 0.3];
+
 /// Standard deviation of what gusts carry over its mean, held to \[0, 1\]: 0 where no gust lifts anything, 1 where only gusts do.
 /// Gusts are normal about the mean wind.
 pub fn unevenness(wind: &WindProfile) -> f64 {
@@ -26,7 +30,10 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
         (weight, first, second) = (weight + w, first + w * q, second + w * q * q);
     }
     let (first, second) = (first / weight, second / weight);
-    if first <= 1e-3 { 0.0 } else { ((second - first * first).max(0.0).sqrt() / first).min(1.0) }
+    if first <= CALM[0] {
+        return 0.0;
+    }
+    ((second - first * first).max(0.0).sqrt() / first).min(1.0) * smoothstep(CALM[0], CALM[1], first)
 }
 
 #[cfg(test)]
@@ -37,6 +44,18 @@ mod tests {
     fn of(speed_m_s: f64, turbulence: f64) -> f64 {
         let wind = Wind { turbulence_intensity: Some(turbulence), ..Wind::of(speed_m_s, 200.0) };
         unevenness(&derive(&Weather { wind, ..Weather::default() }).unwrap().wind)
+    }
+
+    #[test]
+    fn unevenness_comes_up_without_a_jump() {
+        let mut last = of(3.5, 0.18);
+        assert_eq!(last, 0.0);
+        for i in 1..=1500 {
+            let now = of(3.5 + 0.002 * f64::from(i), 0.18);
+            assert!((now - last).abs() < 0.02, "{}: {last} to {now}", 3.5 + 0.002 * f64::from(i));
+            last = now;
+        }
+        assert!(last > 0.9, "{last}");
     }
 
     #[test]
