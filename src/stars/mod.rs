@@ -57,6 +57,8 @@
 pub mod catalogue;
 pub mod galaxy;
 pub mod glow;
+mod glow_pass;
+mod held;
 pub mod light;
 pub mod limits;
 mod orbits;
@@ -66,6 +68,7 @@ pub mod planets;
 pub mod reference;
 pub mod settings;
 pub mod uniforms;
+mod view;
 
 pub use catalogue::{Star, catalogue};
 pub use glow::NightSky;
@@ -74,3 +77,5 @@ pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
+pub(crate) use held::{HeldStars, night_lux};
+pub(crate) use view::{STARS, StarsView};
