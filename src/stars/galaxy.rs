@@ -73,7 +73,9 @@ pub fn catalogue_s10(galactic: DVec3) -> f64 {
 /// over one quarter of the sky, as all quarters are alike: within 3 % of the integral.
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
-    let table = TABLE.get_or_init(|| (0..LATITUDES_DEG.len()).flat_map(|row| (0..=LONGITUDES).map(move |i| at_node(row, i))).collect());
+    let table = TABLE.get_or_init(|| {
+        (0..LATITUDES_DEG.len()).flat_map(|row| (0..=LONGITUDES).map(move |i| at_node(row, i))).collect()
+    });
     let latitude = galactic.z.abs().min(1.0).asin().to_degrees();
     let row = LATITUDES_DEG.partition_point(|b| *b <= latitude).clamp(1, LATITUDES_DEG.len() - 1) - 1;
     let v = (latitude - LATITUDES_DEG[row]) / (LATITUDES_DEG[row + 1] - LATITUDES_DEG[row]);

@@ -143,13 +143,7 @@ impl NightSky {
     }
 
     /// The same where the heavens are turned by `to_world`, from J2000.0 to (east, north, up), and the sun stands at `sun` in J2000.0.
-    pub(super) fn under(
-        to_world: &DMat3,
-        sun: DVec3,
-        altitude_m: f64,
-        zenith_depth: [f64; 3],
-        airglow: f64,
-    ) -> Self {
+    pub(super) fn under(to_world: &DMat3, sun: DVec3, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         let from_world = to_world.transpose();
         let mut sky = Self {
             to_sun_ecliptic: equator_to_sun_ecliptic(sun) * from_world,

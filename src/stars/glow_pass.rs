@@ -218,18 +218,7 @@ mod tests {
             "stars/glow.wgsl",
             "GlowUniform",
             GlowUniform,
-            [
-                clip,
-                to_world,
-                colors,
-                zenith_depth,
-                airglow,
-                lit_air,
-                layer_ratio2,
-                dusk,
-                share,
-                y_sign
-            ]
+            [clip, to_world, colors, zenith_depth, airglow, lit_air, layer_ratio2, dusk, share, y_sign]
         );
     }
 }

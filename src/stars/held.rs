@@ -78,12 +78,7 @@ impl HeldEffect for HeldStars {
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for a time or place out of range.
-pub(crate) fn night_lux(
-    utc: Utc,
-    place: &Place,
-    zenith_depth: [f64; 3],
-    set: &NightSettings,
-) -> Result<[f64; 3]> {
+pub(crate) fn night_lux(utc: Utc, place: &Place, zenith_depth: [f64; 3], set: &NightSettings) -> Result<[f64; 3]> {
     let (to_world, sun) = to_world_and_sun(utc, place, set.celestial_to_world)?;
     Ok(NightSky::under(&to_world, sun, place.altitude_m, zenith_depth, set.airglow).level_lux())
 }

@@ -72,10 +72,10 @@ mod view;
 
 pub use catalogue::{Star, catalogue};
 pub use glow::NightSky;
+pub(crate) use held::{HeldStars, night_lux};
 pub use passes::{StarDepth, StarPass};
 pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
-pub(crate) use held::{HeldStars, night_lux};
 pub(crate) use view::{STARS, StarsView};

@@ -3,6 +3,7 @@
 mod froxels;
 mod host;
 mod measure;
+mod night;
 mod queries;
 mod refined;
 mod refused;
