@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     galaxy::{equator_to_galactic, unresolved_s10},
-    light::{MAGNITUDE_0_LUX, color_of_temperature, transmittance},
+    light::{MAGNITUDE_0_LUX, color_by_sunlight, transmittance},
     places::Heavens,
     planets::ecliptic_to_equator,
 };
@@ -151,7 +151,7 @@ impl NightSky {
             altitude_m: altitude_m.max(0.0),
             zenith_depth,
             airglow,
-            colors: [AIRGLOW_K, ZODIACAL_K, STARLIGHT_K].map(color_of_temperature),
+            colors: [AIRGLOW_K, ZODIACAL_K, STARLIGHT_K].map(color_by_sunlight),
             lit_air: [0.0; 3],
         };
         for direction in (0..DOME).map(dome_direction) {

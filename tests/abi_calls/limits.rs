@@ -2,11 +2,11 @@
 //! several answers none is given where one cannot be.
 
 use std::ffi::{CString, c_char, c_void};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, report::*, status::*, timeline::*,
-    view::*, weather::*, wind::*,
+    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, report::*, stars::*, status::*,
+    timeline::*, view::*, weather::*, wind::*,
 };
 
 use super::world::{World, init, message, next_frame};
