@@ -262,6 +262,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
 /** wk_part_wish */
 #define WK_STRUCT_TYPE_PART_WISH 61
+/** wk_stars */
+#define WK_STRUCT_TYPE_STARS 62
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -3768,6 +3770,8 @@ typedef uint32_t wk_part;
  * cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
  */
 #define WK_PART_RAIN 3
+/** Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light). */
+#define WK_PART_STARS 4
 
 /** What a host wants of one part. */
 typedef struct wk_part_wish {
@@ -4615,6 +4619,81 @@ wk_status wk_context_set_lights(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Stars
+ *
+ * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the zodiacal light and
+ * the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in fog and under closed clouds there
+ * is nothing of it. A budget may leave them out (WK_PART_STARS).
+ * ====================================================================================================
+ */
+
+/** What a wk_stars sets. */
+typedef uint32_t wk_stars_flags;
+
+/** stars and star_count: the host's own stars in place of the catalogue's. */
+#define WK_STARS_OWN 1
+/** celestial_to_world: the host turns the heavens itself. */
+#define WK_STARS_TURNED 2
+/** No planets. */
+#define WK_STARS_NO_PLANETS 4
+
+/** How the night sky is drawn. */
+typedef struct wk_stars {
+    /** sizeof(wk_stars) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_STARS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default 0: the catalogue's stars and the planets, where they stand over the Earth. */
+    wk_stars_flags flags;
+    /** Stars in `stars`, at most 1 000 000. Default 0. */
+    uint32_t star_count;
+    /**
+     * With WK_STARS_OWN: four numbers a star: right ascension, degrees, declination, degrees in [-90, 90], both in the
+     * equator and equinox of J2000.0; visual magnitude in [-30, 30]; temperature of its colour as a black body, K, in
+     * [1000, 100000]. Copied. Default NULL.
+     */
+    const double *stars;
+    /**
+     * With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole) to
+     * (east, north, up), column after column. Default the identity.
+     */
+    double celestial_to_world[9];
+    /** Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest. */
+    double airglow;
+} wk_stars;
+
+/** Every field of `wk_stars` at its default. */
+#define WK_STARS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_stars), \
+    /* struct_type */ WK_STRUCT_TYPE_STARS, \
+    /* next */ NULL, \
+    /* flags */ 0, \
+    /* star_count */ 0, \
+    /* stars */ NULL, \
+    /* celestial_to_world */ { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }, \
+    /* airglow */ 1.0 \
+}
+
+/**
+ * Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state: a context that
+ * loads one keeps its own list. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_stars(wk_context *context,
+                               const wk_stars *stars);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_STARS_INIT`. `struct_size` is `sizeof(wk_stars)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -24,6 +24,7 @@ use crate::{
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     stage::{DrawnEffect, Frame, Shot, Stages},
+    stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
 
@@ -68,19 +69,22 @@ impl Default for ContextDesc {
 }
 
 /// What the effects do to every world.
-pub(crate) const COUPLINGS: Couplings = Couplings { dim: fog::dim, own_rain: fog::own_rain };
+pub(crate) const COUPLINGS: Couplings =
+    Couplings { dim: fog::dim, own_rain: fog::own_rain, night_lux: stars::night_lux };
 
 /// What a context holds of the effects for all its views.
 pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
     pub fog: HeldFog,
     pub ground: HeldGround,
+    pub stars: HeldStars,
 }
 
 /// The same as it was loaded.
 pub(crate) struct LoadedHeld {
     fog: HeldFog,
     ground: LoadedGround,
+    stars: HeldStars,
 }
 
 impl Held {
@@ -95,17 +99,18 @@ impl Held {
             sky: Arc::new(Mutex::new(sky)),
             fog: HeldFog::default(),
             ground: HeldGround::new(desc.ground, desc.seed),
+            stars: HeldStars::default(),
         })
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 2] {
-        [&mut self.fog, &mut self.ground]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 3] {
+        [&mut self.fog, &mut self.ground, &mut self.stars]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 2] {
-        [&self.fog, &self.ground]
+    pub fn all(&self) -> [&dyn HeldEffect; 3] {
+        [&self.fog, &self.ground, &self.stars]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -113,7 +118,8 @@ impl Held {
     /// # Errors
     /// [`crate::Status::Parse`] naming what does not fit.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
-        Ok(LoadedHeld { fog: HeldFog::read(state)?, ground: self.ground.read(world, state)? })
+        let stars = HeldStars::read(state, self.stars.settings.stars.clone())?;
+        Ok(LoadedHeld { fog: HeldFog::read(state)?, ground: self.ground.read(world, state)?, stars })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -121,11 +127,14 @@ impl Held {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
         self.ground.take_up(&mut other.ground);
+        std::mem::swap(&mut self.stars, &mut other.stars);
+        world.night = self.stars.night();
     }
 }
 
 /// The parts of the weather that a picture may do with less of, in the order of every list of them.
-pub const PARTS: &[Part] = &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN];
+pub const PARTS: &[Part] =
+    &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN, stars::STARS];
 
 /// Two parts of the list that cost more beside each other, and how much under the lamps of a scene.
 pub(crate) fn together(scene: &Scene) -> ([usize; 2], StepWork) {
@@ -150,6 +159,7 @@ pub(crate) struct Effects {
     pub ground: GroundView,
     pub rain: RainView,
     pub glass: GlassView,
+    pub stars: StarsView,
 }
 
 impl Effects {
@@ -164,17 +174,18 @@ impl Effects {
             ground: GroundView::new(device),
             rain: RainView::new(device, RainSettings::default()),
             glass: GlassView::new(shared),
+            stars: StarsView::default(),
         })
     }
 
     /// All of them, in their order.
-    pub fn each(&mut self) -> [&mut dyn DrawnEffect; 5] {
-        [&mut self.sky, &mut self.fog, &mut self.ground, &mut self.rain, &mut self.glass]
+    pub fn each(&mut self) -> [&mut dyn DrawnEffect; 6] {
+        [&mut self.sky, &mut self.fog, &mut self.ground, &mut self.rain, &mut self.glass, &mut self.stars]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn DrawnEffect; 5] {
-        [&self.sky, &self.fog, &self.ground, &self.rain, &self.glass]
+    pub fn all(&self) -> [&dyn DrawnEffect; 6] {
+        [&self.sky, &self.fog, &self.ground, &self.rain, &self.glass, &self.stars]
     }
 
     /// Takes what there is of each in a moment, of a frame in which `stages` are asked for.
@@ -192,7 +203,9 @@ impl Effects {
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
         self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
-        self.rain.gather(now)
+        self.rain.gather(now)?;
+        let utc = world.utc_at(now.time_s);
+        self.stars.gather((now, frame), utc, &held.stars.settings, fog_depth)
     }
 
     /// What streaks are worth in a picture, if the plan decides about them.

@@ -6,7 +6,7 @@ struct FrameUniform {
     depth: DepthUniform,
     // Columns: linear Rec. 709 colour, cd/m^2, of what the sky passes on at each of the planet's three wavelengths.
     color: array<vec4f, 3>,
-    // Luminance of a moonless, airglow and starlit sky near the zenith, cd/m^2 a channel.
+    // Mean luminance of the moonless sky between the stars, cd/m^2 a channel.
     night_floor: vec3f,
     // Display units per cd/m^2.
     exposure: f32,
@@ -41,8 +41,8 @@ struct FrameUniform {
     // How often the gauge composes: everything, and without each part.
     compositions: u32,
     pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    // cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
+    behind: vec2f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

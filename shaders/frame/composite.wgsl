@@ -14,17 +14,34 @@ override PARTICLES: bool = false;
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
 
+// What stands behind the sky's own light, in the night floor's place: stars and the glow between them.
+@group(0) @binding(11) var behind: texture_2d<f32>;
+
+override STARS: bool = false;
+
+// Its texel, which several samples of a pixel share.
+var<private> behind_pixel: vec2i;
+
+fn night_light() -> vec3f {
+    if !STARS || frame.behind.y == 0.0 {
+        return frame.night_floor;
+    }
+    let light = textureLoad(behind, behind_pixel, 0).rgb * frame.behind.x;
+    return mix(frame.night_floor, light, frame.behind.y * drawn.z);
+}
+
 fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
     if (!CLEAR_SKY || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
     let spectrum = sky_radiance_on(path, d);
+    let night = night_light();
     if d.z < 0.0 {
-        return color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share + frame.night_floor;
+        return color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share + night;
     }
     // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
     let disc = max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
-    let clear = (color_of(spectrum) + disc) * drawn.z + frame.night_floor;
+    let clear = (color_of(spectrum) + disc) * drawn.z + night;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 
@@ -90,6 +107,7 @@ fn linear_host(host: vec3f) -> vec3f {
 
 fn compose(host: vec4f, range: f32, plane: f32, facing: Facing, mask: f32, ndc: vec2f, pixel: vec2u) -> vec4f {
     drawn = frame.drawn;
+    behind_pixel = vec2i(pixel);
     let ray = view_ray(frame.depth, ndc);
     var veil = weather_over(ray, range, plane);
     if SURFACE && range < RANGE_SKY {

@@ -1,6 +1,7 @@
 // Stars and planets as points of light: the f64 twin is in src/stars/reference.rs, same names.
 //!include "common/depth.wgsl"
 //!include "common/host.wgsl"
+//!include "stars/air_mass.wgsl"
 
 struct StarUniform {
     depth: DepthUniform,
@@ -70,12 +71,6 @@ fn lifted(direction: vec3f) -> vec3f {
     return select(up, direction, level < 1e-4);
 }
 
-// Relative air mass at the sine of an apparent elevation (Kasten and Young 1989).
-fn air_mass(sine: f32) -> f32 {
-    let s = max(sine, 0.0);
-    return 1.0 / (s + 0.50572 * pow(asin(min(s, 1.0)) * 57.29578 + 6.07995, -1.6364));
-}
-
 struct StarVarying {
     @builtin(position) position: vec4f,
     // Radiance on a pixel that it fell on as a whole, the target's units.
@@ -127,5 +122,6 @@ fn is_open(position: vec2f) -> bool {
 @fragment
 fn star_fragment(in: StarVarying) -> @location(0) vec4f {
     let share = select(0.0, weight(in.position.xy - in.pixel), is_open(in.position.xy));
-    return vec4f(in.light * share, 0.0);
+    // Half of what a half float holds: two of them may fall on one pixel.
+    return vec4f(min(in.light * share, vec3f(3e4)), 0.0);
 }

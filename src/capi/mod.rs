@@ -59,6 +59,8 @@ pub mod occluder;
 
 pub mod light;
 
+pub mod stars;
+
 pub mod windscreen;
 
 pub mod ground;

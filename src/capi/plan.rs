@@ -50,6 +50,8 @@ pub const WK_PART_SKY: wk_part = 2;
 /// Streaks and splashes of rain, where the view has no rain model of the host's choice. Rungs: drops (each near the camera by itself),
 /// cones (which stand for them), none (all rain is a veil, and without WK_PART_FOG too nothing of it is drawn).
 pub const WK_PART_RAIN: wk_part = 3;
+/// Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light).
+pub const WK_PART_STARS: wk_part = 4;
 
 /// Which optional fields of a wk_part_wish are set.
 pub type wk_part_wish_has_flags = u32;

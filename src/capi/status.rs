@@ -147,6 +147,8 @@ pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish
 pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
+/// wk_stars
+pub const WK_STRUCT_TYPE_STARS: wk_struct_type = 62;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

@@ -100,6 +100,7 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
         (8, Slot::Texels),
         (9, Slot::Texels),
         (10, Slot::Texels),
+        (11, Slot::Texels),
     ];
     bind::layout(device, "frame", wgpu::ShaderStages::FRAGMENT, &slots)
 }
@@ -139,7 +140,7 @@ impl Composite {
         composition: &Composition,
     ) -> Option<wgpu::BindGroup> {
         let [Some(between), Some(on_surfaces)] = &composition.blocks else { return None };
-        let [before, cells, terrain] = composition.textures.each_ref().map(Option::as_ref);
+        let [before, cells, terrain, behind] = composition.textures.each_ref().map(Option::as_ref);
         let sampling = Sampling::of(copy, host.depth);
         let color_view = copy.create_view(&Default::default());
         let depth_view = host.depth_layer().map(Layer::view);
@@ -164,6 +165,7 @@ impl Composite {
                 entry(8, terrain.unwrap_or(&self.none)),
                 entry(9, classes.as_ref().unwrap_or(&self.none)),
                 entry(10, normals.as_ref().unwrap_or(&self.none)),
+                entry(11, behind.unwrap_or(&self.none)),
             ],
         }))
     }

@@ -15,7 +15,7 @@ pub(super) struct Bound {
     mask: Option<KeptLayer>,
     surface_classes: Option<KeptLayer>,
     normals: Option<KeptLayer>,
-    own: [Option<wgpu::TextureView>; 3],
+    own: [Option<wgpu::TextureView>; 4],
 }
 
 impl View {

@@ -4,4 +4,5 @@
 mod air;
 mod ground;
 mod rain;
+mod stars;
 mod view;

@@ -27,7 +27,8 @@ pub struct Part {
 /// How the gauge learns what a part is worth in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// The gauge composes the picture without it, in this channel.
+    /// The gauge composes the picture without it, in this channel; parts that share one are taken to be worth as much together as
+    /// each.
     Composed(usize),
     /// A closed form says what each rung changes ([`super::Unseen`]); to the last rung the gauge adds what then stands in the part's
     /// place, in this channel.

@@ -421,7 +421,8 @@ impl<U: Unseen> Planner<U> {
 
     /// How often the gauge composes: once more for what it cannot see alone.
     pub fn compositions(&self, unseen: bool) -> u32 {
-        let composed = self.choices.ladder.parts.iter().filter(|p| matches!(p.worth, Worth::Composed(_))).count();
+        let channel = |part: &Part| if let Worth::Composed(channel) = part.worth { channel + 1 } else { 0 };
+        let composed = self.choices.ladder.parts.iter().map(channel).max().unwrap_or(0);
         1 + composed as u32 + u32::from(unseen)
     }
 

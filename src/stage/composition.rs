@@ -65,6 +65,8 @@ pub(crate) enum Texture {
     OnGround = 1,
     /// Heights and classes of the host's terrain.
     Terrain = 2,
+    /// What stands behind the sky's own light: radiance over [`FrameUniform::behind`].
+    Behind = 3,
 }
 
 /// Places for blocks of the effects.
@@ -103,7 +105,7 @@ pub(crate) struct Composition {
     /// Buffers by [`Block`].
     pub blocks: [Option<wgpu::Buffer>; 2],
     /// Textures by [`Texture`].
-    pub textures: [Option<wgpu::TextureView>; 3],
+    pub textures: [Option<wgpu::TextureView>; 4],
     /// Look-up tables of what lies behind and between (group 1), and their layout.
     pub tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
     /// Fall speed of the slowest of what is drawn near the camera, m/s, and how far off any of it is, m: for which shelters matter.
@@ -119,7 +121,7 @@ impl Composition {
             whole: Pipeline::NONE,
             least: Pipeline::NONE,
             blocks: [const { None }; 2],
-            textures: [const { None }; 3],
+            textures: [const { None }; 4],
             tables: None,
             near: (1.0, 0.0),
         }

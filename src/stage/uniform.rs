@@ -30,7 +30,9 @@ pub(crate) struct FrameUniform {
     /// How much of air, fog, clear sky and what drops hide is drawn.
     pub drawn: [f32; 4],
     pub compositions: u32,
-    pub pad: [u32; 3],
+    pub pad: u32,
+    /// cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
+    pub behind: [f32; 2],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -79,7 +81,8 @@ pub(crate) fn uniform(
         drops: [0.0; 2],
         drawn: [0.0; 4],
         compositions: 0,
-        pad: [0; 3],
+        pad: 0,
+        behind: [0.0; 2],
     }
 }
 
@@ -113,7 +116,8 @@ mod tests {
                 direct_share,
                 drops,
                 drawn,
-                compositions
+                compositions,
+                behind
             ]
         );
     }

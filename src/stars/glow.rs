@@ -1,12 +1,12 @@
 //! The night sky between the stars: airglow, zodiacal light and the Milky Way.
 
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, sync::OnceLock};
 
 use glam::{DMat3, DVec3};
 
 use super::{
     galaxy::{equator_to_galactic, unresolved_s10},
-    light::{MAGNITUDE_0_LUX, color_of_temperature, transmittance},
+    light::{MAGNITUDE_0_LUX, color_by_sunlight, transmittance},
     places::Heavens,
     planets::ecliptic_to_equator,
 };
@@ -92,7 +92,9 @@ fn smooth(at: &[f64], value: impl Fn(usize) -> f64, x: f64) -> f64 {
 pub fn zodiacal_s10(longitude_from_sun_deg: f64, latitude_deg: f64) -> f64 {
     let longitude = (longitude_from_sun_deg + 180.0).rem_euclid(360.0) - 180.0;
     let latitude = latitude_deg.abs().min(90.0);
-    let row = |i: usize| smooth(&LATITUDES, |j| ZODIACAL_S10[i][j].ln(), latitude);
+    static LOGARITHMS: OnceLock<[[f64; 11]; 19]> = OnceLock::new();
+    let table = LOGARITHMS.get_or_init(|| ZODIACAL_S10.map(|row| row.map(f64::ln)));
+    let row = |i: usize| smooth(&LATITUDES, |j| table[i][j], latitude);
     smooth(&LONGITUDES, row, longitude.abs()).exp()
 }
 
@@ -112,30 +114,44 @@ pub struct NightSky {
     to_galactic: DMat3,
     altitude_m: f64,
     /// Optical depth of the air straight up at the three wavelengths.
-    zenith_depth: [f64; 3],
+    pub(super) zenith_depth: [f64; 3],
     /// Airglow over that of the sun's least activity.
     airglow: f64,
     /// Colours of luminance 1 of airglow, zodiacal light and starlight.
-    colors: [[f64; 3]; 3],
+    pub(super) colors: [[f64; 3]; 3],
     /// Luminance of lit air without end, cd/m^2 a channel.
-    lit_air: [f64; 3],
+    pub(super) lit_air: [f64; 3],
+}
+
+/// From J2000.0 to the ecliptic with the sun, at `sun` in J2000.0, at longitude 0.
+pub(super) fn equator_to_sun_ecliptic(sun: DVec3) -> DMat3 {
+    let to_ecliptic = ecliptic_to_equator().transpose();
+    let sun = to_ecliptic * sun;
+    DMat3::from_rotation_z(-sun.y.atan2(sun.x)) * to_ecliptic
+}
+
+/// Zodiacal light above the air, S10, in a direction of [`equator_to_sun_ecliptic`].
+pub(super) fn zodiacal_toward(e: DVec3) -> f64 {
+    zodiacal_s10(e.y.atan2(e.x).to_degrees(), e.z.clamp(-1.0, 1.0).asin().to_degrees())
 }
 
 impl NightSky {
     /// The glow over a place `altitude_m` above the sea where the air's optical depths straight up are `zenith_depth`. `airglow`: its
     /// strength, 1 at the sun's least activity, 1.7 at the greatest (the sky is then brighter by 0.4 magnitudes, Benn and Ellison 1998).
     pub fn new(heavens: &Heavens, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
-        let from_world = heavens.to_world.transpose();
-        let to_ecliptic = ecliptic_to_equator().transpose();
-        let sun = to_ecliptic * heavens.sun;
-        let to_sun = DMat3::from_rotation_z(-sun.y.atan2(sun.x));
+        Self::under(&heavens.to_world, heavens.sun, altitude_m, zenith_depth, airglow)
+    }
+
+    /// The same where the heavens are turned by `to_world`, from J2000.0 to (east, north, up), and the sun stands at `sun` in J2000.0.
+    pub(super) fn under(to_world: &DMat3, sun: DVec3, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
+        let from_world = to_world.transpose();
         let mut sky = Self {
-            to_sun_ecliptic: to_sun * to_ecliptic * from_world,
+            to_sun_ecliptic: equator_to_sun_ecliptic(sun) * from_world,
             to_galactic: equator_to_galactic() * from_world,
             altitude_m: altitude_m.max(0.0),
             zenith_depth,
             airglow,
-            colors: [AIRGLOW_K, ZODIACAL_K, STARLIGHT_K].map(color_of_temperature),
+            colors: [AIRGLOW_K, ZODIACAL_K, STARLIGHT_K].map(color_by_sunlight),
             lit_air: [0.0; 3],
         };
         for direction in (0..DOME).map(dome_direction) {
@@ -149,11 +165,19 @@ impl NightSky {
     /// as one below its layer sees it with no air between; from within the layer up it fades, as no layer lies before the stars there.
     /// The layer seen from above is not in it.
     pub fn s10(&self, direction: DVec3) -> [f64; 3] {
-        let e = self.to_sun_ecliptic * direction;
-        let zodiacal = zodiacal_s10(e.y.atan2(e.x).to_degrees(), e.z.clamp(-1.0, 1.0).asin().to_degrees());
-        let below = ((AIRGLOW_HEIGHT_M - self.altitude_m) / AIRGLOW_DEPTH_M).clamp(0.0, 1.0);
+        let zodiacal = zodiacal_toward(self.to_sun_ecliptic * direction);
         let layer = van_rhijn(direction.z.max(0.0), self.altitude_m.min(AIRGLOW_HEIGHT_M));
-        [AIRGLOW_S10 * self.airglow * below * layer, zodiacal, unresolved_s10(self.to_galactic * direction)]
+        [self.airglow_s10() * layer, zodiacal, unresolved_s10(self.to_galactic * direction)]
+    }
+
+    /// Airglow straight up, S10.
+    pub(super) fn airglow_s10(&self) -> f64 {
+        AIRGLOW_S10 * self.airglow * ((AIRGLOW_HEIGHT_M - self.altitude_m) / AIRGLOW_DEPTH_M).clamp(0.0, 1.0)
+    }
+
+    /// Square of the distance of the eye from the Earth's centre over that of the layer of airglow, at most 1.
+    pub(super) fn layer_ratio2(&self) -> f64 {
+        ((EARTH_RADIUS_M + self.altitude_m.min(AIRGLOW_HEIGHT_M)) / (EARTH_RADIUS_M + AIRGLOW_HEIGHT_M)).powi(2)
     }
 
     /// Luminance above the air, cd/m^2 a channel of linear Rec. 709.

@@ -50,9 +50,21 @@ pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     std::array::from_fn(|k| table[i][k] * (1.0 - f) + table[i + 1][k] * f)
 }
 
+/// The sun's temperature as a black body's, K (IAU 2015 resolution B3).
+const SUN_K: f64 = 5772.0;
+
+/// The same colour to an eye for which unscattered sunlight is white, as for all that is drawn (von Kries; `world::lights`), of
+/// luminance 1.
+pub fn color_by_sunlight(temperature_k: f64) -> [f64; 3] {
+    let (color, white) = (color_of_temperature(temperature_k), color_of_temperature(SUN_K));
+    let adapted: [f64; 3] = std::array::from_fn(|k| color[k] / white[k]);
+    let total = luminance(&adapted);
+    adapted.map(|v| v / total)
+}
+
 /// Illuminance above the air of a star, lux a channel of linear Rec. 709.
 pub fn star_lux(magnitude: f64, temperature_k: f64) -> [f64; 3] {
-    color_of_temperature(temperature_k).map(|c| c * illuminance_lux(magnitude))
+    color_by_sunlight(temperature_k).map(|c| c * illuminance_lux(magnitude))
 }
 
 /// Relative air mass towards an apparent elevation, degrees (Kasten and Young 1989, eq. 3). Below the horizon as at it: 38.
@@ -114,6 +126,14 @@ mod tests {
             assert!((luminance(&c) - 1.0).abs() < 1e-6, "{t}: {c:?}");
             assert!((got[0] - x).abs() < 0.006 && (got[1] - y).abs() < 0.006, "{t}: {got:?}");
         }
+    }
+
+    #[test]
+    fn sunlight_is_white_and_stars_are_bluer_or_redder_than_it() {
+        assert!(color_by_sunlight(SUN_K).iter().all(|v| (v - 1.0).abs() < 1e-9));
+        let [cool, hot] = [3500.0, 12_000.0].map(color_by_sunlight);
+        assert!(cool[0] > 1.2 && cool[2] < 0.8 && hot[0] < 0.95 && hot[2] > 1.2, "{cool:?} {hot:?}");
+        assert!((luminance(&cool) - 1.0).abs() < 1e-12);
     }
 
     #[test]

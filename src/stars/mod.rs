@@ -21,7 +21,7 @@
 //! Planets: the series of Simon et al. 1994, magnitudes by Mallama and Hilton 2018.
 //!
 //! # Light
-//! Magnitude 0 is 2.54e-6 lux (Allen 1973); the colour is that of a black body ([`light`]). The air takes exp(-depth X) at each of the
+//! Magnitude 0 is 2.54e-6 lux (Allen 1973); the colour is that of a black body to an eye for which sunlight is white ([`light`]). The air takes exp(-depth X) at each of the
 //! three wavelengths, X by Kasten and Young 1989. What falls on a pixel is the illuminance over the pixel's solid angle, spread by a
 //! cubic B-spline over 4 by 4 pixels, whose weights add up to 1 wherever the star stands ([`reference::spline`]): the same light at any
 //! resolution, and no flicker.
@@ -57,6 +57,8 @@
 pub mod catalogue;
 pub mod galaxy;
 pub mod glow;
+mod glow_pass;
+mod held;
 pub mod light;
 pub mod limits;
 mod orbits;
@@ -66,11 +68,14 @@ pub mod planets;
 pub mod reference;
 pub mod settings;
 pub mod uniforms;
+mod view;
 
 pub use catalogue::{Star, catalogue};
 pub use glow::NightSky;
+pub(crate) use held::{HeldStars, night_lux};
 pub use passes::{StarDepth, StarPass};
 pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
+pub(crate) use view::{STARS, StarsView};

@@ -42,12 +42,12 @@ impl Heavens {
     /// [`crate::Status::InvalidArgument`] for a place, time or setting out of range.
     pub fn at(utc: Utc, place: &Place, settings: &StarSettings) -> Result<Self> {
         settings.validate()?;
-        let own = celestial_to_world(utc, place)?;
-        let (to_world, velocity, years) = match settings.celestial_to_world {
-            Some(hosts) => (hosts, DVec3::ZERO, 0.0),
-            None => (own, earth_velocity(utc), utc.julian_centuries_tt() * 100.0),
+        let (to_world, sun) = to_world_and_sun(utc, place, settings.celestial_to_world)?;
+        let (velocity, years) = match settings.celestial_to_world {
+            Some(_) => (DVec3::ZERO, 0.0),
+            None => (earth_velocity(utc), utc.julian_centuries_tt() * 100.0),
         };
-        Ok(Self { to_world, velocity, years, sun: sun_direction(utc), planets: planets(utc) })
+        Ok(Self { to_world, velocity, years, sun, planets: planets(utc) })
     }
 
     /// Unit vector (east, north, up) towards a direction of J2000.0 as one who moves with the Earth sees it, without refraction:
@@ -60,6 +60,15 @@ impl Heavens {
     pub fn star(&self, star: &Star) -> DVec3 {
         self.seen(star.direction_at(self.years))
     }
+}
+
+/// From J2000.0 to (east, north, up), the host's own where it gives one, and the sun's direction in J2000.0.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] for a place or time out of range.
+pub(super) fn to_world_and_sun(utc: Utc, place: &Place, hosts: Option<DMat3>) -> Result<(DMat3, DVec3)> {
+    let own = celestial_to_world(utc, place)?;
+    Ok((hosts.unwrap_or(own), sun_direction(utc)))
 }
 
 /// A direction (east, north, up; unit) as the air lifts it: Saemundsson 1986 times the air's density over that of 1010 hPa and 10 C

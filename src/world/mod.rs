@@ -21,13 +21,14 @@ use std::{
     },
 };
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 pub(crate) use air::planet_under;
 pub(crate) use held::{HeldEffect, Within};
 pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};
+pub(crate) use scene::{night_share, zenith_depth};
 
 use crate::{
     almanac::{
@@ -38,7 +39,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     moment::{Moment, OwnRain, Region, Scene, WeatherOver},
     planet::Planet,
-    scene::{HostLight, WorldFrame},
+    scene::{HostLight, Place, WorldFrame},
     surroundings::{OccluderMaps, Shelter},
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid, WindOver},
@@ -61,6 +62,21 @@ impl GivenDirection {
 
     pub(crate) fn unit(&self) -> DVec3 {
         direction(self.azimuth_deg, self.elevation_deg)
+    }
+}
+
+/// What the host has set of the sky between the stars, as far as it lights the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NightSettings {
+    /// Strength of the airglow, 1 near the sun's least activity.
+    pub airglow: f64,
+    /// From the equator and equinox of J2000.0 to (east, north, up), in place of the planet's own turning.
+    pub celestial_to_world: Option<DMat3>,
+}
+
+impl Default for NightSettings {
+    fn default() -> Self {
+        Self { airglow: 1.0, celestial_to_world: None }
     }
 }
 
@@ -88,6 +104,9 @@ pub(crate) struct Couplings {
     pub dim: Dim,
     /// What the low layer's extinction has of the weather's rain.
     pub own_rain: fn(&Conditions) -> OwnRain,
+    /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths straight up are
+    /// given.
+    pub night_lux: fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>,
 }
 
 /// Place, weather, time and surroundings.
@@ -106,6 +125,7 @@ pub(crate) struct World {
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
     pub drifted: Drift,
     pub set: Settings,
+    pub night: NightSettings,
     pub maps: Option<Box<OccluderMaps>>,
     pub lights: Vec<HostLight>,
     pub wind_grid: Option<Arc<WindGrid>>,
@@ -162,6 +182,7 @@ impl World {
                 utc_at_zero,
                 undimmed: false,
             },
+            night: NightSettings::default(),
             maps: None,
             lights: Vec::new(),
             wind_grid: None,

@@ -93,6 +93,8 @@ impl World {
             time_s: _,
             ephemeris: _,
             couplings: _,
+            // The effect that the host tells it to saves it.
+            night: _,
             surroundings_revision: _,
         } = self;
         let mut table = toml::Table::new();

@@ -19,11 +19,14 @@ use crate::{
     weather::{CloudLight, Conditions, slab_reflectance, smoothstep},
 };
 
-/// Luminance of a moonless night sky near the zenith, cd/m^2: 21.9 mag/arcsec^2, airglow and unresolved stars (Leinert
-/// et al. 1998), and its colour.
-const NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
-/// Illuminance of a moonless, starlit sky on level ground, lux (Leinert et al. 1998, integrated).
-const NIGHT_LUX: f64 = 8e-4;
+/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun stands too high for either to matter: of
+/// the sky's own light they are less than 1e-4 then. Below, [`Couplings::night_lux`](super::Couplings::night_lux) says how bright it is.
+const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
+const UNSEEN_NIGHT_LUX: f64 = 8e-4;
+/// Elevations of the sun between which the night's own light takes the place of those figures, degrees.
+const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
+/// Night in the table below, lux.
+const TABLE_NIGHT_LUX: f64 = 6.4e-4;
 /// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to the
 /// Astronomical Almanac 1992, table 8.1, night included at -18).
 const TWILIGHT_LN_LUX: [(f64, f64); 6] =
@@ -45,6 +48,18 @@ fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let scattering =
         [0, 1, 2].map(|i| planet.rayleigh.scattering_per_m[i] * gas + planet.mie.extinction_per_m[i] * haze);
     (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
+}
+
+/// Optical depth of all air above `altitude_m` straight up, per wavelength.
+pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
+    let (scattering, ozone) = zenith_depths(planet, altitude_m);
+    map(scattering, ozone, |s, o| s + o)
+}
+
+/// How far night has come under a sun, 0 by day to 1.
+pub(crate) fn night_share(sun: &Light) -> f64 {
+    let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+    1.0 - smoothstep(NIGHT_BEGINS_DEG.1, NIGHT_BEGINS_DEG.0, elevation)
 }
 
 /// Relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by its tangent's square.
@@ -78,7 +93,7 @@ fn clear_light(
     let i = TWILIGHT_LN_LUX.iter().rposition(|p| p.0 <= h).unwrap_or(0).min(4);
     let (a, b) = (TWILIGHT_LN_LUX[i], TWILIGHT_LN_LUX[i + 1]);
     let ln = a.1 + (b.1 - a.1) * (h - a.0) / (b.0 - a.0);
-    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - NIGHT_LUX * 0.8).max(0.0) * spectrum[1]);
+    let dusk = TWILIGHT_COLOR.map(|c| c * (ln.exp() - TABLE_NIGHT_LUX).max(0.0) * spectrum[1]);
     let t = smoothstep(-0.8, 5.0, elevation_deg);
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
@@ -111,7 +126,8 @@ impl World {
         let conditions = self.weather_at(time_s)?;
         let planet = planet_under(&self.planet, &conditions);
         let lights = self.lights_over(&local.place, &conditions, time_s)?;
-        let above_fog = self.ground_light(&planet, &local.place, &conditions, &lights);
+        let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
+        let above_fog = self.ground_light((&planet, &local.place), &conditions, &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.
         let patchy =
@@ -134,7 +150,7 @@ impl World {
             planet,
             sun,
             moon,
-            night_floor_cd_m2: NIGHT_CD_M2,
+            night_floor_cd_m2,
             deck_cd_m2: above_fog.sky_lux.map(|e| e * 9.0 / (7.0 * PI)),
             deck_cover,
             medium_share: medium_share(&under_sun),
@@ -164,7 +180,26 @@ impl World {
         }
     }
 
-    fn ground_light(&self, planet: &Planet, place: &Place, c: &Conditions, lights: &[UnderClouds; 2]) -> GroundLight {
+    /// Mean luminance of the moonless sky, cd/m^2, and its light on level ground, lux, a channel.
+    fn night(&self, planet: &Planet, place: &Place, sun: &Light, time_s: f64) -> Result<([f64; 3], [f64; 3])> {
+        let day = UNSEEN_NIGHT_CD_M2.map(|v| v / luminance(&UNSEEN_NIGHT_CD_M2) * UNSEEN_NIGHT_LUX);
+        let share = night_share(sun);
+        if share == 0.0 {
+            return Ok((UNSEEN_NIGHT_CD_M2, day));
+        }
+        let depth = zenith_depth(planet, place.altitude_m);
+        let lux = (self.couplings.night_lux)(self.utc_at(time_s), place, depth, &self.night)?;
+        let between = |a: f64, b: f64| a + (b - a) * share;
+        Ok((map(UNSEEN_NIGHT_CD_M2, lux.map(|e| e / PI), between), map(day, lux, between)))
+    }
+
+    fn ground_light(
+        &self,
+        (planet, place): (&Planet, &Place),
+        c: &Conditions,
+        lights: &[UnderClouds; 2],
+        night_lux: [f64; 3],
+    ) -> GroundLight {
         let cloud_top_m = c.lit_top_m(place.altitude_m);
         let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
@@ -177,8 +212,7 @@ impl World {
             (direct.map(|d| d * clouds.direct), map(on_top, sky, |d, s| s * clouds.sky + d * level * clouds.diffuse))
         };
         let ((sun_lux, sun_sky), (moon_lux, moon_sky)) = (one(&lights[0]), one(&lights[1]));
-        let floor = NIGHT_CD_M2.map(|v| v / luminance(&NIGHT_CD_M2) * NIGHT_LUX);
-        let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + floor[i]);
+        let sky_lux = [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + night_lux[i]);
         GroundLight::new([sun_lux, moon_lux, sky_lux], [&lights[0].0, &lights[1].0], place.altitude_m)
     }
 }

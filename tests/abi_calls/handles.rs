@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, status::*, surface::*, texture::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, stars::*, status::*, surface::*, texture::*,
     timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
@@ -92,6 +92,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)
         }),
+        case("wk_context_set_stars", "context", false, |h| unsafe { wk_context_set_stars(h.cast(), null()) }),
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
         case("wk_context_get_conditions", "context", false, |h| unsafe {
             wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())

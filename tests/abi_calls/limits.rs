@@ -2,11 +2,11 @@
 //! several answers none is given where one cannot be.
 
 use std::ffi::{CString, c_char, c_void};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, report::*, status::*, timeline::*,
-    view::*, weather::*, wind::*,
+    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, report::*, stars::*, status::*,
+    timeline::*, view::*, weather::*, wind::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -227,6 +227,32 @@ fn a_law_without_a_curve_is_checked_all_the_same() {
             assert_eq!(wk_fog_law_cull_distance(&law, &mut distance_m), WK_ERROR_INVALID_ARGUMENT, "{name}");
             assert_eq!(distance_m, -1.0);
         }
+    }
+}
+
+#[test]
+fn stars_are_refused_by_name() {
+    let world = World::new();
+    let plain = wk_stars { flags: WK_STARS_OWN | WK_STARS_TURNED, ..init("wk_stars") };
+    let lists = [[0.0, 91.0, 1.0, 6000.0], [10.0, 20.0, 40.0, 6000.0], [10.0, 20.0, 4.0, 0.0]];
+    // SAFETY: live handles and locals.
+    unsafe {
+        assert_eq!(wk_context_set_stars(world.context, &plain), WK_OK, "{}", message());
+        let of = |list: &[f64; 4]| wk_stars { stars: list.as_ptr(), star_count: 1, ..plain };
+        for (stars, words) in [
+            (of(&lists[0]), "stars.stars[0].declination must be in [-90, 90]"),
+            (of(&lists[1]), "stars.stars[0].magnitude must be in [-30, 30]"),
+            (of(&lists[2]), "stars.stars[0].temperature_k must be in ["),
+            (wk_stars { star_count: 1, ..plain }, "stars.stars must not be NULL"),
+            (wk_stars { star_count: 2_000_000, ..of(&lists[0]) }, "stars.star_count must be at most 1000000"),
+            (wk_stars { airglow: 11.0, ..plain }, "stars.airglow must be in [0, 10]"),
+            (wk_stars { celestial_to_world: [1.0; 9], ..plain }, "stars.celestial_to_world must be a rotation"),
+            (wk_stars { flags: 8, ..plain }, "stars.flags"),
+        ] {
+            assert_eq!(wk_context_set_stars(world.context, &stars), WK_ERROR_INVALID_ARGUMENT, "{words}");
+            assert!(message().contains(words), "{words}: {}", message());
+        }
+        assert_eq!(wk_context_set_stars(world.context, null()), WK_OK);
     }
 }
 

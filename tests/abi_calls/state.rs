@@ -7,8 +7,8 @@ use std::{
 };
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, query::*, rain::*, status::*,
-    timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, query::*, rain::*, stars::*,
+    status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -143,6 +143,13 @@ unsafe fn set_shelters(context: *mut wk_context) {
     ok(unsafe { wk_context_set_shelters(context, shelters.as_ptr(), 2, size_of::<wk_shelter>() as u32) });
 }
 
+unsafe fn set_stars(context: *mut wk_context) {
+    let turn = [0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let flags = WK_STARS_TURNED | WK_STARS_NO_PLANETS;
+    let stars = wk_stars { flags, celestial_to_world: turn, airglow: 1.5, ..init("wk_stars") };
+    ok(unsafe { wk_context_set_stars(context, &stars) });
+}
+
 unsafe fn set_wind_grid(context: *mut wk_context) {
     let velocities = [[1.5f32, -0.0, 0.25]; 8];
     let grid = wk_wind_grid {
@@ -163,11 +170,11 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..13].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..14].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 14] = [
+const SETTERS: [(&str, Set); 15] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),
@@ -177,6 +184,7 @@ const SETTERS: [(&str, Set); 14] = [
     ("wk_context_set_moon", set_moon),
     ("wk_context_set_rain_areas", set_rain_areas),
     ("wk_context_set_shelters", set_shelters),
+    ("wk_context_set_stars", set_stars),
     ("wk_context_set_sun", set_sun),
     ("wk_context_set_weather", set_rain),
     ("wk_context_set_wind_grid", set_wind_grid),

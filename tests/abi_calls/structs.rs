@@ -8,8 +8,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, stars::*, status::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -118,6 +118,7 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
+        case("wk_stars", "stars", true, move |p| unsafe { wk_context_set_stars(context, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {
             let desc = wk_context_desc { next: p, ..init("wk_context_desc") };

@@ -5,6 +5,7 @@ mod coarse_sky;
 mod froxels;
 mod host;
 mod measure;
+mod night;
 mod queries;
 mod refined;
 mod refused;

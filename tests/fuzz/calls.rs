@@ -5,8 +5,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, status::*, surface::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, stars::*, status::*, surface::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -349,6 +349,10 @@ pub const CALLS: &[(&str, Call)] = &[
             wk_utc_from_calendar(1900 + d.whole() as i32, n(d), n(d), n(d), n(d), d.float(), &mut out)
         };
         status.into()
+    }),
+    ("wk_context_set_stars", |d, w| {
+        let context = handle(d, &w.contexts);
+        set_one(d, "wk_stars", |p| unsafe { wk_context_set_stars(context, p.cast()) })
     }),
     ("wk_context_set_sun", |d, w| {
         let context = handle(d, &w.contexts);

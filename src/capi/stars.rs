@@ -1,0 +1,113 @@
+//! Stars
+//!
+//! At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the zodiacal light and
+//! the Milky Way behind its sky, where they stand over the context's place by its clock; by day, in fog and under closed clouds there
+//! is nothing of it. A budget may leave them out (WK_PART_STARS).
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DMat3;
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input::{self, Named},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Result, Status, check_range},
+    stars::{Star, StarSettings, settings::MAX_STARS},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_stars.rs"));
+
+/// What a wk_stars sets.
+pub type wk_stars_flags = u32;
+/// stars and star_count: the host's own stars in place of the catalogue's.
+pub const WK_STARS_OWN: wk_stars_flags = 1;
+/// celestial_to_world: the host turns the heavens itself.
+pub const WK_STARS_TURNED: wk_stars_flags = 2;
+/// No planets.
+pub const WK_STARS_NO_PLANETS: wk_stars_flags = 4;
+
+/// How the night sky is drawn.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_stars {
+    /// sizeof(wk_stars) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_STARS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Default 0: the catalogue's stars and the planets, where they stand over the Earth.
+    pub flags: wk_stars_flags,
+    /// Stars in `stars`, at most 1 000 000. Default 0.
+    pub star_count: u32,
+    /// With WK_STARS_OWN: four numbers a star: right ascension, degrees, declination, degrees in [-90, 90], both in the
+    /// equator and equinox of J2000.0; visual magnitude in [-30, 30]; temperature of its colour as a black body, K, in
+    /// [1000, 100000]. Copied. Default NULL.
+    pub stars: *const f64,
+    /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole) to
+    /// (east, north, up), column after column. Default the identity.
+    pub celestial_to_world: [f64; 9],
+    /// Strength of the airglow. Range [0, 10], default 1: near the sun's least activity; 1.7 at the greatest.
+    pub airglow: f64,
+}
+
+impl wk_stars {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_STARS,
+        next: null(),
+        flags: 0,
+        star_count: 0,
+        stars: null(),
+        celestial_to_world: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        airglow: 1.0,
+    };
+}
+
+/// # Safety
+/// `p` is a `wk_stars` whose list is as long as it says.
+unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&"stars", p)? };
+    // SAFETY: as above.
+    let list: &[[f64; 4]] = unsafe {
+        layout::check_chain(&"stars", c.next, &[])?;
+        input::slice("stars.stars", c.stars.cast(), Named("stars.star_count", c.star_count as usize), MAX_STARS)?
+    };
+    let star = |(i, [right_ascension, declination, magnitude, temperature]): (usize, &[f64; 4])| {
+        check_range(&format!("stars.stars[{i}].right_ascension"), *right_ascension, -1e6, 1e6, "deg")?;
+        check_range(&format!("stars.stars[{i}].declination"), *declination, -90.0, 90.0, "deg")?;
+        let star = Star::new(*right_ascension, *declination, *magnitude, *temperature);
+        star.validate(&format!("stars.stars[{i}]"))?;
+        Ok(star)
+    };
+    let stars = list.iter().enumerate().map(star).collect::<Result<_>>()?;
+    let settings = StarSettings {
+        stars: (c.flags & WK_STARS_OWN != 0).then_some(stars),
+        planets: c.flags & WK_STARS_NO_PLANETS == 0,
+        celestial_to_world: (c.flags & WK_STARS_TURNED != 0).then(|| DMat3::from_cols_array(&c.celestial_to_world)),
+        airglow: c.airglow,
+    };
+    settings.validate().map_err(|e| e.within("stars"))?;
+    Ok(settings)
+}
+
+/// Sets how the night sky is drawn; NULL returns to the default. All but the list of stars is part of the saved state: a context that
+/// loads one keeps its own list. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *const wk_stars) -> wk_status {
+    guard("wk_context_set_stars", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `stars`.
+        let settings = if stars.is_null() { StarSettings::default() } else { unsafe { settings(stars)? } };
+        object.write().set_stars(settings)?;
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,249 @@
+//! What a view draws of the night sky: a layer behind the sky's own light, of the glow and the points before it.
+
+use std::f64::consts::PI;
+
+use super::{
+    Heavens, NightSky, StarPass, StarSettings, StarView,
+    glow_pass::{Dusk, GlowPass},
+    light::illuminance_lux,
+    limits::{display_threshold_lux, threshold_lux},
+};
+use crate::{
+    almanac::Utc,
+    error::Result,
+    gpu::Device,
+    light::luminance,
+    moment::{Moment, Scene},
+    plan::{
+        StepWork,
+        parts::{Part, Worth},
+    },
+    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, yes},
+    weather::smoothstep,
+    world::{night_share, zenith_depth},
+};
+
+/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance. What they are worth is
+/// taken to be what the clear sky's own light and they are worth together.
+pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
+
+/// Work of the layer a pixel, in units of a pixel with none of the parts.
+const LAYER_OF_PIXEL: f64 = 0.1;
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Elevations of the sun between which points fade in, degrees: by day there are none.
+const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
+/// Least share of the night's light that clouds and fog let through to be drawn.
+const LEAST_THROUGH: f64 = 1e-3;
+/// Reflectance of the land under the clouds, with which light goes back and forth; of what passes straight it changes nothing.
+const LAND_ALBEDO: f64 = 0.2;
+/// Stars whose brightest pixel is less than this share of a step of the display are not drawn.
+const SHARE_OF_STEP: f64 = 0.25;
+
+/// The night over a camera.
+struct Tonight {
+    heavens: Heavens,
+    sky: NightSky,
+    zenith_depth: [f64; 3],
+    /// Share of a point's light that clouds let through, times how far the points have faded in.
+    through: f64,
+    dusk: Dusk,
+    air_density: f64,
+    horizon_deg: f64,
+    /// What an eye can see against the sky, lux.
+    threshold_lux: f64,
+}
+
+/// The night sky of a view.
+#[derive(Default)]
+pub(crate) struct StarsView {
+    settings: StarSettings,
+    tonight: Option<Tonight>,
+    passes: Option<Box<(StarPass, GlowPass)>>,
+    layer: Option<(wgpu::Texture, wgpu::TextureView)>,
+}
+
+impl StarsView {
+    /// Finds what of the night sky shows at a moment of which the universal time is given, through fog of an optical depth straight up.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a time out of the almanac's range.
+    pub fn gather(
+        &mut self,
+        (now, frame): (&Moment<'_>, &Frame<'_>),
+        utc: Utc,
+        settings: &StarSettings,
+        fog_depth: f64,
+    ) -> Result<()> {
+        self.tonight = None;
+        let scene = &now.scene;
+        let open = (1.0 - scene.deck_cover) * (-fog_depth).exp();
+        let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || frame.camera.is_orthographic() {
+            return Ok(());
+        }
+        let tonight = Tonight::new(scene, utc, settings, elevation)?;
+        if tonight.dusk.share > 0.0 || tonight.brightest_lux(settings) > tonight.threshold_lux {
+            self.settings = settings.clone();
+            self.tonight = Some(tonight);
+        }
+        Ok(())
+    }
+
+    fn is_there(&self, stages: Stages) -> bool {
+        self.tonight.is_some() && stages.has(Stages::BACKGROUND)
+    }
+
+    fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
+        if self.layer.as_ref().is_some_and(|(texture, _)| texture.size() != size) {
+            self.layer = None;
+        }
+        let made = self.layer.get_or_insert_with(|| {
+            let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("night sky"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        });
+        &made.1
+    }
+}
+
+impl Tonight {
+    fn new(scene: &Scene, utc: Utc, settings: &StarSettings, sun_deg: f64) -> Result<Self> {
+        let (place, air) = (&scene.place, &scene.conditions.air);
+        let altitude_m = place.altitude_m.max(0.0);
+        let heavens = Heavens::at(utc, place, settings)?;
+        let zenith_depth = zenith_depth(&scene.planet, altitude_m);
+        let clouds = scene.conditions.cloud_light_at(1.0, LAND_ALBEDO, altitude_m);
+        let radius = scene.planet.bottom_radius_m;
+        let thinner = (-altitude_m / air.rayleigh_scale_height_m).exp();
+        Ok(Self {
+            sky: NightSky::new(&heavens, altitude_m, zenith_depth, settings.airglow),
+            heavens,
+            zenith_depth,
+            through: clouds.direct.clamp(0.0, 1.0) * smoothstep(-POINTS_BEGIN_DEG.0, -POINTS_BEGIN_DEG.1, -sun_deg),
+            dusk: Dusk { cd_m2: scene.night_floor_cd_m2, share: night_share(&scene.sun) },
+            air_density: (air.pressure_hpa / 1010.0 * 283.0 / (273.0 + air.temperature_c) * thinner).clamp(0.0, 10.0),
+            horizon_deg: -(radius / (radius + altitude_m)).clamp(0.0, 1.0).acos().to_degrees(),
+            threshold_lux: threshold_lux(luminance(&scene.above_fog.sky_lux) / PI),
+        })
+    }
+
+    /// Illuminance at the eye of the brightest point that there may be.
+    fn brightest_lux(&self, settings: &StarSettings) -> f64 {
+        let star = settings.stars().iter().take(1).map(|s| s.magnitude);
+        let planets = self.heavens.planets.iter().filter(|_| settings.planets).map(|p| p.magnitude);
+        self.through * illuminance_lux(star.chain(planets).fold(f64::INFINITY, f64::min))
+    }
+
+    /// As the picture shows it, on a display of so large steps (0: as many as there are).
+    fn seen<'a>(&'a self, shot: &'a Shot<'_>, step: f64) -> StarView<'a> {
+        let texture = shot.color.texture;
+        let mut view = StarView {
+            heavens: &self.heavens,
+            clip: shot.clip(),
+            rays: shot.rays,
+            size: [texture.width(), texture.height()],
+            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            zenith_depth: self.zenith_depth,
+            transmittance: self.through,
+            air_density: self.air_density,
+            horizon_deg: self.horizon_deg,
+            scale: 1.0,
+            faintest_lux: self.threshold_lux,
+        };
+        let pixel_sr = view.pixel_sr();
+        view.scale = scale(pixel_sr);
+        let display = display_threshold_lux(SHARE_OF_STEP, step, shot.exposure, pixel_sr);
+        view.faintest_lux = view.faintest_lux.max(display).min(1e6);
+        view
+    }
+}
+
+/// Units of the layer per cd/m^2 where a pixel has a solid angle: half floats end at 65504, which Venus at its brightest stays below, and
+/// grow coarse below 6e-5.
+fn scale(pixel_sr: f64) -> f64 {
+    256.0 * (pixel_sr / 5e-7).clamp(1e-3, 1.0)
+}
+
+impl DrawnEffect for StarsView {
+    fn stages(&self) -> Stages {
+        if self.tonight.is_some() { Stages::BACKGROUND } else { Stages(0) }
+    }
+
+    fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
+        if self.is_there(stages) {
+            let _ = self.layer(device, color);
+        }
+    }
+
+    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        let fixed = LAYER_OF_PIXEL * shot.pixels() as f64;
+        put(&STARS, self.is_there(stages), &[StepWork { fixed, ..StepWork::default() }]);
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let (is_there, share) = (self.is_there(to.stages), shot.share(&STARS, 0));
+        to.constant("STARS", yes(is_there), yes(is_there && share > 0.0));
+        if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
+            to.block.behind = [(1.0 / tonight.seen(shot, 0.0).scale) as f32, share];
+            let layer = self.layer(shot.device, shot.color.texture).clone();
+            to.set_texture(Texture::Behind, Some(layer));
+        }
+        Ok(())
+    }
+
+    /// Draws the layer behind the sky's own light: the glow, and the points before it.
+    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let block = &with.composition.block;
+        if !self.is_there(with.composition.stages) || block.behind[1] == 0.0 {
+            return Ok(());
+        }
+        let (Some(tonight), Some((_, target))) = (&self.tonight, &self.layer) else { return Ok(()) };
+        let passes = match &mut self.passes {
+            Some(passes) => passes,
+            none => none.insert(Box::new((StarPass::new(to.device), GlowPass::new(to.device, FORMAT)?))),
+        };
+        let (points, glow) = &mut **passes;
+        // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
+        let view = tonight.seen(shot, f64::from(block.dither_step) / 12.92);
+        points.prepare(to.device, &self.settings, &view, FORMAT, None)?;
+        glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk);
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("night sky"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        glow.draw(&mut pass);
+        points.draw(&mut pass);
+        drop(pass);
+        to.passes += 1;
+        Ok(())
+    }
+
+    fn bytes(&self) -> u64 {
+        let layer = self.layer.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
+        layer + self.passes.as_ref().map_or(0, |passes| passes.0.bytes() + passes.1.bytes())
+    }
+
+    fn forget_picture(&mut self) {
+        self.layer = None;
+    }
+}

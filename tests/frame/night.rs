@@ -1,0 +1,251 @@
+//! The night sky in the pictures of a view.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+use welkin::{
+    almanac::{Utc, celestial::direction},
+    context::{Context, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions, readback},
+    light::luminance,
+    scene::{Camera, DepthMapping, ViewRays},
+    stars::{Heavens, StarSettings, StarView, light::star_lux, reference},
+    weather::Weather,
+};
+
+use crate::host::coarse;
+
+/// A night without moon over 50 degrees north: the almanac of 2026-01-18 22:00 UTC at the origin's place.
+const NIGHT: Utc = Utc(1_768_773_600.0);
+
+/// A context and a view of it, with a target without depth.
+struct Night {
+    device: Arc<Device>,
+    context: Context,
+    view: View,
+    color: wgpu::Texture,
+    frame_id: u64,
+}
+
+impl Night {
+    fn new(size: (u32, u32)) -> Self {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let shared = Arc::new(Shared::new(&device).unwrap());
+        let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
+        context.set_clock(NIGHT, 0.0).unwrap();
+        context.set_moon(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -60.0 })).unwrap();
+        let view = View::new(&context).unwrap();
+        let color = target(&device, size);
+        Self { device, context, view, color, frame_id: 0 }
+    }
+
+    /// The picture, cd/m^2, of a camera that looks to an azimuth and elevation, degrees.
+    fn picture(&mut self, camera: &Camera) -> Vec<[f32; 4]> {
+        self.frame_id += 1;
+        let frame = Frame::new(self.frame_id, *camera, &self.color, None);
+        self.view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
+        readback::rgba(&self.device, &self.color).unwrap()
+    }
+
+    fn without_stars(&mut self, without: bool) {
+        let none = StarSettings { stars: Some(Vec::new().into()), planets: false, ..StarSettings::default() };
+        self.context.set_stars(if without { none } else { StarSettings::default() }).unwrap();
+    }
+}
+
+fn target(device: &Device, (width, height): (u32, u32)) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+fn camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {
+    let toward = direction(azimuth_deg, elevation_deg);
+    Camera::look_to(DVec3::new(0.0, 0.0, 10.0), toward, DVec3::Z, 1.0, 16.0 / 9.0, 0.1)
+}
+
+/// Light of a picture less that of another, lux: each pixel's luminance times its solid angle.
+fn light(picture: &[[f32; 4]], less: &[[f32; 4]], camera: &Camera, (width, height): (u32, u32)) -> f64 {
+    let focal = [camera.projection.x_axis.x, camera.projection.y_axis.y];
+    let texel = |i: usize| {
+        let at = [i as f64 % f64::from(width) + 0.5, (i as f64 / f64::from(width)).floor() + 0.5];
+        let [x, y] = [2.0 * at[0] / f64::from(width) - 1.0, 1.0 - 2.0 * at[1] / f64::from(height)];
+        let cosine = 1.0 / (1.0 + (x / focal[0]).powi(2) + (y / focal[1]).powi(2)).sqrt();
+        let sr = 4.0 / (f64::from(width * height) * focal[0] * focal[1]) * cosine.powi(3);
+        sr * luminance(&[0, 1, 2].map(|k| f64::from(picture[i][k]) - f64::from(less[i][k])))
+    };
+    (0..picture.len()).map(texel).sum()
+}
+
+/// What `light` should be: that of every star of the catalogue and of the planets, through the air, on the picture, and the camera's limit.
+fn expected_light(night: &Night, camera: &Camera, (width, height): (u32, u32)) -> f64 {
+    let scene = night.context.scene_at(camera.position, 0.0).unwrap();
+    let settings = StarSettings::default();
+    let heavens = Heavens::at(NIGHT, &scene.place, &settings).unwrap();
+    let mapping = DepthMapping { reversed: true, ..Default::default() };
+    let rays = ViewRays::new(camera, &mapping).unwrap();
+    let column = |scale: f64, density: &[f64; 3]| density.map(|d| d * scale * (-10.0 / scale).exp());
+    let planet = &scene.planet;
+    let gas = column(planet.rayleigh.scale_height_m, &planet.rayleigh.scattering_per_m);
+    let haze = column(planet.mie.scale_height_m, &planet.mie.extinction_per_m);
+    let ozone = planet.absorption.extinction_per_m.map(|e| e * planet.absorption.half_width_m);
+    let air = &scene.conditions.air;
+    let view = StarView {
+        heavens: &heavens,
+        clip: camera.projection * DMat4::from_mat3(camera.rotation() * scene.world_to_enu.transpose()),
+        rays: &rays,
+        size: [width, height],
+        y_sign: 1.0,
+        zenith_depth: std::array::from_fn(|i| gas[i] + haze[i] + ozone[i]),
+        transmittance: 1.0,
+        air_density: air.pressure_hpa / 1010.0 * 283.0 / (273.0 + air.temperature_c),
+        horizon_deg: 0.0,
+        scale: 1.0,
+        faintest_lux: welkin::stars::limits::threshold_lux(luminance(&scene.above_fog.sky_lux) / std::f64::consts::PI),
+    };
+    let points =
+        settings.stars().iter().map(|s| (s.direction_at(heavens.years), star_lux(s.magnitude, s.temperature_k)));
+    let planets = heavens.planets.iter().map(|p| {
+        let temperature = welkin::stars::uniforms::planet_temperature_k(p.body);
+        (p.direction, star_lux(p.magnitude, temperature))
+    });
+    points
+        .chain(planets)
+        .filter_map(|(direction, lux)| reference::point(&view, direction, lux))
+        .map(|p| luminance(&p.light) * p.pixel_sr)
+        .sum()
+}
+
+#[test]
+fn stars_send_the_same_light_at_every_size_of_the_picture() {
+    for size in [(320, 180), (640, 360), (1280, 720)] {
+        let mut night = Night::new(size);
+        let camera = camera(150.0, 40.0);
+        let with = night.picture(&camera);
+        night.without_stars(true);
+        let without = night.picture(&camera);
+        let (got, want) = (light(&with, &without, &camera, size), expected_light(&night, &camera, size));
+        println!("{size:?}: {:.3} of {:.3} microlux", 1e6 * got, 1e6 * want);
+        assert!((got / want - 1.0).abs() < 0.02, "{size:?}: {got} {want}");
+    }
+}
+
+#[test]
+fn the_light_of_stars_does_not_flicker_while_the_camera_turns() {
+    let size = (320, 180);
+    let mut night = Night::new(size);
+    let mut of = |without: bool, i: u32| {
+        night.without_stars(without);
+        // A fifteenth of a pixel a step.
+        let camera = camera(150.0 + 0.02 * f64::from(i), 40.0);
+        (night.picture(&camera), camera)
+    };
+    let lights: Vec<f64> = (0..12)
+        .map(|i| {
+            let (with, camera) = of(false, i);
+            let (without, _) = of(true, i);
+            light(&with, &without, &camera, size)
+        })
+        .collect();
+    for pair in lights.windows(2) {
+        assert!((pair[1] / pair[0] - 1.0).abs() < 0.003, "{lights:?}");
+    }
+}
+
+#[test]
+fn by_day_in_fog_and_under_a_deck_there_are_no_stars() {
+    let mut night = Night::new((160, 90));
+    let camera = camera(150.0, 40.0);
+    let same = |night: &mut Night, name: &str, is_same: bool| {
+        night.without_stars(false);
+        let with = night.picture(&camera);
+        let plan = night.view.plan().parts[4];
+        night.without_stars(true);
+        let without = night.picture(&camera);
+        assert_eq!(with == without, is_same, "{name}");
+        let absent = plan.reason == welkin::plan::Reason::Absent;
+        assert!(!is_same || absent || plan.reason == welkin::plan::Reason::EverythingAsked, "{name}: {plan:?}");
+    };
+    same(&mut night, "a clear night", false);
+    let set = |night: &mut Night, metar: &str| {
+        let weather = Weather::from_metar(metar).unwrap();
+        night.context.set_weather(&weather.weather, 0.0, 0.0).unwrap();
+    };
+    set(&mut night, "EDDF 182150Z 00000KT 9999 OVC010 02/01 Q1013");
+    same(&mut night, "under a deck", true);
+    set(&mut night, "EDDF 182150Z 00000KT 0050 FG VV001 02/02 Q1013");
+    same(&mut night, "in fog", true);
+    set(&mut night, "EDDF 182150Z 00000KT CAVOK 02/M05 Q1013");
+    same(&mut night, "clear again", false);
+    night.context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 2.0 })).unwrap();
+    same(&mut night, "by day", true);
+}
+
+/// Mean luminance of a small picture straight up, stars left out.
+fn zenith(night: &mut Night) -> f64 {
+    night.without_stars(true);
+    let toward = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), DVec3::Z, DVec3::Y, 0.3, 16.0 / 9.0, 0.1);
+    let picture = night.picture(&toward);
+    picture.iter().map(|p| luminance(&[p[0], p[1], p[2]].map(f64::from))).sum::<f64>() / picture.len() as f64
+}
+
+#[test]
+fn a_moonless_zenith_is_as_dark_as_measured_and_dusk_comes_without_a_leap() {
+    let mut night = Night::new((32, 18));
+    // 21.0 to 22.1 mag/arcsec^2 (Patat 2003; Benn and Ellison 1998; Falchi et al. 2016).
+    let magnitude = |cd_m2: f64| 12.58 - 2.5 * cd_m2.log10();
+    for hours in 0..5 {
+        night.context.set_clock(Utc(NIGHT.0 + 3600.0 * f64::from(hours)), 0.0).unwrap();
+        let m = magnitude(zenith(&mut night));
+        println!("zenith {m:.2} mag/arcsec^2");
+        assert!((21.0..22.1).contains(&m), "{m}");
+    }
+    night.context.set_clock(NIGHT, 0.0).unwrap();
+    let mut last = None;
+    for i in 0..100 {
+        let elevation_deg = -2.0 - 0.1 * f64::from(i);
+        night.context.set_sun(Some(GivenDirection { azimuth_deg: 290.0, elevation_deg })).unwrap();
+        let now = zenith(&mut night);
+        if let Some(last) = last.replace(now) {
+            let ratio: f64 = now / last;
+            assert!((0.85..1.001).contains(&ratio), "{elevation_deg}: {last} to {now}");
+        }
+    }
+}
+
+#[test]
+fn dump_tmp() {
+    let size = (640, 360);
+    let mut night = Night::new(size);
+    let shot = |night: &mut Night, name: &str, utc: Utc, az: f64, el: f64, fov: f64, moon: Option<GivenDirection>| {
+        night.context.set_clock(utc, 0.0).unwrap();
+        night.context.set_moon(moon).unwrap();
+        let toward = direction(az, el);
+        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), toward, DVec3::Z, fov.to_radians(), 16.0 / 9.0, 0.1);
+        night.frame_id += 1;
+        let frame = Frame::new(night.frame_id, camera, &night.color, None);
+        night.view.record(&night.context, &frame, Stages::ALL).unwrap();
+        let p = readback::rgba(&night.device, &night.color).unwrap();
+        let bytes: Vec<u8> = p.iter().flat_map(|p| [p[0], p[1], p[2]]).flat_map(|v| v.to_le_bytes()).collect();
+        std::fs::write(format!("/tmp/night_{name}.raw"), bytes).unwrap();
+        let s = night.context.scene_at(camera.position, 0.0).unwrap();
+        println!("{name}: place {:?} exposure {} sun {:?} adaptation {}", s.place, night.view.report().exposure, s.sun.direction, s.ground.adaptation_cd_m2);
+    };
+    let below = Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -60.0 });
+    shot(&mut night, "orion", NIGHT, 165.0, 35.0, 50.0, below);
+    shot(&mut night, "plough", NIGHT, 45.0, 40.0, 60.0, below);
+    let summer = Utc::from_calendar(2026, 8, 12, 22, 0, 0.0).unwrap();
+    shot(&mut night, "milky_way", summer, 200.0, 30.0, 80.0, below);
+    shot(&mut night, "horizon", summer, 190.0, 5.0, 40.0, below);
+    shot(&mut night, "zenith", summer, 190.0, 85.0, 80.0, below);
+    shot(&mut night, "moon", NIGHT, 165.0, 35.0, 50.0, Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: 40.0 }));
+}
