@@ -2480,9 +2480,9 @@ typedef struct wk_conditions {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Total extinction at station height and 550 nm, 1/m. */
+    /** Total extinction at 550 nm, 1/m: air, particles and fog at station height, and what falls at the position. */
     double extinction_per_m;
-    /** Meteorological optical range at station height, m; at most 1e9, as without any air. */
+    /** Meteorological optical range of that extinction, m; at most 1e9, as without any air. */
     double visibility_m;
     /** Air temperature at 2 m, degrees Celsius. */
     double temperature_c;
@@ -2656,8 +2656,11 @@ typedef struct wk_cloud_slab {
 } wk_cloud_slab;
 
 /**
- * Gets the conditions at a position and a past or future simulation time. Every field is at the station's height
- * unless it says otherwise. In this version the weather is the same everywhere, so `position` only has to be valid.
+ * Gets the conditions at a position and a past or future simulation time. What falls is what falls at the position
+ * itself: that of the rain areas there (wk_context_set_rain_areas), mixed by their rims, and nothing above the cloud
+ * that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
+ * precipitation_extinction_per_m, extinction_per_m and visibility_m go with what falls there. All other fields are the
+ * weather's, the same everywhere, at the station's height unless they say otherwise.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
  * the end of the last change that was over at the last update.

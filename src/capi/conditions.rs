@@ -35,9 +35,9 @@ pub struct wk_conditions {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Total extinction at station height and 550 nm, 1/m.
+    /// Total extinction at 550 nm, 1/m: air, particles and fog at station height, and what falls at the position.
     pub extinction_per_m: f64,
-    /// Meteorological optical range at station height, m; at most 1e9, as without any air.
+    /// Meteorological optical range of that extinction, m; at most 1e9, as without any air.
     pub visibility_m: f64,
     /// Air temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,
@@ -290,8 +290,11 @@ pub(super) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3
     Ok(unsafe { p.read() })
 }
 
-/// Gets the conditions at a position and a past or future simulation time. Every field is at the station's height
-/// unless it says otherwise. In this version the weather is the same everywhere, so `position` only has to be valid.
+/// Gets the conditions at a position and a past or future simulation time. What falls is what falls at the position
+/// itself: that of the rain areas there (wk_context_set_rain_areas), mixed by their rims, and nothing above the cloud
+/// that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
+/// precipitation_extinction_per_m, extinction_per_m and visibility_m go with what falls there. All other fields are the
+/// weather's, the same everywhere, at the station's height unless they say otherwise.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: before
 /// the end of the last change that was over at the last update.

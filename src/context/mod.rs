@@ -262,16 +262,16 @@ impl Context {
         self.world.utc_at(time_s)
     }
 
-    /// The weather's conditions over `position` at simulation time `time_s`, past or to come, at the station's height
-    /// (each field says so). One weather reaches over all of the world in this version: the position must be a place, and
-    /// every place answers alike.
+    /// The conditions at `position` and simulation time `time_s`, past or to come. What falls is what falls at the position itself:
+    /// that of the rain areas there ([`Context::set_rain_areas`]), mixed by their rims, and nothing above the cloud that it falls
+    /// from; rain and drizzle are those of [`Context::rain_at`]. The extinction of all that falls and the total, and so the visibility, go
+    /// with it. Everything else is the weather's, the same over all of the world, at the station's height (each field says so).
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place, or the time is not finite, out of range, or before what
     /// the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
-        self.world.frame.place_at("position", position)?;
-        self.world.weather_at(time_s)
+        self.world.conditions_at(position, time_s)
     }
 
     /// Refuses a time of which the weather is not known.

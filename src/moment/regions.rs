@@ -8,6 +8,7 @@ use crate::{
     falling::{
         area::{AreaMotion, RainArea, Shaft},
         drops::factor_in,
+        liquid_share,
         sizes::DropSizes,
     },
     scene::WorldFrame,
@@ -138,7 +139,8 @@ impl<'a> WeatherOver<'a> {
         Ok(sizes)
     }
 
-    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place.
+    /// The weather `c` of a time with the rates of rain and drizzle that regions make at a place, and their extinction in place of that
+    /// of as much of its own rain.
     pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.regions.is_empty() {
             return c;
@@ -146,12 +148,45 @@ impl<'a> WeatherOver<'a> {
         let local = self.world.frame_at(position);
         let Ok(shafts) = self.shafts_at(time_s, &c) else { return c };
         let mut falling = c.precipitation;
+        let mut liquid_per_m = falling.extinction_per_m * liquid_share(&falling);
+        let solid_per_m = falling.extinction_per_m - liquid_per_m;
         for shaft in shafts {
             let share = shaft.share_at(position, &local.world_to_enu, local.place.altitude_m);
-            falling = covered(&falling, &shaft.falling, share, shaft.begun(local.place.altitude_m));
+            let begun = shaft.begun(local.place.altitude_m);
+            falling = covered(&falling, &shaft.falling, share, begun);
+            liquid_per_m = liquid_per_m * (1.0 - share) + shaft.falling.extinction_per_m * share * begun;
         }
-        Conditions { precipitation: falling, ..c }
+        with_falling(c, Falling { extinction_per_m: solid_per_m + liquid_per_m, ..falling })
     }
+
+    /// The weather `c` of a time as it is at a place: what falls is what falls there, in regions as by [`WeatherOver::at_place`], and
+    /// the weather's own below the cloud that it falls from alone.
+    pub fn falling_at(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
+        let altitude_m = self.world.frame_at(position).place.altitude_m;
+        let own = if altitude_m > c.falling_top_m() {
+            let none = Falling {
+                rain_mm_h: 0.0,
+                drizzle_mm_h: 0.0,
+                snow_mm_h: 0.0,
+                ice_pellets_mm_h: 0.0,
+                hail_mm_h: 0.0,
+                extinction_per_m: 0.0,
+                ..c.precipitation
+            };
+            with_falling(c, none)
+        } else {
+            c
+        };
+        self.at_place(position, time_s, own)
+    }
+}
+
+/// The weather with something else that falls, and the total extinction to match.
+fn with_falling(c: Conditions, falling: Falling) -> Conditions {
+    let changed = falling.extinction_per_m - c.precipitation.extinction_per_m;
+    // The least is the clear air's, whatever rounding leaves.
+    let extinction_per_m = (c.extinction_per_m + changed).max(c.air.rayleigh_extinction_per_m);
+    Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
 /// Rates where `over` lies with a share over `falling`, of which the share `begun` has left its cloud.

@@ -92,11 +92,8 @@ impl RainSurface {
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
     let c = world.weather_at(time_s)?;
-    let mut ice = world.over().at_place(position, time_s, c).precipitation;
-    if place.altitude_m > c.falling_top_m() {
-        (ice.ice_pellets_mm_h, ice.hail_mm_h) = (0.0, 0.0);
-    }
-    let stones = StoneSizes::new(&ice, factor_in(&c.air, place.altitude_m));
+    let here = world.over().falling_at(position, time_s, c).precipitation;
+    let stones = StoneSizes::new(&here, factor_in(&c.air, place.altitude_m));
     Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.over().carrying_until(time_s)?.velocity_m_s()))
 }
 

@@ -219,6 +219,15 @@ impl World {
         Ok(self.timeline.at(time_s))
     }
 
+    /// The weather at a time with what falls at a place.
+    ///
+    /// # Errors
+    /// As [`World::weather_at`]; for what is no place.
+    pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
+        self.frame.place_at("position", position)?;
+        Ok(self.over().falling_at(position, time_s, self.weather_at(time_s)?))
+    }
+
     /// Universal time at simulation time `time_s`.
     pub fn utc_at(&self, time_s: f64) -> Utc {
         Utc(self.set.utc_at_zero.0 + time_s)
