@@ -213,7 +213,7 @@ impl Effects {
 
     /// What a plan is saved with.
     pub fn saved_with(&self) -> plan::Settings<'_> {
-        let settings = self.sky.settings();
+        let settings = self.sky.next_settings();
         plan::Settings {
             model: settings.model.name(),
             check_model: |name| sky::SkyModel::from_name(name).map(|_| ()),

@@ -27,9 +27,14 @@ impl SkyView {
         Ok(Self { tables: tables.clone(), volume })
     }
 
-    /// How the sky is drawn.
+    /// How the sky of the last frame was drawn.
     pub fn settings(&self) -> &SkySettings {
         self.volume.settings()
+    }
+
+    /// How that of the next one will be.
+    pub fn next_settings(&self) -> SkySettings {
+        self.tables.lock().map_or(*self.settings(), |tables| *tables.settings())
     }
 }
 
@@ -45,6 +50,9 @@ impl DrawnEffect for SkyView {
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
     fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;
+        if !self.volume.is_of(&tables) {
+            self.volume = SkyVolume::new(&tables)?;
+        }
         let work = tables.follow(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
         to.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;

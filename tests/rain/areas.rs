@@ -8,8 +8,8 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Shared, Stages},
     gpu::{Device, DeviceOptions},
-    rain::{RainSurface, drops::factor_in},
     rain::{AreaMotion, AreaRain, AreaShape, MAX_CORNERS, RainArea, RainModel, RainSettings},
+    rain::{RainSurface, drops::factor_in},
     scene::{Place, WorldFrame, WorldKind},
     weather::{CloudKind, CloudLayer, Precipitation, PrecipitationKind, Weather},
 };
