@@ -18,7 +18,7 @@ use crate::{
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
     moment::{Moment, Scene},
-    plan::{self, Price, StepWork, parts::Part},
+    plan::{self, StepWork, parts::Part},
     planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
@@ -207,8 +207,7 @@ impl Effects {
 
     /// Work of building default tables, in pixels of a picture with these settings.
     pub fn rebuild_work(&self) -> f64 {
-        let (work, price) = (sky::candidates::work, Price::default());
-        work(&sky::SkySettings::default()).rebuild.at(&price) / work(self.sky.settings()).pixel.at(&price)
+        self.sky.rebuild_work()
     }
 
     /// What a plan is saved with.
