@@ -2003,7 +2003,7 @@ typedef struct wk_context_desc {
     double grid_bearing_deg;
     /** Seed of everything random. Default 0. */
     uint64_t seed;
-    /** A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth. */
+    /** A planet file's text (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth. */
     const char *planet_toml;
     /**
      * Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
@@ -2068,6 +2068,26 @@ wk_status wk_context_create(wk_device *device,
                             wk_context **out_context);
 
 /**
+ * Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
+ * call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
+ * tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
+ * radius, the top, the wavelengths or the ground differ, the next frame shows a draft of the new planet at once
+ * (docs/planets.md).
+ * Thread: exclusive.
+ * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
+ * stays as it was.
+ */
+WK_API
+wk_status wk_context_set_planet(wk_context *context,
+                                const char *planet_toml);
+
+/**
+ * Sets the curve from luminance to the display for the next frames, as tone_curve of wk_context_desc did.
+ * Thread: exclusive.
+ */
+WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve curve);
+
+/**
  * Builds the sky's tables for the context's planet and the weather of its present time completely, so that no frame
  * has to. Call it at load time, behind a progress bar. It takes tables that another context of the device already
  * shows or that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a
@@ -2105,7 +2125,7 @@ wk_status wk_context_desc_init(wk_context_desc *out,
  *
  * Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
  * scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
- * wk_context_desc.next.
+ * wk_context_desc.next, or to wk_context_set_sky_settings later.
  * ====================================================================================================
  */
 
@@ -2127,7 +2147,10 @@ typedef uint32_t wk_sky_model;
 /** As the default, but light scattered once is marched in every pixel: a reference for the tables. */
 #define WK_SKY_BRUTE_FORCE 3
 
-/** Sizes of the sky's tables. An extension: put it into wk_context_desc.next. */
+/**
+ * Sizes of the sky's tables. An extension: put it into wk_context_desc.next. Or set it later by
+ * wk_context_set_sky_settings, with `next` NULL.
+ */
 typedef struct wk_sky_settings {
     /** sizeof(wk_sky_settings) of your header. */
     uint32_t struct_size;
@@ -2181,6 +2204,18 @@ typedef struct wk_sky_settings {
     /* march_cells */ 64, \
     /* wavelengths */ 3 \
 }
+
+/**
+ * Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
+ * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as a
+ * first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model are
+ * compiled in that frame. The same settings again change nothing.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+ */
+WK_API
+wk_status wk_context_set_sky_settings(wk_context *context,
+                                      const wk_sky_settings *settings);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SKY_SETTINGS_INIT`. `struct_size` is `sizeof(wk_sky_settings)`
@@ -2305,8 +2340,8 @@ WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode m
 
 /**
  * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
- * weather, time, clock, given sun and moon, exposure, fog law, shelters, lamps, rain areas, wind grid, the terrain
- * with its water, and the world, place, planet, seed, tone curve and ground model that it belongs to. Not included:
+ * weather, time, clock, given sun and moon, planet, exposure, tone curve, fog law, shelters, lamps, rain areas, wind
+ * grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Not included:
  * how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
  * may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
  * and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
@@ -2318,7 +2353,8 @@ WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
  * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
- * WK_WORLD_ECEF), seed, planet_toml, tone_curve and ground_model. Occluder maps stay as they are.
+ * WK_WORLD_ECEF), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
+ * same of these too. Occluder maps stay as they are.
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
  * format, which the message names (this version reads format 2; save states of format 1 again, because they did not

@@ -166,6 +166,12 @@ public:
         return check(wk_context_set_weather(get(), &weather, start_time_s, transition_s));
     }
     wk_status set_clock(double utc_s, double time_s) { return check(wk_context_set_clock(get(), utc_s, time_s)); }
+    wk_status set_planet(const char *planet_toml) { return check(wk_context_set_planet(get(), planet_toml)); }
+    wk_status set_tone_curve(wk_tone_curve curve) { return check(wk_context_set_tone_curve(get(), curve)); }
+    wk_status set_sky_settings(const wk_sky_settings *settings = nullptr)
+    {
+        return check(wk_context_set_sky_settings(get(), settings));
+    }
     /* How the host should light its own objects in this frame. */
     wk_status get_frame_light(const wk_frame &frame, wk_frame_light &light) const
     {

@@ -18,7 +18,7 @@ use crate::{
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
     moment::{Moment, Scene},
-    plan::{self, Price, StepWork, parts::Part},
+    plan::{self, StepWork, parts::Part},
     planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
@@ -118,8 +118,11 @@ impl Held {
     /// # Errors
     /// [`crate::Status::Parse`] naming what does not fit.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
-        let stars = HeldStars::read(state, self.stars.settings.stars.clone())?;
-        Ok(LoadedHeld { fog: HeldFog::read(state)?, ground: self.ground.read(world, state)?, stars })
+        // Each takes out what is its own, even where another's is wrong.
+        let fog = HeldFog::read(state);
+        let ground = self.ground.read(world, state);
+        let stars = HeldStars::read(state, self.stars.settings.stars.clone());
+        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars? })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -220,13 +223,12 @@ impl Effects {
 
     /// Work of building default tables, in pixels of a picture with these settings.
     pub fn rebuild_work(&self) -> f64 {
-        let (work, price) = (sky::candidates::work, Price::default());
-        work(&sky::SkySettings::default()).rebuild.at(&price) / work(self.sky.settings()).pixel.at(&price)
+        self.sky.rebuild_work()
     }
 
     /// What a plan is saved with.
     pub fn saved_with(&self) -> plan::Settings<'_> {
-        let settings = self.sky.settings();
+        let settings = self.sky.next_settings();
         plan::Settings {
             model: settings.model.name(),
             check_model: |name| sky::SkyModel::from_name(name).map(|_| ()),

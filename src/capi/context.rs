@@ -105,7 +105,7 @@ pub struct wk_context_desc {
     pub grid_bearing_deg: f64,
     /// Seed of everything random. Default 0.
     pub seed: u64,
-    /// A planet file's text (TOML, UTF-8), read during the call. Default NULL: the Earth.
+    /// A planet file's text (TOML, UTF-8; docs/planets.md), read during the call. Default NULL: the Earth.
     pub planet_toml: *const c_char,
     /// Exposure of frames that have none of their own. Default WK_EXPOSURE_AUTO; WK_EXPOSURE_OF_CONTEXT is refused
     /// here.
@@ -182,6 +182,27 @@ pub(super) fn exposure(mode: wk_exposure_mode, value: f64) -> Option<Exposure> {
     }
 }
 
+/// A tone curve that was checked.
+pub(super) fn tone(curve: wk_tone_curve) -> ToneCurve {
+    match curve {
+        WK_TONE_LINEAR => ToneCurve::Linear,
+        WK_TONE_FILMIC => ToneCurve::Filmic,
+        _ => ToneCurve::Exponential,
+    }
+}
+
+/// The planet of a file's text; NULL is the Earth.
+///
+/// # Safety
+/// `text` is NULL or a string.
+pub(super) unsafe fn planet(param: &str, text: *const c_char) -> Result<Planet> {
+    // SAFETY: the caller's promise.
+    match unsafe { input::optional_text(param, text)? } {
+        Some(text) => Planet::from_toml(text).map_err(|e| e.in_text(param)),
+        None => Ok(Planet::earth()),
+    }
+}
+
 /// An exposure's error as one of the struct `param`, whose exposure_value it is.
 pub(super) fn exposure_in(param: &str, e: Error) -> Error {
     e.map_field(|_| format!("{param}.exposure_value"))
@@ -201,19 +222,12 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     let world = WorldFrame { kind, axes, origin, grid_bearing_deg: desc.grid_bearing_deg };
     world.validate().map_err(|e| e.within("desc"))?;
     // SAFETY: the caller's promise.
-    let planet = match unsafe { input::optional_text("desc.planet_toml", desc.planet_toml)? } {
-        Some(text) => Planet::from_toml(text).map_err(|e| e.in_text("desc.planet_toml"))?,
-        None => Planet::earth(),
-    };
+    let planet = unsafe { planet("desc.planet_toml", desc.planet_toml)? };
     let exposure = exposure(desc.exposure_mode, desc.exposure_value).ok_or_else(|| {
         Error::range("desc.exposure_mode", "AUTO, EV100 or FACTOR in a context", "WK_EXPOSURE_OF_CONTEXT")
     })?;
     exposure.validate().map_err(|e| exposure_in("desc", e))?;
-    let tone = match desc.tone_curve {
-        WK_TONE_LINEAR => ToneCurve::Linear,
-        WK_TONE_FILMIC => ToneCurve::Filmic,
-        _ => ToneCurve::Exponential,
-    };
+    let tone = tone(desc.tone_curve);
     let utc_at_zero = Utc(desc.utc_at_zero_s);
     sun_position(utc_at_zero, &world.origin).map_err(|e| e.renamed("utc", "desc.utc_at_zero_s"))?;
     // SAFETY: the caller's promise.
@@ -253,6 +267,37 @@ pub unsafe extern "C" fn wk_context_create(
         let handle = handles::insert::<_, DeviceObject>(Arc::new(context), Some(device))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
+/// call; NULL means the Earth. Light and queries are those of the new planet at once; nothing is blended. The sky's
+/// tables follow as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the
+/// radius, the top, the wavelengths or the ground differ, the next frame shows a draft of the new planet at once
+/// (docs/planets.md).
+/// Thread: exclusive.
+/// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
+/// stays as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_planet(context: *mut wk_context, planet_toml: *const c_char) -> wk_status {
+    guard("wk_context_set_planet", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise.
+        let planet = unsafe { planet("planet_toml", planet_toml)? };
+        object.write().set_planet(&planet)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Sets the curve from luminance to the display for the next frames, as tone_curve of wk_context_desc did.
+/// Thread: exclusive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, curve: wk_tone_curve) -> wk_status {
+    guard("wk_context_set_tone_curve", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        input::check_enum("curve", &layout::WK_TONE_CURVE, curve)?;
+        object.write().set_tone_curve(tone(curve));
         Ok(Status::Ok)
     })
 }

@@ -2,15 +2,20 @@
 //!
 //! Four models share the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
 //! scattering in clear air and haze. The others are for comparison and for slow machines. A wk_sky_settings goes into
-//! wk_context_desc.next.
+//! wk_context_desc.next, or to wk_context_set_sky_settings later.
 
 use std::{ffi::c_void, ptr::null};
 
 use super::{
-    layout::{init_struct, struct_size},
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    layout::{self, init_struct, struct_size},
     status::*,
 };
-use crate::sky::{SkyModel, SkySettings};
+use crate::{
+    error::Status,
+    sky::{SkyModel, SkySettings},
+};
 
 include!(concat!(env!("OUT_DIR"), "/init_sky.rs"));
 
@@ -27,7 +32,8 @@ pub const WK_SKY_TABLE_3D: wk_sky_model = 2;
 /// As the default, but light scattered once is marched in every pixel: a reference for the tables.
 pub const WK_SKY_BRUTE_FORCE: wk_sky_model = 3;
 
-/// Sizes of the sky's tables. An extension: put it into wk_context_desc.next.
+/// Sizes of the sky's tables. An extension: put it into wk_context_desc.next. Or set it later by
+/// wk_context_set_sky_settings, with `next` NULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sky_settings {
@@ -102,6 +108,31 @@ impl wk_sky_settings {
             ..SkySettings::default()
         }
     }
+}
+
+/// Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
+/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on, and that frame shows a draft of the sky as a
+/// first frame does; wk_context_build_sky after this call makes the final picture ready. Pipelines of another model are
+/// compiled in that frame. The same settings again change nothing.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. The settings stay as they were.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_sky_settings(
+    context: *mut wk_context,
+    settings: *const wk_sky_settings,
+) -> wk_status {
+    guard("wk_context_set_sky_settings", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise.
+        let c = unsafe { layout::read_or_default(&"settings", settings)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"settings", c.next, &[])? };
+        let settings = c.to_rust();
+        settings.check().map_err(|e| e.within("settings"))?;
+        object.cell.drain();
+        object.write().set_sky_settings(&settings)?;
+        Ok(Status::Ok)
+    })
 }
 
 #[cfg(test)]

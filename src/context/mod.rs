@@ -106,6 +106,11 @@ impl Context {
         self.world.tone
     }
 
+    /// Sets the curve from luminance to the display, from the next frame on.
+    pub fn set_tone_curve(&mut self, tone: ToneCurve) {
+        self.world.tone = tone;
+    }
+
     /// Changes the weather, beginning at simulation time `start_s` and lasting `transition_s`; see
     /// [`Timeline::change`](crate::weather::Timeline::change).
     ///
@@ -221,7 +226,7 @@ impl Context {
 
     /// Radius of the planet's ground, m.
     pub fn planet_radius_m(&self) -> f64 {
-        self.world.planet.bottom_radius_m
+        self.world.set.planet.bottom_radius_m
     }
 
     /// Ties universal time to simulation time: it is `utc` at simulation time `at_s`.

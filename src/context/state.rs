@@ -74,7 +74,7 @@ impl Context {
     }
 
     /// Everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights, water, areas,
-    /// shelters, lamps, wind grid, fog law and exposure, and of which place, planet, seed and ground model it is. Not in it: how
+    /// shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and of which place, seed and ground model it is. Not in it: how
     /// it is drawn (sky settings, views), and the images of [`Context::set_occluder_maps`], which are each channel's own.
     ///
     /// # Errors
@@ -84,7 +84,9 @@ impl Context {
     }
 
     /// Loads a state that [`Context::save`] wrote, in place of all that it holds, on a context that was created alike: the same
-    /// world, place, planet, seed, tone curve and ground model. Occluder maps stay as they are.
+    /// world, place, seed and ground model; for a state without planet and tone curve, as earlier versions wrote them, the same
+    /// of these too. Occluder
+    /// maps stay as they are.
     ///
     /// # Errors
     /// [`Status::Parse`] for bytes that are no such state, cut short, changed, or of another format, which it names;

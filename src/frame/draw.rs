@@ -97,6 +97,7 @@ impl View {
         let frame = shot.frame;
         if self.planned_for != Some(frame.frame_id) {
             self.planned_for = Some(frame.frame_id);
+            self.planner.rebuild = self.effects.rebuild_work();
             let present = present(&mut self.effects, shot, stages);
             let here = situation(frame, &shot.now.scene);
             self.planner.begin(&self.device, &here, &present, frame.is_pure());

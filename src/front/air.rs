@@ -12,7 +12,7 @@ use crate::{
     error::{Error, Result, Status},
     fog::{Between, FogLayer, Law, Viewpoint, fog_layer, koschmieder_visibility_m, transmittance_between},
     sky::{
-        FollowedSky, LightTable, Sh9,
+        FollowedSky, LightTable, Planet, Sh9, SkyLibrary, SkySettings,
         reference::{medium::Medium, ray::Ray},
     },
     world::{color_of, planet_under},
@@ -121,13 +121,43 @@ impl Context {
     /// # Errors
     /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
     pub fn build_sky(&self, progress: &mut dyn FnMut(f32) -> bool) -> Result<()> {
-        let planet = planet_under(&self.world.planet, &self.world.timeline.at(self.world.time_s));
+        let planet = planet_under(&self.world.set.planet, &self.world.timeline.at(self.world.time_s));
         planet.check()?;
         // Not under the sky's lock: frames and queries of other threads go on while parts are built.
         let kit = self.sky()?.kit().clone();
         let set = kit.build(&planet, self.sky()?.cache_dir().as_deref(), progress)?;
         let _entered = self.device().enter()?;
         self.sky()?.show_now(set)
+    }
+
+    /// Puts another planet in place of the one before: air, ground and sun. The sky's tables follow as after a change of the weather,
+    /// by a draft that fades in within sixteen frames; where radius, top, wavelengths or ground are others, the next frame cuts to a
+    /// draft of them, and later ones refine it. Steps of the simulated ground that remain are done under the planet before.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_planet(&mut self, planet: &Planet) -> Result<()> {
+        self.world.set_planet(*planet)
+    }
+
+    /// Sets how the sky is drawn. Views take the new tables up in their next frame, which shows a draft as a first one does, unless
+    /// [`Context::build_sky`] has built them. A plan that was loaded or made before stays. The same settings again change nothing.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field, [`crate::Status::DeviceLost`], or a GPU fault; nothing changes then.
+    pub fn set_sky_settings(&mut self, settings: &SkySettings) -> Result<()> {
+        let library = self.shared().get(|| Ok(SkyLibrary::default()))?;
+        let device = self.device().clone();
+        let _entered = device.enter()?;
+        self.sky()?.set_settings(&device, &library, settings)
+    }
+
+    /// How the sky is drawn.
+    ///
+    /// # Errors
+    /// [`crate::Status::Poisoned`] after a panic.
+    pub fn sky_settings(&self) -> Result<SkySettings> {
+        Ok(*self.sky()?.settings())
     }
 
     fn light_table(&self, planet: &crate::sky::Planet) -> Result<std::sync::Arc<LightTable>> {

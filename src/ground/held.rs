@@ -313,23 +313,23 @@ impl HeldGround {
     /// [`Status::Parse`] for what can be no ground of this context.
     pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
+        // Out with all of them first: what is left is the world's, whatever is wrong here.
+        let [state, terrain, class] = [STATE_KEY, TERRAIN_KEY, CLASS_KEY].map(|key| saved.remove(key));
         let simulated = self.model == GroundModel::Simulated;
-        let state: Option<GroundState> =
-            saved.remove(STATE_KEY).map(|v| v.try_into().map_err(|e| fault(STATE_KEY, e))).transpose()?;
+        let state: Option<GroundState> = state.map(|v| v.try_into().map_err(|e| fault(STATE_KEY, e))).transpose()?;
         if state.is_some_and(|g| !simulated || !g.is_valid()) {
             return Err(parse_error("ground must be a simulated one with finite amounts of water from 0 on"));
         }
         let terrain: Option<SavedGround> =
-            saved.remove(TERRAIN_KEY).map(|v| v.try_into().map_err(|e| fault(TERRAIN_KEY, e))).transpose()?;
+            terrain.map(|v| v.try_into().map_err(|e| fault(TERRAIN_KEY, e))).transpose()?;
         let host = terrain.map(|t| {
             let of_a_state = simulated && state.is_some();
             let loaded = t.host_ground(&world.frame).filter(|held| of_a_state || !held.begun);
             let wanted = "terrain must be a grid of heights and the water that it can hold";
             loaded.map(Box::new).ok_or_else(|| parse_error(wanted))
         });
-        let class: u8 = saved
-            .remove(CLASS_KEY)
-            .map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
+        let class: u8 =
+            class.map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
         let class = SurfaceClass::from_number("surface_class", class);
         Ok(LoadedGround {
             state,

@@ -193,7 +193,7 @@ pub(crate) struct Planner<U> {
     budget: Budget,
     asked: Asked,
     /// Work of building the sky's default tables, in pixels with none of the parts.
-    rebuild: f64,
+    pub rebuild: f64,
     /// Work of the last picture with everything, in the same units; 0 before the first.
     work: f64,
     gauge: Option<Gauge>,

@@ -3,8 +3,11 @@
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::{FIELDS, Field, Planet, file_error};
+use super::{FIELDS, Field, Mie, Planet, file_error};
 use crate::error::{Error, Result, Status, shown};
+
+/// The one section that a file may lack: the weather says the haze then.
+const HAZE: &str = "mie";
 
 /// Parses and checks a whole planet file.
 pub(super) fn parse(text: &str) -> Result<Planet> {
@@ -14,8 +17,12 @@ pub(super) fn parse(text: &str) -> Result<Planet> {
     })?;
     refuse_unknown(text, root.get_ref(), "")?;
     let mut planet = Planet::earth();
-    for field in &FIELDS {
+    let has_haze = root.get_ref().contains_key(HAZE);
+    for field in FIELDS.iter().filter(|f| has_haze || f.section != HAZE) {
         read_field(text, root.get_ref(), field, &mut planet)?;
+    }
+    if !has_haze {
+        planet.mie = Mie::earth_at(planet.wavelengths_nm);
     }
     planet.check()?;
     Ok(planet)
@@ -143,6 +150,25 @@ mod tests {
         );
         refused("[mie]", "[mie", Parse, &["line 14", "not TOML"]);
         refused("[mie]", "[rayleigh]", Parse, &["not TOML"]);
+    }
+
+    #[test]
+    fn a_file_without_haze_has_the_weathers_and_any_other_its_own() {
+        let (from, to) = (GOLDEN.find("[mie]").unwrap(), GOLDEN.find("[absorption]").unwrap());
+        let without = Planet::from_toml(&[&GOLDEN[..from], &GOLDEN[to..]].concat()).unwrap();
+        let golden = Planet::from_toml(GOLDEN).unwrap();
+        assert_eq!(without, Planet { mie: Mie::earth_at(golden.wavelengths_nm), ..golden });
+        assert_eq!((without.own_haze(), golden.own_haze()), (None, Some(golden.mie)));
+        // As another machine rounds it.
+        let mut rounded = without;
+        rounded.mie.extinction_per_m[0] *= 1.0 + 1e-14;
+        assert_eq!(rounded.own_haze(), None);
+        rounded.mie.asymmetry_g = 0.75;
+        assert_eq!(rounded.own_haze(), Some(rounded.mie));
+        rounded.mie.extinction_per_m = [0.0; 3];
+        assert_eq!(rounded.own_haze(), None, "there is none");
+        // Half a section is no section.
+        refused("asymmetry_g = 0.8", "", Status::Parse, &["`mie.asymmetry_g` is missing"]);
     }
 
     #[test]

@@ -39,6 +39,19 @@ pub struct Mie {
     pub asymmetry_g: f64,
 }
 
+impl Mie {
+    /// The haze of [`Planet::earth`] at three wavelengths, nm.
+    pub fn earth_at(wavelengths_nm: [f64; 3]) -> Self {
+        let haze = wavelengths_nm.map(|nm: f64| 2.5e-5 * (nm / 550.0).powf(-1.3));
+        Self {
+            scattering_per_m: haze.map(|b| 0.95 * b),
+            extinction_per_m: haze,
+            scale_height_m: 1200.0,
+            asymmetry_g: 0.76,
+        }
+    }
+}
+
 /// Ozone: absorbs without scattering. A tent: 1 at the centre, falling linearly to 0 at the half width on both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -73,7 +86,7 @@ pub struct Planet {
     pub ground_albedo: [f64; 3],
     /// Gas.
     pub rayleigh: Rayleigh,
-    /// Haze.
+    /// Haze. The Earth's stands for what the weather says; any other is the planet's own ([`Planet::own_haze`]).
     pub mie: Mie,
     /// Ozone.
     pub absorption: Absorption,
@@ -158,7 +171,6 @@ impl Planet {
 
     /// [`Planet::earth`] at other wavelengths, nm, each in `[365, 835]`.
     pub fn earth_at(wavelengths_nm: [f64; 3]) -> Self {
-        let haze = wavelengths_nm.map(|nm: f64| 2.5e-5 * (nm / 550.0).powf(-1.3));
         Self {
             wavelengths_nm,
             solar_irradiance: wavelengths_nm.map(spectral::solar_irradiance),
@@ -170,12 +182,7 @@ impl Planet {
                 scattering_per_m: wavelengths_nm.map(rayleigh_scattering_per_m),
                 scale_height_m: EARTH_RAYLEIGH_SCALE_HEIGHT_M,
             },
-            mie: Mie {
-                scattering_per_m: haze.map(|b| 0.95 * b),
-                extinction_per_m: haze,
-                scale_height_m: 1200.0,
-                asymmetry_g: 0.76,
-            },
+            mie: Mie::earth_at(wavelengths_nm),
             absorption: Absorption {
                 extinction_per_m: wavelengths_nm
                     .map(|nm| 300.0 * DOBSON_UNIT_PER_M2 / 15_000.0 * spectral::ozone_cross_section_m2(nm)),
@@ -183,6 +190,19 @@ impl Planet {
                 half_width_m: 15_000.0,
             },
         }
+    }
+
+    /// The planet's own haze, which lies in its air beside what the weather says; `None` where the weather alone says it: where it is
+    /// the Earth's ([`Mie::earth_at`], to 1e-9 of each number), or there is none.
+    pub fn own_haze(&self) -> Option<Mie> {
+        let numbers = |m: &Mie| {
+            let [s, e] = [m.scattering_per_m, m.extinction_per_m];
+            [s[0], s[1], s[2], e[0], e[1], e[2], m.scale_height_m, m.asymmetry_g]
+        };
+        let (own, earth) = (numbers(&self.mie), numbers(&Mie::earth_at(self.wavelengths_nm)));
+        let differs = own.iter().zip(earth).any(|(a, b)| (a - b).abs() > 1e-9 * b.abs());
+        let is_there = self.mie.scale_height_m > 0.0 && self.mie.extinction_per_m.iter().any(|e| *e > 0.0);
+        (differs && is_there).then_some(self.mie)
     }
 
     /// The same planet at three other wavelengths, nm, each in `[365, 835]`: every spectrum is taken as the Earth's
@@ -228,7 +248,8 @@ impl Planet {
         self.top_radius_m - self.bottom_radius_m
     }
 
-    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`).
+    /// Reads a planet file (TOML; every key of [`Planet`] by its name, sections `rayleigh`, `mie`, `absorption`). Without `mie` the haze
+    /// is the Earth's at the file's wavelengths.
     ///
     /// # Errors
     /// [`Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the wrong

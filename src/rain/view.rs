@@ -333,14 +333,7 @@ impl RainView {
         let (device, now, frame, scene) = (to.device, shot.now, shot.frame, &shot.now.scene);
         let (classes, mut local) = self.falling_here(device, scene);
         let camera = self.camera(shot);
-        let c = &scene.conditions;
-        let wind = now.carrying()?;
-        let air = Air {
-            displacement_m: wind.displacement_m(),
-            velocity_m_s: wind.velocity_m_s(),
-            time_s: now.time_s,
-            extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
-        };
+        let (wind, air) = (now.carrying()?, air(now)?);
         let mut block =
             RainUniform::new(now.seed, &classes, &DropLight::of(scene).exposed(shot.exposure), &camera, &air);
         let [share, shown] = self.shares.map(f64::from);
@@ -352,7 +345,7 @@ impl RainView {
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
-        let height_m = scene.place.altitude_m - c.air.station_altitude_m;
+        let height_m = scene.place.altitude_m - scene.conditions.air.station_altitude_m;
         // Taken out, since what follows changes the rest.
         let births = std::mem::take(&mut self.births);
         let carried = |from| wind.since(from, &births);
@@ -486,4 +479,15 @@ fn grid_wind<'a>(now: &Moment<'a>) -> Option<(&'a Arc<WindGrid>, DVec3)> {
     let grid = now.wind_grid?;
     let to_enu = now.weather.world.frame_at(grid.origin).world_to_enu;
     Some((grid, grid.cells_at(now.eye, to_enu)))
+}
+
+/// The air that drops are drawn in.
+fn air(now: &Moment<'_>) -> Result<Air> {
+    let (wind, c) = (now.carrying()?, &now.scene.conditions);
+    Ok(Air {
+        displacement_m: wind.displacement_m(),
+        velocity_m_s: wind.velocity_m_s(),
+        time_s: now.time_s,
+        extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
+    })
 }

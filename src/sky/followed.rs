@@ -41,8 +41,22 @@ impl FollowedSky {
         self.cache.clone()
     }
 
-    /// With a cache, the first planet comes from it.
+    /// Takes other settings up: nothing is shown until the next call, as at the beginning.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the setting; GPU faults. Everything stays as it was then.
+    pub fn set_settings(&mut self, device: &Arc<Device>, library: &SkyLibrary, settings: &SkySettings) -> Result<()> {
+        if self.tables.settings() != settings {
+            *self = Self::new(device, library, settings, self.cache.clone())?;
+        }
+        Ok(())
+    }
+
+    /// Forgets the tables of another body. With a cache, the first planet comes from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
+        if self.tables.planet().is_some_and(|shown| !is_same_body(shown, planet)) {
+            self.tables.forget();
+        }
         match &self.cache {
             Some(cache) if self.tables.planet().is_none() => self.tables.begin_with(planet, cache)?,
             _ => return Ok(()),
@@ -103,6 +117,12 @@ impl FollowedSky {
         self.light = Some((revision, light.clone()));
         Ok(light)
     }
+}
+
+/// Whether two planets differ in their air at most, as one under two weathers does.
+fn is_same_body(a: &Planet, b: &Planet) -> bool {
+    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm, p.ground_albedo);
+    body(a) == body(b)
 }
 
 impl DerefMut for FollowedSky {

@@ -279,6 +279,12 @@ impl SkyTables {
         device.check()
     }
 
+    /// Shows nothing any more, as before the first planet.
+    pub(crate) fn forget(&mut self) {
+        (self.shown, self.state) = (None, State::Idle);
+        self.revision += 1;
+    }
+
     /// Shows the tables of the first planet, if they lie in a cache or another shows them.
     pub(crate) fn begin_with(&mut self, planet: &Planet, cache: &Path) -> Result<()> {
         planet.check()?;

@@ -8,6 +8,7 @@ use super::{Disc, FollowedSky, Lamp, Observer, SkyModel, SkySettings, SkyVolume,
 use crate::{
     error::{Error, Result, Status},
     moment::{Light, Scene},
+    plan::Price,
     stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, yes},
 };
 
@@ -15,6 +16,8 @@ use crate::{
 pub(crate) struct SkyView {
     tables: Arc<Mutex<FollowedSky>>,
     volume: SkyVolume,
+    /// See [`SkyView::rebuild_work`].
+    rebuild_work: f64,
 }
 
 impl SkyView {
@@ -24,13 +27,28 @@ impl SkyView {
     /// A GPU fault.
     pub fn new(tables: &Arc<Mutex<FollowedSky>>) -> Result<Self> {
         let volume = SkyVolume::new(&**tables.lock().map_err(|_| poisoned())?)?;
-        Ok(Self { tables: tables.clone(), volume })
+        Ok(Self { tables: tables.clone(), rebuild_work: rebuild_work(volume.settings()), volume })
     }
 
-    /// How the sky is drawn.
+    /// Work of building default tables, in pixels of a picture with these settings.
+    pub fn rebuild_work(&self) -> f64 {
+        self.rebuild_work
+    }
+
+    /// How the sky of the last frame was drawn.
     pub fn settings(&self) -> &SkySettings {
         self.volume.settings()
     }
+
+    /// How that of the next one will be.
+    pub fn next_settings(&self) -> SkySettings {
+        self.tables.lock().map_or(*self.settings(), |tables| *tables.settings())
+    }
+}
+
+fn rebuild_work(settings: &SkySettings) -> f64 {
+    let (work, price) = (candidates::work, Price::default());
+    work(&SkySettings::default()).rebuild.at(&price) / work(settings).pixel.at(&price)
 }
 
 fn poisoned() -> Error {
@@ -45,6 +63,10 @@ impl DrawnEffect for SkyView {
     /// Brings the tables up to date with air, place and lights; nothing is drawn if they are.
     fn prepare(&mut self, at: &Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
         let mut tables = self.tables.lock().map_err(|_| poisoned())?;
+        if !self.volume.is_of(&tables) {
+            self.volume = SkyVolume::new(&tables)?;
+            self.rebuild_work = rebuild_work(self.volume.settings());
+        }
         let work = tables.follow(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
         to.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;

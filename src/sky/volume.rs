@@ -158,6 +158,8 @@ pub struct SkyVolume {
     observers: Vec<wgpu::Buffer>,
     view: wgpu::Buffer,
     view_group: wgpu::BindGroup,
+    /// The tables' light, which the group holds.
+    light: wgpu::TextureView,
     /// Whose sources the group holds, where pixels march through them.
     marched: Option<Arc<TableSet>>,
     drawn: [Option<DrawnFor>; LAMPS],
@@ -185,7 +187,27 @@ impl SkyVolume {
         let view_group = view_group(&kit, &view, textures);
         device.check_made()?;
         let (marched, drawn, fade) = (None, [None; LAMPS], None);
-        Ok(Self { device, kit, sky, air, observer_groups, observers, view, view_group, marched, drawn, fade, written })
+        let light = tables.light.view.clone();
+        Ok(Self {
+            device,
+            kit,
+            sky,
+            air,
+            observer_groups,
+            observers,
+            view,
+            view_group,
+            light,
+            marched,
+            drawn,
+            fade,
+            written,
+        })
+    }
+
+    /// Whether it was made for `tables`.
+    pub(super) fn is_of(&self, tables: &SkyTables) -> bool {
+        self.light == tables.light.view
     }
 
     /// Of the tables that it was made for.

@@ -92,6 +92,9 @@ pub(crate) struct Settings {
     pub utc_at_zero: Utc,
     /// A law of the host's stands in for the weather's low layer, which then takes no light.
     pub undimmed: bool,
+    pub planet: Planet,
+    /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
+    color: [[f64; 3]; 3],
 }
 
 /// What an effect does to the light of a scene.
@@ -112,12 +115,9 @@ pub(crate) struct Couplings {
 /// Place, weather, time and surroundings.
 pub(crate) struct World {
     pub frame: WorldFrame,
-    pub planet: Planet,
     pub seed: u64,
     pub exposure: Exposure,
     pub tone: ToneCurve,
-    /// Colours of light at the planet's wavelengths; fitted once, which takes some milliseconds.
-    color: [[f64; 3]; 3],
     pub timeline: Timeline,
     /// Another number for every timeline of every world, and after every change of one.
     timeline_revision: u64,
@@ -165,8 +165,6 @@ impl World {
         sun_position(utc_at_zero, &frame.origin)?;
         Ok(Self {
             frame,
-            color: lights::color_columns(&planet),
-            planet,
             seed,
             exposure,
             tone,
@@ -181,6 +179,8 @@ impl World {
                 given_moon: None,
                 utc_at_zero,
                 undimmed: false,
+                color: lights::color_columns(&planet),
+                planet,
             },
             night: NightSettings::default(),
             maps: None,
@@ -245,6 +245,17 @@ impl World {
         Ok(())
     }
 
+    /// Puts another planet in place of the one before.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_planet(&mut self, planet: Planet) -> Result<()> {
+        planet.check()?;
+        self.set.color = lights::color_columns(&planet);
+        self.set.planet = planet;
+        Ok(())
+    }
+
     /// Forgets what has ended, but for what is asked from `keep_s` on.
     pub fn forget_before(&mut self, keep_s: f64) {
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
@@ -269,7 +280,7 @@ impl World {
             seed: self.seed,
             tone: self.tone,
             exposure: self.exposure,
-            planet_radius_m: self.planet.bottom_radius_m,
+            planet_radius_m: self.set.planet.bottom_radius_m,
             weather,
             here: weather.at_place(eye, self.time_s, scene.conditions),
             own_rain: if self.set.regions.is_empty() { OwnRain::NONE } else { self.own_rain(&scene.conditions) },

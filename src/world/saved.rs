@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     GivenDirection, Settings, World,
+    lights::color_columns,
     saved_settings::{SavedSettings, SetBeside},
 };
 use crate::{
@@ -77,11 +78,9 @@ impl World {
         // Named one by one: a new field has to be put here, or among what is saved, unless it follows from the rest.
         let Self {
             frame,
-            planet,
             seed,
-            tone,
+            tone: _,
             exposure: _,
-            color: _,
             timeline: _,
             timeline_revision: _,
             wind: _,
@@ -109,9 +108,13 @@ impl World {
             put("grid_bearing_deg", (frame.grid_bearing_deg + 0.0).into());
         }
         put("seed", seed.to_string().into());
-        put("planet_toml", format!("hash {:016x}", planet.hash()).into());
-        put("tone_curve", format!("{tone:?}").into());
         table
+    }
+
+    /// What the description fixed before it could be set: a state from then is compared by it, later ones restore it.
+    fn fixed_before(&self) -> [(&'static str, toml::Value); 2] {
+        let planet = format!("hash {:016x}", self.set.planet.hash());
+        [("planet_toml", planet.into()), ("tone_curve", format!("{:?}", self.tone).into())]
     }
 
     /// Weather, time, clock, lights, surroundings; and what was `created`.
@@ -120,9 +123,12 @@ impl World {
     /// If a number cannot be written.
     pub fn saved(&self, created: toml::Table) -> Result<SavedWorld> {
         // Named one by one: what a new field decides has to be saved, unless it follows from the rest.
-        let Settings { shelters, regions, given_sun, given_moon, utc_at_zero, undimmed: _ } = &self.set;
+        let Settings { shelters, regions, given_sun, given_moon, utc_at_zero, undimmed: _, planet, color: _ } =
+            &self.set;
         let angles = |g: &Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
         let (drifted, carried) = (&self.drifted, self.drifted.displacement_m);
+        let mut settings = SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref());
+        (settings.tone_curve, settings.planet) = (Some(self.tone), Some(*planet));
         Ok(SavedWorld {
             time_s: self.time_s,
             utc_at_zero: utc_at_zero.0,
@@ -131,7 +137,7 @@ impl World {
             timeline: self.timeline.save()?,
             drifted: [drifted.time_s, drifted.path_m, carried.x, carried.y],
             created,
-            settings: SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref()),
+            settings,
             areas: regions.clone(),
         })
     }
@@ -141,7 +147,10 @@ impl World {
     /// # Errors
     /// [`Status::Parse`] or [`Status::InvalidArgument`], naming what does not fit.
     pub fn read(&self, saved: SavedWorld, created: &toml::Table) -> Result<LoadedWorld> {
-        check_created(&saved.created, created)?;
+        let mut here = created.clone();
+        let before = self.fixed_before().into_iter().filter(|(name, _)| saved.created.contains_key(*name));
+        here.extend(before.map(|(name, value)| (name.into(), value)));
+        check_created(&saved.created, &here)?;
         let given = |name: &str, a: Option<[f64; 2]>| -> Result<Option<GivenDirection>> {
             let given = a.map(|[azimuth_deg, elevation_deg]| GivenDirection { azimuth_deg, elevation_deg });
             given.map_or(Ok(()), |g| g.validate(name))?;
@@ -157,7 +166,19 @@ impl World {
         }
         let mut beside = saved.settings.checked().map_err(|e| e.found_in("saved state"))?;
         let shelters = std::mem::take(&mut beside.shelters);
-        let set = Settings { shelters, regions: saved.areas, given_sun, given_moon, utc_at_zero, undimmed: false };
+        let planet = beside.planet.unwrap_or(self.set.planet);
+        let color = if planet == self.set.planet { self.set.color } else { color_columns(&planet) };
+        let set = Settings {
+            shelters,
+            regions: saved.areas,
+            given_sun,
+            given_moon,
+            utc_at_zero,
+            undimmed: false,
+            planet,
+            color,
+        };
+        beside.tone.get_or_insert(self.tone);
         Ok(LoadedWorld {
             time_s: saved.time_s,
             drifted: drifted_from(saved.drifted, &timeline)?,
@@ -176,6 +197,9 @@ impl World {
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.set, &mut other.set);
         swap(&mut self.exposure, &mut other.beside.exposure);
+        if let Some(tone) = &mut other.beside.tone {
+            swap(&mut self.tone, tone);
+        }
         swap(&mut self.lights, &mut other.beside.lights);
         swap(&mut self.wind_grid, &mut other.beside.wind_grid);
         self.surroundings_revision += 1;

@@ -7,17 +7,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Result},
-    light::Exposure,
+    light::{Exposure, ToneCurve},
+    planet::Planet,
     scene::{HostLight, MAX_LIGHTS},
     surroundings::{MAX_SHELTERS, Planes, Shelter},
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
-/// Exposure, shelters, lamps and wind grid as text.
+/// Exposure, tone curve, planet, shelters, lamps and wind grid as text.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSettings {
     exposure: Exposure,
+    /// Not in states from before it could be set: those are of a context with the same.
+    #[serde(default)]
+    pub tone_curve: Option<ToneCurve>,
+    /// Likewise.
+    #[serde(default)]
+    pub planet: Option<Planet>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     shelters: Vec<SavedShelter>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -28,6 +35,8 @@ pub(super) struct SavedSettings {
 /// The same as a context holds them.
 pub(super) struct SetBeside {
     pub exposure: Exposure,
+    pub tone: Option<ToneCurve>,
+    pub planet: Option<Planet>,
     pub shelters: Vec<Shelter>,
     pub lights: Vec<HostLight>,
     pub wind_grid: Option<Arc<WindGrid>>,
@@ -68,6 +77,8 @@ impl SavedSettings {
     pub fn of(exposure: Exposure, shelters: &[Shelter], lights: &[HostLight], wind_grid: Option<&WindGrid>) -> Self {
         Self {
             exposure,
+            tone_curve: None,
+            planet: None,
             shelters: shelters.iter().map(SavedShelter::of).collect(),
             lights: lights.iter().map(SavedLight::of).collect(),
             wind_grid: wind_grid.map(SavedWindGrid::of),
@@ -80,6 +91,7 @@ impl SavedSettings {
     /// As the setters of a context.
     pub fn checked(&self) -> Result<SetBeside> {
         self.exposure.validate()?;
+        self.planet.map_or(Ok(()), |p| p.check().map_err(|e| e.within("planet")))?;
         let most = |name: &str, count: usize, most: usize| match count {
             count if count > most => Err(Error::range(name, &format!("at most {most}"), count)),
             _ => Ok(()),
@@ -89,7 +101,8 @@ impl SavedSettings {
         let shelters = self.shelters.iter().map(SavedShelter::shelter).collect::<Result<_>>()?;
         let lights = self.lights.iter().map(SavedLight::light).collect::<Result<_>>()?;
         let wind_grid = self.wind_grid.as_ref().map(SavedWindGrid::grid).transpose()?.map(Arc::new);
-        Ok(SetBeside { exposure: self.exposure, shelters, lights, wind_grid })
+        let Self { exposure, tone_curve: tone, planet, .. } = *self;
+        Ok(SetBeside { exposure, tone, planet, shelters, lights, wind_grid })
     }
 }
 

@@ -124,7 +124,7 @@ impl World {
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
         let local = self.frame.place_at(name, position)?;
         let conditions = self.weather_at(time_s)?;
-        let planet = planet_under(&self.planet, &conditions);
+        let planet = planet_under(&self.set.planet, &conditions);
         let lights = self.lights_over(&local.place, &conditions, time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
         let above_fog = self.ground_light((&planet, &local.place), &conditions, &lights, night_lux);
@@ -146,7 +146,7 @@ impl World {
             map_m: self.map_place(position, &local),
             drift_m,
             curtains_fallen_m: curtain::fallen_m(time_s),
-            color: self.color,
+            color: self.set.color,
             planet,
             sun,
             moon,
@@ -173,7 +173,7 @@ impl World {
                 [enu.x, enu.y]
             }
             _ => {
-                let metres_per_deg = self.planet.bottom_radius_m.to_radians();
+                let metres_per_deg = self.set.planet.bottom_radius_m.to_radians();
                 let east = (p.longitude_deg - o.longitude_deg) * o.latitude_deg.to_radians().cos();
                 [east * metres_per_deg, (p.latitude_deg - o.latitude_deg) * metres_per_deg]
             }
@@ -204,7 +204,7 @@ impl World {
         let one = |(light, clouds): &UnderClouds| {
             let elevation = light.direction.z.clamp(-1.0, 1.0).asin();
             let at =
-                |altitude_m| clear_light((planet, &self.color), altitude_m, elevation.to_degrees(), light.spectrum);
+                |altitude_m| clear_light((planet, &self.set.color), altitude_m, elevation.to_degrees(), light.spectrum);
             let (direct, sky) = at(place.altitude_m);
             // What clouds pass on diffusely fell on their tops, through less air.
             let (on_top, _) = at(cloud_top_m);

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, stars::*, status::*, surface::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, sky::*, stars::*, status::*, surface::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -59,6 +59,11 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_set_clock", "context", false, |h| unsafe { wk_context_set_clock(h.cast(), 0.0, 0.0) }),
         case("wk_context_set_exposure", "context", false, |h| unsafe { wk_context_set_exposure(h.cast(), 0, 0.0) }),
+        case("wk_context_set_tone_curve", "context", false, |h| unsafe { wk_context_set_tone_curve(h.cast(), 0) }),
+        case("wk_context_set_planet", "context", false, |h| unsafe { wk_context_set_planet(h.cast(), null()) }),
+        case("wk_context_set_sky_settings", "context", false, |h| unsafe {
+            wk_context_set_sky_settings(h.cast(), null())
+        }),
         case("wk_context_update", "context", false, |h| unsafe { wk_context_update(h.cast(), 0.0) }),
         case("wk_context_get_state_time", "context", false, |h| unsafe {
             wk_context_get_state_time(h.cast(), null_mut())

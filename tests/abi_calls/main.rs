@@ -10,6 +10,7 @@ mod ground;
 mod handles;
 mod limits;
 mod plan;
+mod planets;
 mod queries;
 #[path = "../support/refusals.rs"]
 mod refusals;

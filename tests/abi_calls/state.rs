@@ -1,7 +1,7 @@
 //! Saved states: they hold all that decides what a context shows, come back whole or not at all, and are told apart by format.
 
 use std::{
-    ffi::{c_char, c_void},
+    ffi::{CString, c_void},
     path::Path,
     ptr::null_mut,
 };
@@ -103,6 +103,19 @@ unsafe fn set_exposure(context: *mut wk_context) {
     ok(unsafe { wk_context_set_exposure(context, WK_EXPOSURE_EV100, 13.0) });
 }
 
+unsafe fn set_tone_curve(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_tone_curve(context, WK_TONE_FILMIC) });
+}
+
+/// The text of a planet that is not the default one.
+fn other_planet() -> CString {
+    CString::new(welkin::sky::Planet::earth().with_air_scaled(1.01).to_toml()).unwrap()
+}
+
+unsafe fn set_planet(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_planet(context, other_planet().as_ptr()) });
+}
+
 unsafe fn set_fog_law(context: *mut wk_context) {
     let law = wk_fog_law { curve: WK_FOG_CURVE_LINEAR, has: WK_FOG_LAW_HAS_COLOR, ..init("wk_fog_law") };
     ok(unsafe { wk_context_set_fog_law(context, &law) });
@@ -170,11 +183,11 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..14].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..16].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 15] = [
+const SETTERS: [(&str, Set); 17] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),
@@ -182,18 +195,20 @@ const SETTERS: [(&str, Set); 15] = [
     ("wk_context_set_ground_grid", set_ground_grid),
     ("wk_context_set_lights", set_lights),
     ("wk_context_set_moon", set_moon),
+    ("wk_context_set_planet", set_planet),
     ("wk_context_set_rain_areas", set_rain_areas),
     ("wk_context_set_shelters", set_shelters),
     ("wk_context_set_stars", set_stars),
     ("wk_context_set_sun", set_sun),
+    ("wk_context_set_tone_curve", set_tone_curve),
     ("wk_context_set_weather", set_rain),
     ("wk_context_set_wind_grid", set_wind_grid),
     ("wk_context_update", set_time),
     ("all at once", set_all),
 ];
 
-/// Images of the host's, each channel's own like its depth; the header says so.
-const NOT_STATE: [&str; 1] = ["wk_context_set_occluder_maps"];
+/// Images of the host's, each channel's own like its depth, and how the sky is drawn; the header says so.
+const NOT_STATE: [&str; 2] = ["wk_context_set_occluder_maps", "wk_context_set_sky_settings"];
 
 #[test]
 fn what_any_setter_sets_is_in_the_hash_and_comes_back_with_the_state() {
@@ -228,7 +243,6 @@ fn a_state_of_another_place_or_kind_is_refused_by_name() {
     let own = Own::new(&world, &desc());
     let (state, hash) = (own.save(), own.hash());
     let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
-    let planet = welkin::sky::Planet::earth().with_air_scaled(1.01).to_toml() + "\0";
     for (other, name) in [
         (wk_context_desc { latitude_deg: 50.5, ..desc() }, "latitude_deg (50.0 in the state, 50.5 here)"),
         (wk_context_desc { longitude_deg: -10.0, ..desc() }, "longitude_deg (10.0 in the state, -10.0 here)"),
@@ -238,8 +252,6 @@ fn a_state_of_another_place_or_kind_is_refused_by_name() {
         (wk_context_desc { world_kind: WK_WORLD_ECEF, ..desc() }, "world_kind"),
         (wk_context_desc { axes: WK_AXES_Y_UP, ..desc() }, "axes"),
         (wk_context_desc { seed: 1, ..desc() }, "seed"),
-        (wk_context_desc { tone_curve: WK_TONE_FILMIC, ..desc() }, "tone_curve"),
-        (wk_context_desc { planet_toml: planet.as_ptr().cast::<c_char>(), ..desc() }, "planet_toml"),
         (wk_context_desc { next: (&raw const simulation).cast(), ..desc() }, "ground_model"),
     ] {
         let context = Own::new(&world, &other);
@@ -253,7 +265,14 @@ fn a_state_of_another_place_or_kind_is_refused_by_name() {
     let other = wk_context_desc { latitude_deg: 0.0, seed: 9, ..desc() };
     assert_eq!(Own::new(&world, &other).load(&state), WK_ERROR_INVALID_ARGUMENT);
     assert!(message().contains("latitude_deg") && message().contains("seed"), "{}", message());
-    let other = wk_context_desc { exposure_value: 1.0, utc_at_zero_s: 0.0, ..desc() };
+    let planet = other_planet();
+    let other = wk_context_desc {
+        exposure_value: 1.0,
+        utc_at_zero_s: 0.0,
+        tone_curve: WK_TONE_FILMIC,
+        planet_toml: planet.as_ptr(),
+        ..desc()
+    };
     let context = Own::new(&world, &other);
     assert_ne!(context.hash(), hash);
     ok(context.load(&state));
@@ -362,6 +381,15 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     }
     update(second.0, 2000.0);
     let before = second.hash();
+    // It holds no planet and no tone curve, and so needs the same as it was written under.
+    let others: [(&str, Set); 2] = [("planet_toml", set_planet), ("tone_curve", set_tone_curve)];
+    for (name, set) in others {
+        let other = Own::simulated(&world);
+        // SAFETY: live.
+        unsafe { set(other.0) };
+        assert_eq!(other.load(&kept), WK_ERROR_INVALID_ARGUMENT, "{name}");
+        assert!(message().contains(name), "{name}: {}", message());
+    }
     for old in 1..FORMAT {
         let state = std::fs::read(Path::new(FIXTURES).join(format!("format{old}.state"))).unwrap();
         assert_eq!(second.load(&state), WK_ERROR_PARSE);

@@ -8,8 +8,9 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, stars::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, sky::*, stars::*,
+    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*,
+    windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -128,6 +129,7 @@ fn cases(world: &World) -> Vec<Case> {
             unsafe { wk_context_destroy(out) };
             status
         }),
+        case("wk_sky_settings", "settings", true, move |p| unsafe { wk_context_set_sky_settings(context, p.cast()) }),
         case("wk_simulation_desc", "wk_simulation_desc", true, move |p| {
             let desc = wk_context_desc { next: p, ..init("wk_context_desc") };
             let mut out = null_mut();

@@ -5,8 +5,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, stars::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, sky::*, stars::*, status::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -364,6 +364,18 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
     ("wk_context_set_exposure", |d, w| {
         unsafe { wk_context_set_exposure(handle(d, &w.contexts), d.below(4) as u32, d.float()) }.into()
+    }),
+    ("wk_context_set_tone_curve", |d, w| {
+        unsafe { wk_context_set_tone_curve(handle(d, &w.contexts), d.below(4) as u32) }.into()
+    }),
+    ("wk_context_set_planet", |d, w| {
+        let text = CString::new(texts::planet(d).replace('\0', " ")).unwrap();
+        let text = if d.one_in(4) { null() } else { text.as_ptr() };
+        unsafe { wk_context_set_planet(handle(d, &w.contexts), text) }.into()
+    }),
+    ("wk_context_set_sky_settings", |d, w| {
+        let context = handle(d, &w.contexts);
+        set_one(d, "wk_sky_settings", |p| unsafe { wk_context_set_sky_settings(context, p.cast()) })
     }),
     ("wk_context_set_fog_law", |d, w| {
         let context = handle(d, &w.contexts);
