@@ -143,3 +143,59 @@ impl Kinds {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::{Pipeline, Sampling};
+
+    fn variant(stages: Stages, has_depth: bool, fog: f64) -> Variant {
+        let mut constants = Pipeline::NONE;
+        constants.between.push(("FOG", fog));
+        constants.between.push(("AIR", 1.0));
+        Variant {
+            stages,
+            format: wgpu::TextureFormat::Rgba16Float,
+            samples: 1,
+            sampling: Sampling::Single,
+            images: [has_depth, false, false, false],
+            constants,
+            pixels: Pixels::All,
+        }
+    }
+
+    fn drawn(all: &Variant) -> Vec<Pixels> {
+        draws(all).iter().flatten().map(|v| v.pixels).collect()
+    }
+
+    #[test]
+    fn a_draw_is_for_the_pixels_that_its_stages_change() {
+        let (sky, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
+        use Pixels::{All, Drawn, OpenSky, Sky};
+        for (stages, has_depth, fog, expected) in [
+            (sky.with(air), true, 0.0, &[OpenSky, Sky, Drawn][..]),
+            (sky, true, 1.0, &[OpenSky, Sky]),
+            (sky, false, 0.0, &[OpenSky, Sky]),
+            (air, true, 0.0, &[Drawn]),
+            (air, true, 1.0, &[Sky, Drawn]),
+            (air, false, 1.0, &[All]),
+            (water, true, 1.0, &[Drawn]),
+            (Stages::TONE, true, 0.0, &[Sky, Drawn]),
+        ] {
+            let all = variant(stages, has_depth, fog);
+            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, fog {fog}");
+            assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
+        }
+    }
+
+    #[test]
+    fn depths_of_kinds_are_those_that_the_shader_writes() {
+        let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
+        for (name, pixels) in
+            [("KIND_OPEN_SKY", Pixels::OpenSky), ("KIND_SKY", Pixels::Sky), ("KIND_DRAWN", Pixels::Drawn)]
+        {
+            let depth = pixels.test().unwrap().0;
+            assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");
+        }
+    }
+}
