@@ -45,7 +45,7 @@ impl Options {
 }
 
 fn usage(what: &str) -> Error {
-    Error::new(Status::InvalidArgument, format!("{what}\n{USAGE}"))
+    Error::new(Status::Parse, format!("{what}\n{USAGE}"))
 }
 
 fn read_input() -> Result<String> {

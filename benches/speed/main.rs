@@ -1,6 +1,7 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (record, first, fog, glass, ground, parts, rain, sky).
+//! (copies, record, first, fog, glass, ground, parts, rain, sky).
 
+mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
 mod first;
@@ -15,6 +16,9 @@ mod sky;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let named: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wanted = |name: &str| named.is_empty() || named.iter().any(|n| n == name);
+    if wanted("copies") {
+        copies::run()?;
+    }
     if wanted("record") {
         record::run()?;
     }

@@ -29,7 +29,7 @@ pub struct Options {
 }
 
 fn usage(what: &str) -> Error {
-    Error::new(Status::InvalidArgument, format!("{what}\n{USAGE}"))
+    Error::new(Status::Parse, format!("{what}\n{USAGE}"))
 }
 
 /// Words and options.

@@ -53,7 +53,7 @@ impl Picture {
     pub fn figures(&self, truth: &Self) -> Result<Figures> {
         let white = truth.white();
         let luminance = difference(&self.luminances(), &truth.luminances(), white)?;
-        let fault = |e: image_compare::CompareError| Error::new(Status::InvalidArgument, format!("pictures: {e}"));
+        let fault = |e: image_compare::CompareError| Error::invalid("pictures", format!("of one size: {e}"));
         let (a, b) = (self.display(white), truth.display(white));
         let alike = image_compare::rgb_hybrid_compare(&a, &b).map_err(fault)?.score;
         Ok(Figures { luminance, perceptual: (1.0 - alike).max(0.0) })

@@ -8,6 +8,9 @@ override FOG: bool = true;
 // Whether the air between is drawn at all.
 override AIR: bool = true;
 
+// The deck hides all of the sky: no light of the clear sky is asked for above the horizon and in the air.
+override DECK_CLOSED: bool = false;
+
 // Light that reaches the eye beside what comes from behind, and the share of the latter that gets through.
 struct Veil {
     light: vec3f,
@@ -27,13 +30,14 @@ fn air_on(path: SkyPath, d: vec3f) -> Veil {
     if !AIR || drawn.x == 0.0 {
         return Veil(vec3f(0.0), vec3f(1.0));
     }
-    let air = aerial_on(path, d);
-    let night = frame.night_floor * (1.0 - air.transmittance);
-    let clear = color_of(air.radiance) * frame.medium_share;
+    let transmittance = exp(-path.depth);
     // No beam reaches the air below a deck: it is lit by the deck, and far things fade to the deck at the horizon.
-    let overcast = frame.deck * overcast_gradation(0.0) * (1.0 - air.transmittance);
-    let light = mix(clear, overcast, frame.deck_cover) + night;
-    return Veil(light * drawn.x, mix(vec3f(1.0), air.transmittance, drawn.x));
+    var light = frame.deck * overcast_gradation(0.0) * (1.0 - transmittance);
+    if !DECK_CLOSED {
+        light = mix(color_of(aerial_on(path, d).radiance) * frame.medium_share, light, frame.deck_cover);
+    }
+    light += frame.night_floor * (1.0 - transmittance);
+    return Veil(light * drawn.x, mix(vec3f(1.0), transmittance, drawn.x));
 }
 
 // `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air

@@ -17,7 +17,7 @@ override LAMPS: bool = false;
 // The sky without its lamps, as it stands behind what lies on the ground.
 fn sky_without_lamps(d: vec3f) -> vec3f {
     var clear = frame.night_floor;
-    if CLEAR_SKY && drawn.z > 0.0 && frame.deck_cover < 1.0 {
+    if CLEAR_SKY && !DECK_CLOSED && drawn.z > 0.0 && frame.deck_cover < 1.0 {
         clear += color_of(sky_radiance_above(d)) * drawn.z;
     }
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);

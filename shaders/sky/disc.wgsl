@@ -35,7 +35,7 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
 fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     let real = unrefracted(dir);
     var out = vec3f(0.0);
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
         let place = disc_place(lamp, real, pixel_angle);
         let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
@@ -51,4 +51,19 @@ fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
         out += lamp.irradiance * law * (place.y * lamp.disc_scale);
     }
     return out * sky_transmittance_on(path);
+}
+
+// Most by which standard air lifts what is seen, rad, and the rounding of directions.
+const MOST_LIFT: f32 = 0.0165;
+
+// Whether a direction is level or above, where no disc may stand.
+fn is_open_sky(dir: vec3f, pixel_angle: f32) -> bool {
+    var open = dir.z >= 0.0;
+    for (var i = 0u; i < sky_lamps(); i++) {
+        let lamp = sky_view.lamps[i];
+        let off = dir - lamp.toward;
+        let near = lamp.angular_radius + pixel_angle + MOST_LIFT;
+        open &= dot(off, off) > near * near;
+    }
+    return open;
 }

@@ -48,6 +48,15 @@ struct SkyView {
 
 // Set by `SkyTables::pipeline_constants` where the model marches every pixel.
 override SKY_MARCH: bool = false;
+// Lamps that a pipeline draws, all that there are if 2: what stands in a loop costs a software driver a turn more than are taken.
+override SKY_LAMPS: u32 = 2u;
+
+fn sky_lamps() -> u32 {
+    if SKY_LAMPS < 2u {
+        return SKY_LAMPS;
+    }
+    return sky_view.lamp_count;
+}
 
 struct Aerial {
     // Radiance scattered into the ray between observer and distance.
@@ -131,14 +140,14 @@ fn sky_table_light(ray: SkyRay, dir: vec3f, v: f32) -> vec3f {
     let dims = sky_view.dims;
     var out = vec3f(0.0);
     if (SKY_MARCH) {
-        for (var i = 0u; i < sky_view.lamp_count; i++) {
+        for (var i = 0u; i < sky_lamps(); i++) {
             out += lamp_march(sky_view.lamps[i], dir, ray, ray.length);
         }
         return out;
     }
     let size = vec2f(f32(dims.sky_azimuths), f32(dims.sky_above + dims.sky_below));
     let row = view_row(v, dims.sky_above, dims.sky_below);
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
         let uv = vec2f(0.5 + lamp_azimuth(lamp, dir) * (size.x - 1.0), row) / size;
         let a = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer, 0.0);
@@ -160,7 +169,7 @@ fn aerial_on(path: SkyPath, dir: vec3f) -> Aerial {
     let depth = path.depth;
     var out = vec3f(0.0);
     if (SKY_MARCH) {
-        for (var i = 0u; i < sky_view.lamp_count; i++) {
+        for (var i = 0u; i < sky_lamps(); i++) {
             out += lamp_march(sky_view.lamps[i], dir, ray, end);
         }
         return Aerial(out, exp(-depth));
@@ -170,7 +179,7 @@ fn aerial_on(path: SkyPath, dir: vec3f) -> Aerial {
     let row = view_row(view_place(sky_view.edges, dir.z), dims.air_above, dims.air_below);
     let slice = slice_of(end, ray.length) * f32(dims.air_slices - 1u);
     let near = min(floor(slice), f32(dims.air_slices - 2u));
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
         let x = 0.5 + lamp_azimuth(lamp, dir) * (tile.x - 1.0) + near * tile.x;
         let uv = vec2f(x, row) / size;
@@ -197,7 +206,7 @@ fn sky_transmittance_on(path: SkyPath) -> vec3f {
 // Irradiance of all lamps' skies on a level surface facing up; sun angles are those at the observer's place.
 fn sky_irradiance(altitude: Length) -> vec3f {
     var out = vec3f(0.0);
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
         out += lamp.irradiance * diffuse_irradiance(altitude, lamp.toward.z);
     }
@@ -233,7 +242,7 @@ fn ground_radiance_on(path: SkyPath, dir: vec3f) -> Radiance {
     let distance = path.distance;
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
     var lit = vec3f(0.0);
-    for (var i = 0u; i < sky_view.lamp_count; i++) {
+    for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
         let mu_s = clamp((r * lamp.toward.z + distance * dot(dir, lamp.toward)) / sky_view.air.bottom_m, -1.0, 1.0);
         let direct = max(mu_s, 0.0) * sun_transmittance(sky_view.air, 0.0, mu_s);

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
+use super::kinds::Pixels;
 use crate::{
     effects::{BLOCK_BYTES, tables_layout},
     error::{Error, Result, Status},
@@ -11,7 +12,7 @@ use crate::{
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
-    stage::{Composition, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, yes},
+    stage::{Composition, Constant, Constants, Frame, FrameUniform, Pipeline, Sampling, Stages, yes},
     surroundings::layout as around_layout,
 };
 
@@ -26,9 +27,16 @@ pub(super) struct Variant {
     pub images: [bool; 4],
     /// What effects and frame have added.
     pub constants: Pipeline,
+    /// For which it is.
+    pub pixels: Pixels,
 }
 
 impl Variant {
+    /// How it draws into the host's colour.
+    fn target(&self, write_mask: wgpu::ColorWrites) -> wgpu::ColorTargetState {
+        wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
+    }
+
     /// Values of the shader's `override` constants.
     pub fn constants(&self) -> Constants {
         let mut all = Constants::NONE;
@@ -44,6 +52,7 @@ impl Variant {
         for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
             all.push((name, yes(given)));
         }
+        all.push(("OPEN_SKY", yes(self.pixels == Pixels::OpenSky)));
         all.extend(self.constants.between.all());
         all.extend(self.constants.composed.all());
         all
@@ -53,6 +62,17 @@ impl Variant {
 /// Pipelines held for all views of a device, who share them where their formats are the same: those of some stages and weathers. On
 /// a software driver one may take more than 10 MB.
 const MOST_PIPELINES: usize = 32;
+
+/// Likewise those that tell kinds of pixels apart.
+const MOST_KINDS: usize = 8;
+
+/// What distinguishes one of these from another.
+#[derive(Clone, Copy, PartialEq)]
+struct Kinds {
+    format: wgpu::TextureFormat,
+    sampling: Sampling,
+    constants: [Constant; 4],
+}
 
 /// The composition of a device, for all its views. Any thread.
 pub(super) struct SharedComposite(Mutex<Composite>);
@@ -82,6 +102,7 @@ pub(super) struct Composite {
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
     pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
+    kinds: Recent<Kinds, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
     reads_samples: bool,
 }
@@ -114,6 +135,7 @@ impl Composite {
             layout_tables: tables_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: Recent::new(),
+            kinds: Recent::new(),
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             reads_samples: multi,
         }
@@ -180,19 +202,39 @@ impl Composite {
             |made| *made == variant,
             || {
                 let ([(shader, entry), _], constants) = (variant.sampling.shaders(), variant.constants());
+                let targets = [variant.target(wgpu::ColorWrites::ALL)];
+                let (constants, samples) = (constants.all(), variant.samples);
+                let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples };
+                Ok((variant, pass::fullscreen_at(device, &desc, variant.pixels.test())?))
+            },
+        )
+    }
+
+    /// The pipeline that writes the kinds of the pixels of `variant`, compiled at its first use.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn kinds(&mut self, device: &Arc<Device>, variant: &Variant) -> Result<&wgpu::RenderPipeline> {
+        let layouts = [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around];
+        let between = &variant.constants.between;
+        let [depth, lamps] = ["DEPTH_KINDS", "SKY_LAMPS"].map(|name| (name, between.value(name)));
+        let is_open = ("OPEN_SKY", yes(variant.stages.has(Stages::BACKGROUND)));
+        let constants = [depth, lamps, is_open, ("HAS_DEPTH", yes(variant.images[0]))];
+        let kinds = Kinds { format: variant.format, sampling: variant.sampling, constants };
+        self.kinds.get_or_make(
+            |made| *made == kinds,
+            || {
+                let targets = [variant.target(wgpu::ColorWrites::empty())];
+                let (shader, constants) = (variant.sampling.kinds(), &kinds.constants);
                 let desc = FullscreenDesc {
                     shader,
-                    entry,
+                    entry: "kinds",
                     layouts: &layouts,
-                    targets: &[wgpu::ColorTargetState {
-                        format: variant.format,
-                        blend: None,
-                        write_mask: wgpu::ColorWrites::ALL,
-                    }],
-                    constants: constants.all(),
-                    samples: variant.samples,
+                    targets: &targets,
+                    constants,
+                    samples: 1,
                 };
-                Ok((variant, pass::fullscreen(device, &desc)?))
+                Ok((kinds, pass::fullscreen_at(device, &desc, Some(Pixels::writes()))?))
             },
         )
     }

@@ -6,6 +6,7 @@ use super::{
     View,
     composite::Variant,
     froxels::Froxels,
+    kinds::{self, Pixels},
     planned::{present, situation},
 };
 use crate::{
@@ -117,6 +118,7 @@ impl View {
         let stages = composition.stages;
         let kinds = f64::from(shot.rays.depth_kinds());
         composition.between("DEPTH_KINDS", kinds, kinds);
+        composition.between("DECK_CLOSED", 0.0, yes(composition.block.deck_cover >= 1.0));
         let mut around = Default::default();
         if stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
             let told = shot.now.told(composition.near, shot.exposure)?;
@@ -133,10 +135,11 @@ impl View {
             sampling: Sampling::of(color, frame.depth),
             images: [frame.depth, frame.mask, frame.surface_classes, frame.normals].map(|image| image.is_some()),
             constants: composition.whole,
+            pixels: Pixels::All,
         })
     }
 
-    /// The one full-screen draw; and the gauge of all of it, if one is due.
+    /// The one full-screen pass; and the gauge of all of it, if one is due.
     fn compose(
         &mut self,
         shot: &Shot<'_>,
@@ -145,13 +148,27 @@ impl View {
         to: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
-        // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
-        let least = if self.device.caps().software { composition.least } else { composition.whole };
         let mut composite = self.composite.lock()?;
-        let pipeline = composite.pipeline(&self.device, Variant { constants: least, ..*whole })?;
         let groups = [group, tables, self.around.bind_group()];
-        pass::draw(to.encoder, "composite", pipeline, &groups, target);
-        to.passes += 1;
+        // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
+        let least = Variant { constants: composition.least, ..*whole };
+        let draws = if self.device.caps().software { kinds::draws(&least) } else { [Some(*whole), None, None] };
+        match (draws, &self.kinds) {
+            ([Some(all), None, None], _) if all.pixels == Pixels::All => {
+                let pipeline = composite.pipeline(&self.device, all)?;
+                pass::draw(to.encoder, "composite", pipeline, &groups, target);
+                to.passes += 1;
+            }
+            (draws, Some(kinds)) if draws.iter().any(Option::is_some) => {
+                let mut pipelines = [Some(composite.kinds(&self.device, &least)?.clone()), None, None, None];
+                for (pipeline, variant) in pipelines[1..].iter_mut().zip(draws) {
+                    *pipeline = variant.map(|v| composite.pipeline(&self.device, v).cloned()).transpose()?;
+                }
+                kinds.draw(to.encoder, pipelines.iter().flatten(), &groups, target);
+                to.passes += 1;
+            }
+            _ => {}
+        }
         if !composition.stages.has(Stages::MEDIUM) {
             return Ok(());
         }

@@ -8,6 +8,7 @@ mod check;
 mod composite;
 mod draw;
 mod froxels;
+mod kinds;
 mod light;
 mod picture;
 mod planned;

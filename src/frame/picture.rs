@@ -1,6 +1,6 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, froxels::Froxels};
+use super::{View, froxels::Froxels, kinds::Kinds};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
@@ -26,7 +26,8 @@ impl View {
             texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
-        copy + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
+        let kinds = self.kinds.as_ref().map_or(0, Kinds::bytes);
+        copy + kinds + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
 
     /// Makes the colour copy anew if it does not serve the host's colour; whether it did.
@@ -43,6 +44,17 @@ impl View {
             self.report.bytes = self.bytes();
         }
         Ok(!fits)
+    }
+
+    /// Makes the attachment for kinds of pixels anew if it does not serve, where they are told apart.
+    pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) {
+        let apart = self.device.caps().software && color.sample_count() == 1;
+        if self.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
+            self.kinds = None;
+        }
+        if apart && self.kinds.is_none() {
+            self.kinds = Some(Kinds::new(&self.device.device, color.size()));
+        }
     }
 
     /// Brings the colour copy up to date with all that was recorded.

@@ -10,6 +10,7 @@ use super::{
     composite::SharedComposite,
     draw::Call,
     froxels::{FrameTextures, Froxels},
+    kinds::Kinds,
     picture::Bound,
     unit::UnitWatch,
 };
@@ -32,6 +33,7 @@ pub struct View {
     pub(super) bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     pub(crate) effects: Effects,
     pub(super) froxels: Option<Froxels>,
+    pub(super) kinds: Option<Kinds>,
     pub(super) around: Around,
     pub(super) planner: Planner<Unseen>,
     pub(super) planned_for: Option<u64>,
@@ -71,6 +73,7 @@ impl View {
             bound: None,
             effects,
             froxels: None,
+            kinds: None,
             around,
             planner,
             planned_for: None,
@@ -137,7 +140,7 @@ impl View {
 
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
-        (self.bound, self.copy) = (None, None);
+        (self.bound, self.copy, self.kinds) = (None, None, None);
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 
@@ -146,6 +149,7 @@ impl View {
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
         let (made, bytes) = (self.hold_copy(color)?, self.bytes());
+        self.hold_kinds(color);
         self.effects.each().into_iter().for_each(|effect| effect.hold(&self.device, color, stages));
         if made || self.bytes() != bytes { self.device.check_made() } else { Ok(()) }
     }

@@ -27,6 +27,18 @@ pub struct FullscreenDesc<'a> {
 /// # Errors
 /// A missing shader file; GPU faults come through [`Device::check`].
 pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::RenderPipeline> {
+    fullscreen_at(device, desc, None)
+}
+
+/// As [`fullscreen`], its triangle at a depth in [0, 1] and tested against a depth attachment.
+///
+/// # Errors
+/// As [`fullscreen`].
+pub(crate) fn fullscreen_at(
+    device: &Device,
+    desc: &FullscreenDesc<'_>,
+    tested: Option<(f64, wgpu::DepthStencilState)>,
+) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(desc.shader)?;
     let groups: Vec<_> = desc.layouts.iter().map(|l| Some(*l)).collect();
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -35,6 +47,8 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
         immediate_size: 0,
     });
     let compilation_options = wgpu::PipelineCompilationOptions { constants: desc.constants, ..Default::default() };
+    let at = tested.as_ref().map(|(depth, _)| ("FULLSCREEN_DEPTH", *depth));
+    let vertex_constants = at.as_slice();
     let targets: Vec<_> = desc.targets.iter().cloned().map(|t| Some(compiled_once(device, t))).collect();
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.entry),
@@ -42,11 +56,11 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some("fullscreen_vertex"),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: vertex_constants, ..Default::default() },
             buffers: &[],
         },
         primitive: Default::default(),
-        depth_stencil: None,
+        depth_stencil: tested.map(|(_, test)| test),
         multisample: wgpu::MultisampleState { count: desc.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
@@ -65,7 +79,9 @@ fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::Color
     let features = target.format.guaranteed_format_features(device.device.features()).flags;
     let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
     match target.blend {
-        None if can => wgpu::ColorTargetState { blend: Some(wgpu::BlendState::REPLACE), ..target },
+        None if can && !target.write_mask.is_empty() => {
+            wgpu::ColorTargetState { blend: Some(wgpu::BlendState::REPLACE), ..target }
+        }
         _ => target,
     }
 }

@@ -87,6 +87,7 @@ impl DrawnEffect for SkyView {
         let march = yes(self.settings().model == SkyModel::BruteForce);
         to.between("SKY_MARCH", march, march);
         to.between("AIR", 1.0, yes(air > 0.0));
+        to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
         to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
         (to.block.drawn[0], to.block.drawn[2]) = (air, sky);
         to.tables = Some((self.volume.layout().clone(), self.volume.bind_group().clone()));

@@ -215,6 +215,11 @@ impl SkyVolume {
         &self.kit.settings
     }
 
+    /// Lamps that send light, as of the last [`SkyVolume::prepare`].
+    pub(crate) fn lamp_count(&self) -> u32 {
+        self.written.lamp_count
+    }
+
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
     pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
         use Slot::{Filtered, FilteredArray, Sampler};

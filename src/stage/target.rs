@@ -262,6 +262,11 @@ impl Sampling {
             }
         }
     }
+
+    /// Shader that tells kinds of pixels apart, of pictures with one sample.
+    pub fn kinds(self) -> &'static str {
+        if self == Self::Single { "frame/kinds.wgsl" } else { "frame/kinds.wgsl:resolved" }
+    }
 }
 
 /// Whether stages drawn one by one give the picture of all in one: not where what lies between them is rounded to a

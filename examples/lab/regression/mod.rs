@@ -17,7 +17,7 @@ use welkin::{Error, Result, Status};
 use host::Devices;
 
 fn fault(what: &Path, e: impl std::fmt::Display) -> Error {
-    Error::new(Status::InvalidArgument, format!("{}: {e}", what.display()))
+    Error::new(Status::Io, format!("{}: {e}", what.display()))
 }
 
 /// Draws every scene whose name contains `part`, and writes each to `dir`.

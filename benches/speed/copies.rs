@@ -1,0 +1,219 @@
+//! What a frame takes on a software driver, in copies: a copy is a full-screen pass of the same size that loads one texel a pixel.
+//!
+//! Counted is the processor time of all of the process's threads, so that what else the machine does falls on neither.
+
+use std::{fs, sync::Arc};
+
+use glam::DVec3;
+use welkin::{
+    context::{Context, ContextDesc, GivenDirection},
+    frame::{Frame, Shared, Stages, View},
+    gpu::{
+        Device, DeviceOptions,
+        pass::{FullscreenDesc, draw, fullscreen},
+    },
+    ground::SurfaceClass,
+    scene::Camera,
+    weather::{Surface, SurfaceState, Weather},
+};
+
+type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+
+const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+/// Copies in one submission, so that a submission's own work is next to nothing beside them.
+const COPIES: u32 = 16;
+/// Rounds of all scenes; the median of each counts.
+const ROUNDS: usize = 9;
+/// Frames without work on tables after which there is none.
+const SETTLED: u32 = 12;
+
+/// Nanoseconds that the threads of this process have run.
+fn processor_ns() -> Fallible<u64> {
+    let mut sum = 0;
+    for thread in fs::read_dir("/proc/self/task")? {
+        // A thread may end between the list and its file.
+        let Ok(text) = fs::read_to_string(thread?.path().join("schedstat")) else { continue };
+        sum += text.split(' ').next().unwrap_or("0").parse::<u64>()?;
+    }
+    Ok(sum)
+}
+
+/// The median of numbers.
+fn median(of: &mut [f64]) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+/// The clock: a pass that loads a texel and writes it.
+struct Copying {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    target: wgpu::TextureView,
+}
+
+impl Copying {
+    fn new(device: &Device) -> Fallible<Self> {
+        let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
+        });
+        let format = wgpu::TextureFormat::Rgba16Float;
+        let desc = FullscreenDesc {
+            shader: "surface/copy.wgsl",
+            entry: "copy_texels",
+            layouts: &[&layout],
+            targets: &[format.into()],
+            constants: &[],
+            samples: 1,
+        };
+        let pipeline = fullscreen(device, &desc)?;
+        let [from, to] = [texture(device, format), texture(device, format)].map(|t| t.create_view(&Default::default()));
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&from) }],
+        });
+        Ok(Self { pipeline, group, target: to })
+    }
+
+    /// Nanoseconds of one copy.
+    fn ns(&self, device: &Device) -> Fallible<f64> {
+        let before = processor_ns()?;
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        for _ in 0..COPIES {
+            draw(&mut encoder, "copy", &self.pipeline, &[&self.group], &self.target);
+        }
+        device.submit_and_wait(encoder)?;
+        Ok((processor_ns()? - before) as f64 / f64::from(COPIES))
+    }
+}
+
+fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: SIZE,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// One weather over a picture, and the calls in which its frames are drawn.
+struct Scene {
+    name: &'static str,
+    context: Arc<Context>,
+    view: View,
+    camera: Camera,
+    calls: Vec<Stages>,
+    has_depth: bool,
+    frame_id: u64,
+    copies: Vec<f64>,
+}
+
+impl Scene {
+    /// Nanoseconds of a frame.
+    fn ns(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<f64> {
+        let depth = self.has_depth.then_some(depth);
+        self.frame_id += 1;
+        let before = processor_ns()?;
+        for stages in &self.calls {
+            self.view.record(&self.context, &Frame::new(self.frame_id, self.camera, color, depth), *stages)?;
+        }
+        device.wait()?;
+        Ok((processor_ns()? - before) as f64)
+    }
+}
+
+/// A world under a high sun.
+fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather) -> Fallible<Arc<Context>> {
+    let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
+    context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: 60.0 }))?;
+    context.set_default_surface_class(SurfaceClass::Paved);
+    context.set_weather(weather, 0.0, 0.0)?;
+    context.update(0.0)?;
+    Ok(Arc::new(context))
+}
+
+/// The scenes: weathers in one call, clear noon in calls of its own for each stage, and a picture of nothing but sky.
+fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
+    let shared = Arc::new(Shared::new(device)?);
+    let haze = Weather { visibility_m: 3000.0, ..Weather::default() };
+    let wet = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
+    let wet = Weather { surface: wet, ..Weather::default() };
+    let weathers = [Weather::preset("clear")?, Weather::preset("fog")?, haze, Weather::preset("rain")?, wet];
+    let mut worlds = Vec::new();
+    for weather in &weathers {
+        worlds.push(world(device, &shared, weather)?);
+    }
+    let all = Stages::ALL.without(Stages::TONE);
+    let (sky, air) = (Stages::BACKGROUND, Stages::MEDIUM);
+    let mut made = Vec::new();
+    for (name, world, calls, has_depth) in [
+        ("clear noon", 0, &[all][..], true),
+        ("clear noon, nothing but sky", 0, &[all], false),
+        ("clear noon, TONE too", 0, &[Stages::ALL], true),
+        ("clear noon, BACKGROUND and MEDIUM in one call", 0, &[sky.with(air)], true),
+        ("clear noon, in two calls", 0, &[sky, air], true),
+        ("fog", 1, &[all], true),
+        ("haze of 3 km", 2, &[all], true),
+        ("rain", 3, &[all], true),
+        ("rain without drops", 3, &[all.without(Stages::PARTICLES)], true),
+        ("wet road", 4, &[all], true),
+    ] {
+        let context = worlds[world].clone();
+        let view = View::new(&context)?;
+        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
+        let calls = calls.to_vec();
+        made.push(Scene { name, context, view, camera, calls, has_depth, frame_id: 0, copies: Vec::new() });
+    }
+    Ok(made)
+}
+
+/// Prints the copies of each scene.
+pub fn run() -> Fallible<()> {
+    let device = Device::headless(&DeviceOptions::default())?;
+    let (color, depth) =
+        (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
+    // Level ground 2 m below the eye, from the picture's middle down.
+    let row = |y: u32| 0.1 * (y as f32 - 179.5).max(0.0) / 180.0 * 0.45f32.tan() / 2.0;
+    let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width)).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.width * 4), rows_per_image: None };
+    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, SIZE);
+    let copying = Copying::new(&device)?;
+    let mut scenes = scenes(&device)?;
+    // The tables of a sky come in parts.
+    for scene in &mut scenes {
+        let (mut since, mut frames) = (0, 0);
+        while since < SETTLED && frames < 1000 {
+            scene.ns(&device, &color, &depth)?;
+            since = if scene.view.report().tables_rebuilt > 0 { 0 } else { since + 1 };
+            frames += 1;
+        }
+    }
+    for _ in 0..ROUNDS {
+        for scene in &mut scenes {
+            let before = copying.ns(&device)?;
+            let frame = scene.ns(&device, &color, &depth)?;
+            let copy = 0.5 * (before + copying.ns(&device)?);
+            scene.copies.push(frame / copy);
+        }
+    }
+    println!("frames of {} x {} in copies, {}:", SIZE.width, SIZE.height, device.caps().adapter_name);
+    for scene in &mut scenes {
+        println!("  {}: {:.1}", scene.name, median(&mut scene.copies));
+    }
+    Ok(())
+}

@@ -1,0 +1,201 @@
+//! Kinds of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
+//!
+//! Such a driver takes both ways of every branch: a pixel of the open sky pays for the air before things, and a thing for the sky
+//! behind it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
+//! before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
+
+use super::composite::Variant;
+use crate::stage::Stages;
+
+/// Of the depth attachment: its values are exact.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Which pixels a draw of the composition is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pixels {
+    /// All of them.
+    All,
+    /// Those of the sky from the level up, beside the discs of sun and moon.
+    OpenSky,
+    /// The sky's others.
+    Sky,
+    /// Those on which the host drew.
+    Drawn,
+}
+
+impl Pixels {
+    /// The depth that stands for them (`shaders/frame/kinds.wgsl`) and the test that lets only them pass; no test for all.
+    pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
+        let depth = match self {
+            Self::All => return None,
+            Self::OpenSky => 0.0,
+            Self::Sky => 0.5,
+            Self::Drawn => 1.0,
+        };
+        Some((depth, state(wgpu::CompareFunction::Equal, false)))
+    }
+
+    /// The test of the draw that writes the kinds.
+    pub fn writes() -> (f64, wgpu::DepthStencilState) {
+        (0.0, state(wgpu::CompareFunction::Always, true))
+    }
+}
+
+fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: FORMAT,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
+
+/// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
+/// where there is no more than one kind.
+pub(super) fn draws(all: &Variant) -> [Option<Variant>; 3] {
+    let (stages, between) = (all.stages, &all.constants.between);
+    let has_depth = all.images[0];
+    let fogged = stages.has(Stages::MEDIUM) && between.value("FOG") > 0.0;
+    let aired = stages.has(Stages::MEDIUM) && between.value("AIR") > 0.0;
+    let everywhere = stages.has(Stages::PARTICLES.with(Stages::TONE));
+    let behind = stages.has(Stages::BACKGROUND);
+    let whole = [Some(*all), None, None];
+    if all.samples > 1 || between.value("SKY_MARCH") > 0.0 || !(behind || has_depth) {
+        return whole;
+    }
+    let sky = |pixels| Variant {
+        stages: stages.without(Stages::SURFACE),
+        images: [false, all.images[1], false, false],
+        pixels,
+        ..*all
+    };
+    let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
+    [
+        behind.then(|| sky(Pixels::OpenSky)),
+        (behind || fogged || everywhere).then(|| sky(Pixels::Sky)),
+        (has_depth && (fogged || aired || everywhere || stages.has(Stages::SURFACE))).then_some(drawn),
+    ]
+}
+
+/// The depth attachment of a view: the kinds of its picture's pixels.
+pub(super) struct Kinds {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+}
+
+impl Kinds {
+    /// For a picture of this size.
+    pub fn new(device: &wgpu::Device, size: wgpu::Extent3d) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("kinds of pixels"),
+            size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        Self { texture, view }
+    }
+
+    /// Whether it is as large as a picture.
+    pub fn fits(&self, picture: &wgpu::Texture) -> bool {
+        (self.texture.width(), self.texture.height()) == (picture.width(), picture.height())
+    }
+
+    /// Bytes of GPU memory.
+    pub fn bytes(&self) -> u64 {
+        4 * u64::from(self.texture.width()) * u64::from(self.texture.height())
+    }
+
+    /// Records the draw that writes the kinds, and then those of the composition.
+    pub fn draw<'a>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        pipelines: impl Iterator<Item = &'a wgpu::RenderPipeline>,
+        groups: &[&wgpu::BindGroup],
+        target: &wgpu::TextureView,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("composite"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        for (i, group) in groups.iter().enumerate() {
+            pass.set_bind_group(i as u32, *group, &[]);
+        }
+        for pipeline in pipelines {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::{Pipeline, Sampling};
+
+    fn variant(stages: Stages, has_depth: bool, fog: f64) -> Variant {
+        let mut constants = Pipeline::NONE;
+        constants.between.push(("FOG", fog));
+        constants.between.push(("AIR", 1.0));
+        Variant {
+            stages,
+            format: wgpu::TextureFormat::Rgba16Float,
+            samples: 1,
+            sampling: Sampling::Single,
+            images: [has_depth, false, false, false],
+            constants,
+            pixels: Pixels::All,
+        }
+    }
+
+    fn drawn(all: &Variant) -> Vec<Pixels> {
+        draws(all).iter().flatten().map(|v| v.pixels).collect()
+    }
+
+    #[test]
+    fn a_draw_is_for_the_pixels_that_its_stages_change() {
+        let (sky, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
+        use Pixels::{All, Drawn, OpenSky, Sky};
+        for (stages, has_depth, fog, expected) in [
+            (sky.with(air), true, 0.0, &[OpenSky, Sky, Drawn][..]),
+            (sky, true, 1.0, &[OpenSky, Sky]),
+            (sky, false, 0.0, &[OpenSky, Sky]),
+            (air, true, 0.0, &[Drawn]),
+            (air, true, 1.0, &[Sky, Drawn]),
+            (air, false, 1.0, &[All]),
+            (water, true, 1.0, &[Drawn]),
+            (Stages::TONE, true, 0.0, &[Sky, Drawn]),
+        ] {
+            let all = variant(stages, has_depth, fog);
+            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, fog {fog}");
+            assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
+        }
+    }
+
+    #[test]
+    fn depths_of_kinds_are_those_that_the_shader_writes() {
+        let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
+        for (name, pixels) in
+            [("KIND_OPEN_SKY", Pixels::OpenSky), ("KIND_SKY", Pixels::Sky), ("KIND_DRAWN", Pixels::Drawn)]
+        {
+            let depth = pixels.test().unwrap().0;
+            assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");
+        }
+    }
+}
