@@ -238,7 +238,13 @@ fn dump_tmp() {
         let bytes: Vec<u8> = p.iter().flat_map(|p| [p[0], p[1], p[2]]).flat_map(|v| v.to_le_bytes()).collect();
         std::fs::write(format!("/tmp/night_{name}.raw"), bytes).unwrap();
         let s = night.context.scene_at(camera.position, 0.0).unwrap();
-        println!("{name}: place {:?} exposure {} sun {:?} adaptation {}", s.place, night.view.report().exposure, s.sun.direction, s.ground.adaptation_cd_m2);
+        println!(
+            "{name}: place {:?} exposure {} sun {:?} adaptation {}",
+            s.place,
+            night.view.report().exposure,
+            s.sun.direction,
+            s.ground.adaptation_cd_m2
+        );
     };
     let below = Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -60.0 });
     shot(&mut night, "orion", NIGHT, 165.0, 35.0, 50.0, below);
@@ -247,5 +253,13 @@ fn dump_tmp() {
     shot(&mut night, "milky_way", summer, 200.0, 30.0, 80.0, below);
     shot(&mut night, "horizon", summer, 190.0, 5.0, 40.0, below);
     shot(&mut night, "zenith", summer, 190.0, 85.0, 80.0, below);
-    shot(&mut night, "moon", NIGHT, 165.0, 35.0, 50.0, Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: 40.0 }));
+    shot(
+        &mut night,
+        "moon",
+        NIGHT,
+        165.0,
+        35.0,
+        50.0,
+        Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: 40.0 }),
+    );
 }
