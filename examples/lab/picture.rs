@@ -3,7 +3,7 @@
 use image::RgbImage;
 use welkin::light::luminance;
 use welkin::plan::{Difference, difference};
-use welkin::{Error, Result, Status};
+use welkin::{Error, Result};
 
 /// A picture in linear Rec. 709, row by row from above.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,5 @@
 // The glow between the stars, on a ball of directions: airglow, zodiacal light, the Milky Way, and what the air does to them. The f64
 // twin is NightSky in src/stars/glow.rs.
-//!include "stars/air_mass.wgsl"
 
 struct GlowUniform {
     // Camera-relative east-north-up to clip.
@@ -47,6 +46,12 @@ fn glow_vertex(@location(0) direction: vec3f, @location(1) s10: vec2f) -> GlowVa
 // How much more of the thin glowing layer a line of sight crosses than one straight up (van Rhijn 1921).
 fn van_rhijn(sine_of_elevation: f32) -> f32 {
     return inverseSqrt(max(1.0 - glow.layer_ratio2 * (1.0 - sine_of_elevation * sine_of_elevation), 1e-3));
+}
+
+// Relative air mass (Young 1994, Applied Optics 33, 1108, eq. 5): without the powers of the points' law, from which it differs where
+// nearly nothing of the light above the air is left.
+fn air_mass(sine: f32) -> f32 {
+    return ((1.002432 * sine + 0.148386) * sine + 0.0096467) / (((sine + 0.149864) * sine + 0.0102963) * sine + 0.000303978);
 }
 
 @fragment

@@ -1,7 +1,6 @@
 // Stars and planets as points of light: the f64 twin is in src/stars/reference.rs, same names.
 //!include "common/depth.wgsl"
 //!include "common/host.wgsl"
-//!include "stars/air_mass.wgsl"
 
 struct StarUniform {
     depth: DepthUniform,
@@ -69,6 +68,12 @@ fn lifted(direction: vec3f) -> vec3f {
     let apparent = elevation + refraction(elevation);
     let up = vec3f(direction.xy * (cos(apparent) / max(level, 1e-6)), sin(apparent));
     return select(up, direction, level < 1e-4);
+}
+
+// Relative air mass at the sine of an apparent elevation (Kasten and Young 1989).
+fn air_mass(sine: f32) -> f32 {
+    let s = max(sine, 0.0);
+    return 1.0 / (s + 0.50572 * pow(asin(min(s, 1.0)) * 57.29578 + 6.07995, -1.6364));
 }
 
 struct StarVarying {

@@ -35,10 +35,10 @@
 //! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
 //!
 //! # Cost
-//! 24 bytes a point on the GPU: 218 448 for the catalogue and planets, uploaded once a year of simulated time; 144 bytes of planets
-//! and a block a frame. One draw of 4 corners an instance: only stars brighter than [`StarView::faintest_lux`], as they lie in the order
-//! of their light. Each lights at most 16 pixels. On the CPU a frame pays for [`Heavens::at`], some 900 sines and cosines, and one that
-//! shows the glow for [`NightSky::new`], which looks in 32 directions.
+//! 24 bytes a point on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads those in the picture that are brighter
+//! than [`StarView::faintest_lux`], some hundreds, and draws each as 4 corners that light at most 16 pixels. The glow is a ball of 2555
+//! corners, found anew after each six hours of simulated time, with an even sky's work a pixel. On the CPU a frame pays for
+//! [`Heavens::at`], some 900 sines and cosines, and for [`NightSky::new`], which looks in 32 directions. By day there is none of it.
 //!
 //! # Error
 //! `cargo test --lib stars -- --nocapture` prints these and fails where they are exceeded.

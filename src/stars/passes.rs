@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::{
     catalogue::Star,
     planets::BODIES,
@@ -35,8 +37,11 @@ struct Loaded {
     stars: Option<Arc<[Star]>>,
     /// Whole years since J2000.0 to which they are moved.
     year: f64,
-    /// Illuminance of each above the air, lux, the brightest first.
+    /// All of them, the brightest first, and the illuminance of each above the air, lux.
+    all: Vec<StarInstance>,
     lux: Vec<f32>,
+    /// Those that the next draw shows, behind the planets.
+    shown: Vec<StarInstance>,
     buffer: wgpu::Buffer,
 }
 
@@ -87,15 +92,17 @@ impl StarPass {
     ) -> Result<u32> {
         view.validate()?;
         self.load(device, settings, view.heavens.years.round())?;
-        let Some(loaded) = &self.loaded else { return Ok(0) };
-        let mut planets = view.heavens.planets.map(|p| StarInstance::of_planet(&p));
-        if !settings.planets {
-            planets.iter_mut().for_each(|p| p.lux = [0.0; 3]);
+        let Some(loaded) = &mut self.loaded else { return Ok(0) };
+        loaded.shown.clear();
+        if settings.planets {
+            loaded.shown.extend(view.heavens.planets.iter().map(StarInstance::of_planet));
         }
-        device.queue.write_buffer(&loaded.buffer, 0, bytemuck::bytes_of(&planets));
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&view.uniform()));
         let bright = loaded.lux.partition_point(|lux| f64::from(*lux) > view.faintest_lux);
-        let count = (BODIES.len() + bright) as u32;
+        let frustum = Frustum::of(view);
+        loaded.shown.extend(loaded.all[..bright].iter().filter(|star| frustum.may_show(star)));
+        device.queue.write_buffer(&loaded.buffer, 0, bytemuck::cast_slice(&loaded.shown));
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&view.uniform()));
+        let count = loaded.shown.len() as u32;
         let kind = (format, depth.is_some_and(|d| d.multisampled), depth.is_some());
         if !self.pipelines.iter().any(|(k, _)| *k == kind) {
             let made = pipeline(device, &self.layouts[usize::from(kind.1)], kind)?;
@@ -123,7 +130,7 @@ impl StarPass {
         self.block.size() + self.loaded.as_ref().map_or(0, |l| l.buffer.size())
     }
 
-    /// Fills the buffer, unless it holds these stars already: first the planets' places, then the stars, the brightest first.
+    /// Makes a list and a buffer for these stars, unless it holds them already: the brightest first.
     fn load(&mut self, device: &Device, settings: &StarSettings, year: f64) -> Result<()> {
         let same = |a: &Option<Arc<[Star]>>, b: &Option<Arc<[Star]>>| match (a, b) {
             (None, None) => true,
@@ -137,17 +144,17 @@ impl StarPass {
         let brightness = |i: &StarInstance| crate::light::luminance(&i.lux.map(f64::from)) as f32;
         let mut stars: Vec<_> = settings.stars().iter().map(|s| StarInstance::of_star(s, year)).collect();
         stars.sort_by(|a, b| brightness(b).total_cmp(&brightness(a)));
-        let first = size_of::<StarInstance>() * BODIES.len();
+        let most = BODIES.len() + stars.len();
         let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("stars"),
-            size: (first + size_of::<StarInstance>() * stars.len()) as u64,
+            size: (size_of::<StarInstance>() * most) as u64,
             usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         device.check_made()?;
-        device.queue.write_buffer(&buffer, first as u64, bytemuck::cast_slice(&stars));
         let lux = stars.iter().map(brightness).collect();
-        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, lux, buffer });
+        let shown = Vec::with_capacity(most);
+        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, all: stars, lux, shown, buffer });
         Ok(())
     }
 
@@ -166,6 +173,38 @@ impl StarPass {
             ],
         });
         self.bound = Some((depth.map(|d| d.view.clone()), group));
+    }
+}
+
+/// The picture's sides in J2000.0, wide enough for what aberration and refraction move and for a footprint.
+struct Frustum {
+    /// Rows x, y and w of what leads to clip space.
+    rows: [Vec3; 3],
+    /// By how much x and y may lie beyond w.
+    margins: [f32; 2],
+    /// The same as a share of w.
+    footprint: [f32; 2],
+}
+
+/// Farthest that a star is seen from its place in the catalogue, rad: refraction lifts by 0.6 degrees, denser air by more.
+const MOST_MOVED: f64 = 0.012;
+
+impl Frustum {
+    fn of(view: &StarView<'_>) -> Self {
+        let rows = [0, 1, 3].map(|i| view.heavens.to_world.transpose() * view.clip.row(i).truncate());
+        let moved = MOST_MOVED * view.air_density.max(1.0);
+        let margin = |i: usize| (moved * (rows[i].length() + rows[2].length())) as f32;
+        Self {
+            rows: rows.map(|row| row.as_vec3()),
+            margins: [margin(0), margin(1)],
+            footprint: view.size.map(|n| 4.0 / n as f32),
+        }
+    }
+
+    fn may_show(&self, star: &StarInstance) -> bool {
+        let [x, y, w] = self.rows.map(|row| row.dot(Vec3::from_array(star.direction)));
+        let inside = |v: f32, i: usize| v.abs() - w <= self.margins[i] + self.footprint[i] * w.abs();
+        inside(x, 0) && inside(y, 1)
     }
 }
 

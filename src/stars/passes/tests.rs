@@ -6,7 +6,7 @@ use crate::{
     gpu::{DeviceOptions, readback, shader::assert_layout},
     light::luminance,
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, Place, ViewRays},
-    stars::{Heavens, reference},
+    stars::{Heavens, catalogue, reference},
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -242,10 +242,16 @@ fn faint_stars_planets_and_the_sky_below_cost_nothing() {
         night.pass.prepare(&device, &night.settings, view, FORMAT, None).unwrap() as usize
     };
     let bright = sprinkled().iter().filter(|s| s.magnitude < 2.5).count();
-    assert_eq!([count(&mut night, &all), count(&mut night, &some)], [66, 6 + bright]);
+    assert_eq!([count(&mut night, &all), count(&mut night, &some)], [60, bright]);
     assert_eq!(night.pass.bytes(), (66 * 24 + size_of::<StarUniform>()) as u64);
     let mut whole = StarPass::new(&device);
-    assert_eq!(whole.prepare(&device, &StarSettings::default(), &all, FORMAT, None).unwrap(), 9102);
+    // Of the catalogue only what is in the picture, and a rim of it.
+    let shown = whole.prepare(&device, &StarSettings::default(), &all, FORMAT, None).unwrap() as usize;
+    let lux = |s: &Star| crate::stars::light::star_lux(s.magnitude, s.temperature_k);
+    let direction = |s: &Star| s.direction_at(heavens.years);
+    let sky = StarView { horizon_deg: -90.0, ..all };
+    let seen = catalogue().iter().filter(|s| reference::point(&sky, direction(s), lux(s)).is_some()).count();
+    assert!(shown >= seen && shown < seen + seen / 8 + 6, "{shown} of {seen}");
     assert_eq!(whole.bytes(), 218_448 + size_of::<StarUniform>() as u64);
     // What falls below the limit fades rather than leaps.
     let (picture, _) = expected(&some, night.settings.stars());
