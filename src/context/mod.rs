@@ -1,6 +1,6 @@
 //! A context: the weather, the time and the place that all views of a simulator share, and what effects hold for all of them.
 //!
-//! It leads the world ([`crate::world`]) and the list of effects ([`crate::effects`]) through time, saves and loads them, and names no
+//! It leads the world (`src/world`) and the list of effects (`src/effects.rs`) through time, saves and loads them, and names no
 //! effect itself: what a host asks by their names is in the front room.
 
 mod state;

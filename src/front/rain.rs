@@ -13,7 +13,7 @@ impl Context {
     /// Regions with rain of their own, in place of those before.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field; nothing changes then.
     pub fn set_rain_areas(&mut self, areas: &[RainArea]) -> Result<()> {
         self.world.set_regions(areas)?;
         self.follow()

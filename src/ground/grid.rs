@@ -14,7 +14,7 @@ const ABOVE_M: f64 = 3.0;
 
 /// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the square
 /// cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the ground is the
-/// world's own ([`GroundModel`](crate::context::GroundModel)).
+/// world's own ([`GroundModel`](crate::ground::GroundModel)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundGrid {
     /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.

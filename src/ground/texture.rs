@@ -14,7 +14,7 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_groun
 /// Their GLSL text, for 3.30 and ES 3.00.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");
 
-/// Water on the host's terrain for its own shaders: as [`GroundCell`](crate::context::GroundCell), one texel a node.
+/// Water on the host's terrain for its own shaders: as [`GroundCell`](crate::ground::GroundCell), one texel a node.
 #[derive(Clone, Debug)]
 pub struct GroundTexture {
     /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water is negative

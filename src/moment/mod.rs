@@ -165,7 +165,7 @@ pub struct Scene {
     pub world_to_enu: DMat3,
     /// Place on the map, m east and north of the world's origin.
     pub map_m: [f64; 2],
-    /// How far the wind has carried the air, m east and north ([`Context::wind_displacement`]); 0 where no patch of fog or curtain of
+    /// How far the wind has carried the air, m east and north (`Context::wind_displacement`); 0 where no patch of fog or curtain of
     /// rain shows it.
     pub drift_m: [f64; 2],
     /// How far the curtains of the weather's rain have fallen, m, in their period.

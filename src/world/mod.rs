@@ -100,6 +100,9 @@ pub(crate) struct Settings {
 /// What an effect does to the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
+/// Light of the moonless sky on level ground at a time and place, lux, under air of given optical depths straight up.
+pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>;
+
 /// What the effects do to every world.
 #[derive(Clone, Copy)]
 pub(crate) struct Couplings {
@@ -109,7 +112,7 @@ pub(crate) struct Couplings {
     pub own_rain: fn(&Conditions) -> OwnRain,
     /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths straight up are
     /// given.
-    pub night_lux: fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>,
+    pub night_lux: NightLux,
 }
 
 /// Place, weather, time and surroundings.
