@@ -180,8 +180,8 @@ pub extern "C" fn wk_last_error_message() -> *const c_char {
 }
 
 /// The parameter or field that the calling thread's last failed call was about, as a path of names in this header that
-/// begins at the function's parameter or at a struct's name: "frame.projection", "shelters[2].half_size_m",
-/// "wk_sky_settings.suns", "time_s". A host's editor can mark a control by it. The last failure with
+/// begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
+/// `wk_sky_settings.suns`, `time_s`. A host's editor can mark a control by it. The last failure with
 /// WK_ERROR_INVALID_ARGUMENT always has one; empty where a failure is about no field, and before the first failure.
 /// Never NULL; valid until the next failing call of this thread.
 #[unsafe(no_mangle)]

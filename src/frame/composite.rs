@@ -52,7 +52,7 @@ impl Variant {
         for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
             all.push((name, yes(given)));
         }
-        all.push(("OPEN_SKY", yes(self.pixels == Pixels::OpenSky)));
+        all.push(("OPEN_SKY", yes(self.pixels == Pixels::Open)));
         all.extend(self.constants.between.all());
         all.extend(self.constants.composed.all());
         all

@@ -16,9 +16,9 @@ pub(super) enum Pixels {
     /// All of them.
     All,
     /// Those of the sky from the level up, beside the discs of sun and moon.
-    OpenSky,
-    /// The sky's others.
-    Sky,
+    Open,
+    /// The far depth's others.
+    Far,
     /// Those on which the host drew.
     Drawn,
 }
@@ -28,8 +28,8 @@ impl Pixels {
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All => return None,
-            Self::OpenSky => 0.0,
-            Self::Sky => 0.5,
+            Self::Open => 0.0,
+            Self::Far => 0.5,
             Self::Drawn => 1.0,
         };
         Some((depth, state(wgpu::CompareFunction::Equal, false)))
@@ -64,7 +64,7 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; 3] {
     if all.samples > 1 || between.value("SKY_MARCH") > 0.0 || !(behind || has_depth) {
         return whole;
     }
-    let sky = |pixels| Variant {
+    let far = |pixels| Variant {
         stages: stages.without(Stages::SURFACE),
         images: [false, all.images[1], false, false],
         pixels,
@@ -72,8 +72,8 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; 3] {
     };
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     [
-        behind.then(|| sky(Pixels::OpenSky)),
-        (behind || fogged || everywhere).then(|| sky(Pixels::Sky)),
+        behind.then(|| far(Pixels::Open)),
+        (behind || fogged || everywhere).then(|| far(Pixels::Far)),
         (has_depth && (fogged || aired || everywhere || stages.has(Stages::SURFACE))).then_some(drawn),
     ]
 }
@@ -149,9 +149,9 @@ mod tests {
     use super::*;
     use crate::stage::{Pipeline, Sampling};
 
-    fn variant(stages: Stages, has_depth: bool, fog: f64) -> Variant {
+    fn variant(stages: Stages, has_depth: bool, layer: f64) -> Variant {
         let mut constants = Pipeline::NONE;
-        constants.between.push(("FOG", fog));
+        constants.between.push(("FOG", layer));
         constants.between.push(("AIR", 1.0));
         Variant {
             stages,
@@ -170,20 +170,20 @@ mod tests {
 
     #[test]
     fn a_draw_is_for_the_pixels_that_its_stages_change() {
-        let (sky, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
-        use Pixels::{All, Drawn, OpenSky, Sky};
-        for (stages, has_depth, fog, expected) in [
-            (sky.with(air), true, 0.0, &[OpenSky, Sky, Drawn][..]),
-            (sky, true, 1.0, &[OpenSky, Sky]),
-            (sky, false, 0.0, &[OpenSky, Sky]),
+        let (behind, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
+        use Pixels::{All, Drawn, Far, Open};
+        for (stages, has_depth, layer, expected) in [
+            (behind.with(air), true, 0.0, &[Open, Far, Drawn][..]),
+            (behind, true, 1.0, &[Open, Far]),
+            (behind, false, 0.0, &[Open, Far]),
             (air, true, 0.0, &[Drawn]),
-            (air, true, 1.0, &[Sky, Drawn]),
+            (air, true, 1.0, &[Far, Drawn]),
             (air, false, 1.0, &[All]),
             (water, true, 1.0, &[Drawn]),
-            (Stages::TONE, true, 0.0, &[Sky, Drawn]),
+            (Stages::TONE, true, 0.0, &[Far, Drawn]),
         ] {
-            let all = variant(stages, has_depth, fog);
-            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, fog {fog}");
+            let all = variant(stages, has_depth, layer);
+            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, layer {layer}");
             assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
         }
     }
@@ -192,7 +192,7 @@ mod tests {
     fn depths_of_kinds_are_those_that_the_shader_writes() {
         let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
         for (name, pixels) in
-            [("KIND_OPEN_SKY", Pixels::OpenSky), ("KIND_SKY", Pixels::Sky), ("KIND_DRAWN", Pixels::Drawn)]
+            [("KIND_OPEN_SKY", Pixels::Open), ("KIND_SKY", Pixels::Far), ("KIND_DRAWN", Pixels::Drawn)]
         {
             let depth = pixels.test().unwrap().0;
             assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");

@@ -10,7 +10,7 @@ pub struct Wish {
     /// ([`Part::importance`]).
     pub importance: Option<f64>,
     /// Draw it at this rung, whatever the tolerance and the time, so that all channels of a simulator draw alike; what of these that
-    /// does not keep is still said ([`Plan::gave_way`]). Default `None`: plan.
+    /// does not keep is still said ([`Plan::gave_way`](super::Plan::gave_way)). Default `None`: plan.
     pub rung: Option<usize>,
 }
 

@@ -30,7 +30,7 @@ pub enum Worth {
     /// The gauge composes the picture without it, in this channel; parts that share one are taken to be worth as much together as
     /// each.
     Composed(usize),
-    /// A closed form says what each rung changes ([`super::Unseen`]); to the last rung the gauge adds what then stands in the part's
+    /// A closed form says what each rung changes (`plan::Unseen`); to the last rung the gauge adds what then stands in the part's
     /// place, in this channel.
     Unseen(usize),
 }

@@ -252,8 +252,8 @@ impl Planet {
     /// is the Earth's at the file's wavelengths.
     ///
     /// # Errors
-    /// [`Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the wrong
-    /// kind; [`Status::InvalidArgument`] for a value that is not finite or out of range. The message names the key, its
+    /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the wrong
+    /// kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names the key, its
     /// unit and the accepted range.
     pub fn from_toml(text: &str) -> Result<Self> {
         file::parse(text)
@@ -278,7 +278,7 @@ impl Planet {
     /// Checks every field against its range and the fields against each other.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`]; the message names the key, its unit and the accepted range.
+    /// [`crate::Status::InvalidArgument`]; the message names the key, its unit and the accepted range.
     pub fn check(&self) -> Result<()> {
         FIELDS.iter().try_for_each(|f| f.check(self))?;
         if self.top_radius_m <= self.bottom_radius_m {
