@@ -117,6 +117,8 @@ struct RustHost {
     copy: wgpu::Texture,
     uniform: wgpu::Buffer,
     target: wgpu::TextureView,
+    /// The depth that a software driver's composition tests against.
+    kinds: Option<wgpu::TextureView>,
     /// A shader that does nothing, to what, and how often.
     idle: wgpu::ComputePipeline,
     held: wgpu::BindGroup,
@@ -180,6 +182,10 @@ impl RustHost {
         let color = texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1);
         Self {
             target: color.create_view(&Default::default()),
+            kinds: device
+                .caps()
+                .software
+                .then(|| texture(&device, wgpu::TextureFormat::Depth32Float).create_view(&Default::default())),
             color,
             copy: texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1),
             depth: texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1),
@@ -220,6 +226,10 @@ impl RustHost {
                     resolve_target: None,
                     ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
                 })],
+                depth_stencil_attachment: self.kinds.as_ref().filter(|_| label == "composite").map(|view| {
+                    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
+                    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
+                }),
                 ..Default::default()
             });
             pass.set_viewport(0.0, 0.0, 64.0, 36.0, 0.0, 1.0);
