@@ -10,8 +10,6 @@ override SURFACE: bool = true;
 override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
-// Only pixels of open sky are drawn (sky/disc.wgsl).
-override OPEN_SKY: bool = false;
 
 const SCENE_LINEAR: u32 = 0u;
 const DISPLAY_SRGB: u32 = 2u;
@@ -35,10 +33,6 @@ fn night_light() -> vec3f {
 fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
     if (!CLEAR_SKY || DECK_CLOSED || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
-    }
-    if OPEN_SKY && CLEAR_SKY && !DECK_CLOSED {
-        let clear = color_of(sky_radiance_above(d)) * drawn.z + frame.night_floor;
-        return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
     }
     let spectrum = sky_radiance_on(path, d);
     let night = night_light();

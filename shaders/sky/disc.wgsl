@@ -52,18 +52,3 @@ fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     }
     return out * sky_transmittance_on(path);
 }
-
-// Most by which standard air lifts what is seen, rad, and the rounding of directions.
-const MOST_LIFT: f32 = 0.0165;
-
-// Whether a direction is level or above, where no disc may stand.
-fn is_open_sky(dir: vec3f, pixel_angle: f32) -> bool {
-    var open = dir.z >= 0.0;
-    for (var i = 0u; i < sky_lamps(); i++) {
-        let lamp = sky_view.lamps[i];
-        let off = dir - lamp.toward;
-        let near = lamp.angular_radius + pixel_angle + MOST_LIFT;
-        open &= dot(off, off) > near * near;
-    }
-    return open;
-}

@@ -52,7 +52,6 @@ impl Variant {
         for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
             all.push((name, yes(given)));
         }
-        all.push(("OPEN_SKY", yes(self.pixels == Pixels::Open)));
         all.extend(self.constants.between.all());
         all.extend(self.constants.composed.all());
         all
@@ -71,7 +70,7 @@ const MOST_KINDS: usize = 8;
 struct Kinds {
     format: wgpu::TextureFormat,
     sampling: Sampling,
-    constants: [Constant; 4],
+    constants: [Constant; 2],
 }
 
 /// The composition of a device, for all its views. Any thread.
@@ -217,9 +216,7 @@ impl Composite {
     pub fn kinds(&mut self, device: &Arc<Device>, variant: &Variant) -> Result<&wgpu::RenderPipeline> {
         let layouts = [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around];
         let between = &variant.constants.between;
-        let [depth, lamps] = ["DEPTH_KINDS", "SKY_LAMPS"].map(|name| (name, between.value(name)));
-        let is_open = ("OPEN_SKY", yes(variant.stages.has(Stages::BACKGROUND)));
-        let constants = [depth, lamps, is_open, ("HAS_DEPTH", yes(variant.images[0]))];
+        let constants = [("DEPTH_KINDS", between.value("DEPTH_KINDS")), ("HAS_DEPTH", yes(variant.images[0]))];
         let kinds = Kinds { format: variant.format, sampling: variant.sampling, constants };
         self.kinds.get_or_make(
             |made| *made == kinds,

@@ -15,9 +15,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(super) enum Pixels {
     /// All of them.
     All,
-    /// Those of the sky from the level up, beside the discs of sun and moon.
-    Open,
-    /// The far depth's others.
+    /// Those at the far depth: sky.
     Far,
     /// Those on which the host drew.
     Drawn,
@@ -28,8 +26,7 @@ impl Pixels {
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All => return None,
-            Self::Open => 0.0,
-            Self::Far => 0.5,
+            Self::Far => 0.0,
             Self::Drawn => 1.0,
         };
         Some((depth, state(wgpu::CompareFunction::Equal, false)))
@@ -53,28 +50,27 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
 
 /// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
 /// where there is no more than one kind.
-pub(super) fn draws(all: &Variant) -> [Option<Variant>; 3] {
+pub(super) fn draws(all: &Variant) -> [Option<Variant>; 2] {
     let (stages, between) = (all.stages, &all.constants.between);
     let has_depth = all.images[0];
     let fogged = stages.has(Stages::MEDIUM) && between.value("FOG") > 0.0;
     let aired = stages.has(Stages::MEDIUM) && between.value("AIR") > 0.0;
     let everywhere = stages.has(Stages::PARTICLES.with(Stages::TONE));
     let behind = stages.has(Stages::BACKGROUND);
-    let whole = [Some(*all), None, None];
-    if all.samples > 1 || between.value("SKY_MARCH") > 0.0 || !(behind || has_depth) {
+    let whole = [Some(*all), None];
+    if all.samples > 1 || between.value("SKY_MARCH") > 0.0 || !has_depth {
         return whole;
     }
-    let far = |pixels| Variant {
+    let far = Variant {
         stages: stages.without(Stages::SURFACE),
         images: [false, all.images[1], false, false],
-        pixels,
+        pixels: Pixels::Far,
         ..*all
     };
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     [
-        behind.then(|| far(Pixels::Open)),
-        (behind || fogged || everywhere).then(|| far(Pixels::Far)),
-        (has_depth && (fogged || aired || everywhere || stages.has(Stages::SURFACE))).then_some(drawn),
+        (behind || fogged || everywhere).then_some(far),
+        (fogged || aired || everywhere || stages.has(Stages::SURFACE)).then_some(drawn),
     ]
 }
 
@@ -171,11 +167,11 @@ mod tests {
     #[test]
     fn a_draw_is_for_the_pixels_that_its_stages_change() {
         let (behind, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
-        use Pixels::{All, Drawn, Far, Open};
+        use Pixels::{All, Drawn, Far};
         for (stages, has_depth, layer, expected) in [
-            (behind.with(air), true, 0.0, &[Open, Far, Drawn][..]),
-            (behind, true, 1.0, &[Open, Far]),
-            (behind, false, 0.0, &[Open, Far]),
+            (behind.with(air), true, 0.0, &[Far, Drawn][..]),
+            (behind, true, 1.0, &[Far]),
+            (behind, false, 0.0, &[All]),
             (air, true, 0.0, &[Drawn]),
             (air, true, 1.0, &[Far, Drawn]),
             (air, false, 1.0, &[All]),
@@ -191,9 +187,7 @@ mod tests {
     #[test]
     fn depths_of_kinds_are_those_that_the_shader_writes() {
         let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
-        for (name, pixels) in
-            [("KIND_OPEN_SKY", Pixels::Open), ("KIND_SKY", Pixels::Far), ("KIND_DRAWN", Pixels::Drawn)]
-        {
+        for (name, pixels) in [("KIND_FAR", Pixels::Far), ("KIND_DRAWN", Pixels::Drawn)] {
             let depth = pixels.test().unwrap().0;
             assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");
         }
