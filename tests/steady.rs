@@ -182,10 +182,9 @@ impl RustHost {
         let color = texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1);
         Self {
             target: color.create_view(&Default::default()),
-            kinds: device
-                .caps()
-                .software
-                .then(|| texture(&device, wgpu::TextureFormat::Depth32Float).create_view(&Default::default())),
+            kinds: device.caps().software.then(|| {
+                texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1).create_view(&Default::default())
+            }),
             color,
             copy: texture(&device, (64, 36), wgpu::TextureFormat::Rgba16Float, 1),
             depth: texture(&device, (64, 36), wgpu::TextureFormat::Depth32Float, 1),
