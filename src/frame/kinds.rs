@@ -1,6 +1,6 @@
 //! Kinds of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
 //!
-//! Such a driver takes both ways of every branch: a pixel of the open sky pays for the air before things, and a thing for the sky
+//! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, and a thing for the sky
 //! behind it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
 //! before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
 
