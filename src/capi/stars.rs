@@ -16,7 +16,7 @@ use super::{
     status::*,
 };
 use crate::{
-    error::{Result, Status, check_range},
+    error::{Error, Result, Status, check_range},
     stars::{Star, StarSettings, settings::MAX_STARS},
 };
 
@@ -80,10 +80,13 @@ unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
         input::slice("stars.stars", c.stars.cast(), Named("stars.star_count", c.star_count as usize), MAX_STARS)?
     };
     let star = |(i, [right_ascension, declination, magnitude, temperature]): (usize, &[f64; 4])| {
-        check_range(&format!("stars.stars[{i}].right_ascension"), *right_ascension, -1e6, 1e6, "deg")?;
-        check_range(&format!("stars.stars[{i}].declination"), *declination, -90.0, 90.0, "deg")?;
+        // A host finds the number by its place in the list.
+        let number = |k: usize| format!("stars.stars[{}]", 4 * i + k);
+        check_range(&number(0), *right_ascension, -1e6, 1e6, "deg")?;
+        check_range(&number(1), *declination, -90.0, 90.0, "deg")?;
         let star = Star::new(*right_ascension, *declination, *magnitude, *temperature);
-        star.validate(&format!("stars.stars[{i}]"))?;
+        let of_list = |e: Error| e.renamed("star.magnitude", &number(2)).renamed("star.temperature_k", &number(3));
+        star.validate("star").map_err(of_list)?;
         Ok(star)
     };
     let stars = list.iter().enumerate().map(star).collect::<Result<_>>()?;

@@ -240,9 +240,9 @@ fn stars_are_refused_by_name() {
         assert_eq!(wk_context_set_stars(world.context, &plain), WK_OK, "{}", message());
         let of = |list: &[f64; 4]| wk_stars { stars: list.as_ptr(), star_count: 1, ..plain };
         for (stars, words) in [
-            (of(&lists[0]), "stars.stars[0].declination must be in [-90, 90]"),
-            (of(&lists[1]), "stars.stars[0].magnitude must be in [-30, 30]"),
-            (of(&lists[2]), "stars.stars[0].temperature_k must be in ["),
+            (of(&lists[0]), "stars.stars[1] must be in [-90, 90]"),
+            (of(&lists[1]), "stars.stars[2] must be in [-30, 30]"),
+            (of(&lists[2]), "stars.stars[3] must be in ["),
             (wk_stars { star_count: 1, ..plain }, "stars.stars must not be NULL"),
             (wk_stars { star_count: 2_000_000, ..of(&lists[0]) }, "stars.star_count must be at most 1000000"),
             (wk_stars { airglow: 11.0, ..plain }, "stars.airglow must be in [0, 10]"),
