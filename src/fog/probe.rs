@@ -99,12 +99,7 @@ fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) ->
         texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST);
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH * 4), rows_per_image: None };
     device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(depths), rows, size);
-    let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("fog probe"),
-        size: size_of::<ProbeUniform>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
+    let buffer = crate::gpu::bind::block(gpu, "fog probe", size_of::<ProbeUniform>());
     device.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(uniform));
     let layout = layout(gpu);
     let pipeline = pass::fullscreen(

@@ -20,12 +20,7 @@ pub(crate) struct FogView {
 
 impl FogView {
     pub fn new(device: &Device) -> Self {
-        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("fog"),
-            size: size_of::<FogUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = crate::gpu::bind::block(&device.device, "fog", size_of::<FogUniform>());
         Self { buffer, model: None, variant: None, software: device.caps().software }
     }
 

@@ -53,12 +53,7 @@ impl View {
     pub fn new(context: &Context) -> Result<Self> {
         let device = context.device().clone();
         let _entered = device.enter()?;
-        let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: size_of::<FrameUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniform = crate::gpu::bind::block(&device.device, "frame", size_of::<FrameUniform>());
         let composite = context.shared().get(|| SharedComposite::new(&device))?;
         let effects = Effects::new(&device, context.shared(), &context.held)?;
         let planner = Planner::new(PARTS, effects.rebuild_work());

@@ -71,12 +71,7 @@ fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, he
 }
 
 pub(super) fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
-    device.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    crate::gpu::bind::block(&device.device, label, size as usize)
 }
 
 fn view(texture: &wgpu::Texture) -> wgpu::TextureView {

@@ -40,12 +40,7 @@ pub(crate) struct GroundView {
 
 impl GroundView {
     pub fn new(device: &Device) -> Self {
-        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("ground"),
-            size: size_of::<GroundUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
         Self { buffer, block: None, has_terrain: false, views: [None, None] }
     }
 
@@ -104,8 +99,8 @@ fn glaze(now: &Moment<'_>) -> f64 {
     if falls { now.here.surface.ice } else { 0.0 }
 }
 
-/// From the axes of the host's normals to east, north, up, and how its numbers are read: in normalised formats they are half the
-/// normal and a half.
+/// Rotation from the axes of the host's normals to east, north, up; and the scale and offset that decode its numbers: normalised
+/// formats hold (n + 1) / 2.
 fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
     let from_eye = now.scene.world_to_enu * frame.camera.rotation().transpose();
     let turned = if frame.flags.has(FrameFlags::NORMALS_IN_EYE_SPACE) { from_eye } else { now.scene.world_to_enu };

@@ -161,12 +161,7 @@ impl Columns<'_> {
 impl AreaPass {
     pub fn new(device: &Device) -> Self {
         Self {
-            blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("rain areas"),
-                size: size_of::<Blocks>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
+            blocks: crate::gpu::bind::block(&device.device, "rain areas", size_of::<Blocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             pipelines: Recent::new(),

@@ -31,12 +31,7 @@ pub(super) struct ConePass {
 
 impl ConePass {
     pub fn new(device: &Device) -> Self {
-        let block = device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("cones"),
-            size: size_of::<ConeUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let block = crate::gpu::bind::block(&device.device, "cones", size_of::<ConeUniform>());
         let layout = layout(&device.device);
         let (streaks, bytes) = upload(device);
         let samplers = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge].map(|mode| {

@@ -95,12 +95,7 @@ pub(super) const STARTS: [usize; 5] = {
 impl RainLayer {
     pub fn new(device: &Device) -> Self {
         Self {
-            blocks: device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("rain"),
-                size: STARTS[4] as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
+            blocks: crate::gpu::bind::block(&device.device, "rain", STARTS[4]),
             staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             around: surroundings::layout(&device.device),

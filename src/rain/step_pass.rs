@@ -67,12 +67,7 @@ fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
 impl StepPass {
     pub fn new(device: &Device) -> Self {
         Self {
-            block: device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("step"),
-                size: (EYES + 16 * SHELLS) as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
+            block: crate::gpu::bind::block(&device.device, "step", EYES + 16 * SHELLS),
             states: None,
             left: None,
             grid: None,

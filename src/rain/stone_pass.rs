@@ -44,12 +44,7 @@ fn key((multi, any, maps): Depth) -> usize {
 impl StonePass {
     pub fn new(device: &Device) -> Self {
         let device = &device.device;
-        let block = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("stones"),
-            size: size_of::<StoneUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let block = crate::gpu::bind::block(device, "stones", size_of::<StoneUniform>());
         let slots = [(0, Slot::Uniform(size_of::<StoneUniform>()))];
         let layout = bind::layout(device, "stones", wgpu::ShaderStages::VERTEX, &slots);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {

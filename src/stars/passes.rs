@@ -35,7 +35,7 @@ type Kind = (wgpu::TextureFormat, bool, bool);
 struct Loaded {
     /// The host's own; none for the catalogue's.
     stars: Option<Arc<[Star]>>,
-    /// Whole years since J2000.0 to which they are moved.
+    /// Whole years since J2000.0 for which proper motion is applied.
     year: f64,
     /// All of them, the brightest first, and the illuminance of each above the air, lux.
     all: Vec<StarInstance>,
@@ -62,12 +62,7 @@ impl StarPass {
     /// Makes what does not depend on the stars; the buffer comes with the first [`StarPass::prepare`].
     pub fn new(device: &Device) -> Self {
         let device = &device.device;
-        let block = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("stars"),
-            size: size_of::<StarUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let block = crate::gpu::bind::block(device, "stars", size_of::<StarUniform>());
         let layouts = [false, true].map(|multi| {
             let slots = [(0, Slot::Uniform(size_of::<StarUniform>())), (1, Slot::texels(multi))];
             bind::layout(device, "stars", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)

@@ -97,12 +97,7 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 impl Around {
     pub fn new(device: &wgpu::Device) -> Self {
         let none = bind::nothing(device, wgpu::TextureFormat::R8Uint);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("around"),
-            size: STARTS[3] as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let buffer = crate::gpu::bind::block(device, "around", STARTS[3]);
         let layout = layout(device);
         let bound = (None, group(device, &layout, &buffer, &none));
         Self { layout, buffer, staged: vec![0; STARTS[3]], told: false, sheltered: false, none, bound }

@@ -1,4 +1,4 @@
-//! The shape of an effect that has a state, or that follows what is set.
+//! The interface of an effect that a context keeps: one with a state, or with settings that all views share.
 
 use std::time::Instant;
 

@@ -65,7 +65,7 @@ impl GivenDirection {
     }
 }
 
-/// What the host has set of the sky between the stars, as far as it lights the ground.
+/// The host's settings of the night sky that decide how much it lights the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NightSettings {
     /// Strength of the airglow, 1 near the sun's least activity.
