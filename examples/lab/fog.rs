@@ -146,7 +146,7 @@ impl Bench {
         };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layouts = [
-            make(&[entry(0, uniform), entry(1, texture(false)), entry(2, texture(false))]),
+            make(&[entry(0, uniform), entry(4, uniform), entry(1, texture(false)), entry(2, texture(false))]),
             make(&[entry(0, texture(true)), entry(1, texture(true)), entry(2, sampler)]),
         ];
         let linear = gpu.create_sampler(&wgpu::SamplerDescriptor {
@@ -222,8 +222,8 @@ impl Bench {
         };
         let gpu = &self.device.device;
         let model = model(scene, &method.law(&scene.layer))?;
-        let mut bytes = bytemuck::bytes_of(&host.rays.uniform()).to_vec();
-        bytes.extend_from_slice(bytemuck::bytes_of(&model.uniform()));
+        let mut bytes = bytemuck::bytes_of(&model.uniform()).to_vec();
+        bytes.extend_from_slice(bytemuck::bytes_of(&host.rays.uniform()));
         let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
             label: Some("lab fog"),
             size: bytes.len() as u64,
@@ -244,10 +244,10 @@ impl Bench {
         let bound = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             gpu.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
         };
-        let first = wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() };
+        let [first, own] = [0, 4].map(|binding| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
         let sampler = wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) };
         let groups = [
-            bound(&self.layouts[0], &[first, view(1, &colour), view(2, &depth)]),
+            bound(&self.layouts[0], &[first, own, view(1, &colour), view(2, &depth)]),
             bound(&self.layouts[1], &[view(0, &atlases[0]), view(1, &atlases[1]), sampler]),
         ];
         let kinds = ("DEPTH_KINDS", f64::from(host.rays.depth_kinds()));

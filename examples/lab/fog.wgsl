@@ -1,5 +1,6 @@
 // Fog put into a picture: at every pixel, or by way of cells over (picture, distance).
-struct Both { depth: DepthUniform, fog: FogUniform }
+// The fog comes first, as its own binding has it.
+struct Both { fog: FogUniform, depth: DepthUniform }
 @group(0) @binding(0) var<uniform> u: Both;
 @group(0) @binding(1) var colour: texture_2d<f32>;
 @group(0) @binding(2) var depth: texture_2d<f32>;

@@ -7,6 +7,9 @@ const TONE_LINEAR: u32 = 0u;
 const TONE_EXPONENTIAL: u32 = 1u;
 const TONE_FILMIC: u32 = 2u;
 
+// Curves that a pipeline can draw, one bit each.
+override CURVES: u32 = 7u;
+
 // 1 - exp(-x) a channel (O'Neil 2005, eq. 4.1 of Elek 2008).
 fn tone_exponential(x: Display) -> Display {
     return 1.0 - exp(-x);
@@ -21,12 +24,19 @@ fn tone_filmic(x: Display) -> Display {
     return hable(min(x, vec3f(1e4)) * 2.0) / hable(vec3f(11.2));
 }
 
+fn is_curve(curve: u32, asked: u32) -> bool {
+    let bit = 1u << asked;
+    return CURVES == bit || ((CURVES & bit) != 0u && curve == asked);
+}
+
 fn tone_curve(curve: u32, x: Display) -> Display {
-    switch curve {
-        case TONE_EXPONENTIAL: { return tone_exponential(x); }
-        case TONE_FILMIC: { return tone_filmic(x); }
-        default: { return x; }
+    if is_curve(curve, TONE_EXPONENTIAL) {
+        return tone_exponential(x);
     }
+    if is_curve(curve, TONE_FILMIC) {
+        return tone_filmic(x);
+    }
+    return x;
 }
 
 // IEC 61966-2-1.

@@ -349,10 +349,10 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog 
     let path = layer_path(u, h0, mu, t);
     var depth = path.depth;
     if FOG_PATCHES && u.patch_amount > 0.0 {
-        depth *= patch_mean(u, origin, direction, path.first, path.last);
+        depth *= patch_mean(origin, direction, path.first, path.last);
     }
     if FOG_CURTAINS && u.curtain_amount > 0.0 {
-        let curtains = curtain_mean(u, origin, direction, path.first, path.last);
+        let curtains = curtain_mean(origin, direction, path.first, path.last);
         depth = max(depth * (1.0 + curtains.x), 0.0) + 0.5 * depth * depth * curtains.y;
     }
     let ends = vec2f(layer_depth_above(u, h0), layer_depth_above(u, path.end_altitude));

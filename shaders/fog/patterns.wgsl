@@ -1,5 +1,6 @@
-// Patches of fog and curtains of rain: the f64 twin and the derivation are in src/fog/patterns.rs.
-//!include "fog/uniform.wgsl"
+// Patches of fog and curtains of rain, of the bound `fog`: an index into a copy of it would copy all of it. The f64 twin and the
+// derivation are in src/fog/patterns.rs.
+//!include "fog/binding.wgsl"
 
 // Half of a path on which a wave of the pattern fades to a half, in its length / 2 pi.
 const PATCH_ROW: f32 = 8.0;
@@ -17,32 +18,27 @@ fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f3
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
 
-// Written out: an index that the compiler does not know would copy the whole uniform.
-fn patch_mean(u: FogUniform, origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
+// Both sums are loops whose ends no compiler knows: written out, their sines take a software driver longer to compile than all the
+// rest of a pixel.
+fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);
-    let sum = wave_mean(u.patch_waves[0], origin, direction, m, h)
-        + wave_mean(u.patch_waves[1], origin, direction, m, h)
-        + wave_mean(u.patch_waves[2], origin, direction, m, h)
-        + wave_mean(u.patch_waves[3], origin, direction, m, h)
-        + wave_mean(u.patch_waves[4], origin, direction, m, h)
-        + wave_mean(u.patch_waves[5], origin, direction, m, h);
-    return max(1.0 + u.patch_amount * 0.5 * sum.x, 0.0);
+    var sum = 0.0;
+    for (var i = 0u; i < fog.waves.x; i++) {
+        sum += wave_mean(fog.patch_waves[i], origin, direction, m, h).x;
+    }
+    return max(1.0 + fog.patch_amount * 0.5 * sum, 0.0);
 }
 
 // What curtains add between two distances, over what an even layer has there, and the variance of that.
-fn curtain_mean(u: FogUniform, origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
+fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     let start = max(first, CURTAIN_START);
     let m = 0.5 * (start + last);
     let h = 0.5 * max(last - start, 0.0);
-    let part = u.curtain_amount * 2.0 * h / max(last - first, 1e-3);
-    let sum = wave_mean(u.curtain_waves[0], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[1], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[2], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[3], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[4], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[5], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[6], origin, direction, m, h)
-        + wave_mean(u.curtain_waves[7], origin, direction, m, h);
+    let part = fog.curtain_amount * 2.0 * h / max(last - first, 1e-3);
+    var sum = vec2f(0.0);
+    for (var i = 0u; i < fog.waves.y; i++) {
+        sum += wave_mean(fog.curtain_waves[i], origin, direction, m, h);
+    }
     return vec2f(part, 0.5 * part * part) * sum;
 }

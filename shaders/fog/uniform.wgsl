@@ -57,4 +57,6 @@ struct FogUniform {
     lit: f32,
     // Amplitude of each wave of the curtains over the layer's extinction.
     curtain_amount: f32,
+    // Waves of the patches and of the curtains, 0 where there are none.
+    waves: vec2u,
 }

@@ -1,6 +1,6 @@
 // Hollows of a ground of which no heights are known, and rings of drops on the water in them. Both are functions of the
 // place in the host's world, which repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
-//!include "ground/uniform.wgsl"
+//!include "ground/binding.wgsl"
 
 // Side of a cell of the rings' grid, m, cells to a period, seconds of a slot.
 const RING_CELL: f32 = 0.2;
@@ -16,11 +16,12 @@ const RING_SLOPE: f32 = 0.35;
 // Depth of the hollows below the mean ground in units of its root mean square, and how much of its variance is too small for the
 // pixel, whose sides on the ground are `across` and `along`. `waves`: HOLLOW_WAVES, or 0 where nothing depends on it; a loop that is
 // not begun is what a software driver leaves out, which takes both ways of a branch.
-fn hollow_depth(u: GroundUniform, at: vec2f, across: vec2f, along: vec2f, waves: u32) -> vec2f {
+fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, waves: u32) -> vec2f {
     var depth = 0.0;
     var kept = 0.0;
     for (var i = 0u; i < waves; i++) {
-        let wave = u.waves[i];
+        // Of the bound block: an index into a copy of it would copy all of it.
+        let wave = ground.waves[i];
         let x = vec2f(dot(wave.xy, across), dot(wave.xy, along));
         // exp(-(2 pi)^2 x^2 / 24): a pixel's box has the variance 1/12.
         let q = dot(x, x) * 1.6449341;
@@ -73,19 +74,19 @@ fn ring_chances(cell: vec2u, slot: u32) -> vec3f {
 }
 
 // Slope of the water by the ring of one layer: each cell may have one drop in a slot of time.
-fn ring_slope(u: GroundUniform, at: vec2f, layer: u32) -> vec2f {
-    let t = u.slot_share + f32(layer) / f32(RING_LAYERS);
-    let slot = (u.slot + u32(t)) * RING_LAYERS + layer;
+fn ring_slope(at: vec2f, layer: u32) -> vec2f {
+    let t = ground.slot_share + f32(layer) / f32(RING_LAYERS);
+    let slot = (ground.slot + u32(t)) * RING_LAYERS + layer;
     // The grid lies elsewhere in each slot, so that drops fall everywhere.
     let shift = ring_chances(vec2u(0x9e37u, 0x79b9u), slot).xy;
-    let place = (at + vec2f(u.place_u, u.place_v)) / RING_CELL + shift;
+    let place = (at + vec2f(ground.place_u, ground.place_v)) / RING_CELL + shift;
     let low = floor(place);
-    let cell = (u.cell + vec2u(vec2i(low) + i32(RING_CELLS))) % RING_CELLS;
+    let cell = (ground.cell + vec2u(vec2i(low) + i32(RING_CELLS))) % RING_CELLS;
     let chance = ring_chances(cell, slot);
     let other = ring_chances(cell.yx, slot + 0x85ebu);
     let life = RING_LIFE * RING_SLOT;
     let age = (fract(t) - (1.0 - RING_LIFE) * other.y) * RING_SLOT;
-    if other.x >= u.ring_chance || age <= 0.0 || age >= life {
+    if other.x >= ground.ring_chance || age <= 0.0 || age >= life {
         return vec2f(0.0);
     }
     // No ring leaves its cell.
@@ -99,10 +100,10 @@ fn ring_slope(u: GroundUniform, at: vec2f, layer: u32) -> vec2f {
 }
 
 // Slope of standing water by the rings of drops. `layers`: RING_LAYERS, or 0 for none.
-fn ring_slopes(u: GroundUniform, at: vec2f, layers: u32) -> vec2f {
+fn ring_slopes(at: vec2f, layers: u32) -> vec2f {
     var slope = vec2f(0.0);
     for (var layer = 0u; layer < layers; layer++) {
-        slope += ring_slope(u, at, layer);
+        slope += ring_slope(at, layer);
     }
     return slope;
 }

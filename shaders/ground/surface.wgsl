@@ -7,9 +7,6 @@
 //!include "surroundings/lights_binding.wgsl"
 //!include "surroundings/shelter.wgsl"
 
-// Whether the clear sky above the horizon is drawn at all.
-override CLEAR_SKY: bool = true;
-
 // Whether anything keeps rain off, and whether there are lamps of the host's.
 override SHELTER: bool = false;
 override LAMPS: bool = false;
@@ -233,7 +230,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     }
     // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
     let waves = select(0u, HOLLOW_WAVES, look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
-    let pattern = hollow_depth(ground, place, across, along * (side / cosine), waves);
+    let pattern = hollow_depth(place, across, along * (side / cosine), waves);
     let hollow = vec2f(pattern.x * look.hollows, mix(1.0, pattern.y, look.hollows));
     var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * look.hollows;
     pool *= mirror_left(facing.error, POOL_SLOPE);
@@ -253,7 +250,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     // A pixel too long to see rings sees a rougher surface.
     let seen = 1.0 - smoothstep(0.3, 1.2, side / cosine / RING_WAVE);
     let rings = pool > 1e-3 && ground.ring_chance > 0.0 && seen > 0.0;
-    let slopes = ring_slopes(ground, place, select(0u, RING_LAYERS, rings)) * seen;
+    let slopes = ring_slopes(place, select(0u, RING_LAYERS, rings)) * seen;
     let rough = sqrt(ground.water_slope * ground.water_slope + ground.ring_slope2 * (1.0 - seen * seen));
     let water = Film(normalize(up - ground.axis_u * slopes.x - ground.axis_v * slopes.y), rough);
     // In the hollows the film is deeper and smoother; ice lies evenly over all of it, nearly as clear as water and as bright.

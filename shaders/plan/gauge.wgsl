@@ -16,10 +16,11 @@ struct Looked {
 // Exposed luminance, 1 = white: what error is measured in, before a tone curve.
 fn exposed(host: vec3f, veil: Veil) -> f32 {
     var light = veil.light * frame.exposure;
-    var behind = host * (frame.cd_m2_per_unit * frame.exposure);
-    if frame.color_space != SCENE_LINEAR {
+    var behind = linear_host(host);
+    if is_space(SCENE_LINEAR) {
+        behind *= frame.exposure;
+    } else {
         light = tone_curve(frame.tone, light);
-        behind = select(host, srgb_decode(host), frame.color_space == DISPLAY_SRGB);
     }
     return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
 }

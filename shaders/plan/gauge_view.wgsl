@@ -1,13 +1,6 @@
 // The gauge over a host's picture; where that has several samples a pixel, the first stands for them.
-//!include "common/host.wgsl"
+//!include "frame/host_picture.wgsl"
 //!include "plan/gauge.wgsl"
-
-@group(0) @binding(1) var host_color: HostColor;
-@group(0) @binding(2) var host_depth: HostDepth;
-@group(0) @binding(3) var host_mask: texture_2d<f32>;
-
-override HAS_DEPTH: bool = true;
-override HAS_MASK: bool = false;
 
 @fragment
 fn gauge(in: FullscreenVarying) -> @location(0) vec4u {

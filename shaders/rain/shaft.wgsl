@@ -175,7 +175,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     fell *= mix(rest, front, (cut - begin) / (end - begin));
     var own = shaft.own;
     if FOG && FOG_CURTAINS && own > 0.0 && fog.curtain_amount > 0.0 {
-        own += fog.extinction * curtain_mean(fog, origin, d, begin, end).x;
+        own += fog.extinction * curtain_mean(origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;
     // What drops near the eye hide is drawn as drops.

@@ -9,8 +9,9 @@ struct SkyObserver {
     altitude: Length,
     // Zenith cosine of the light.
     mu_s: Cosine,
-    unused_a: f32,
-    unused_b: f32,
+    // 1: the air in front of things is drawn, 0: the sky.
+    is_air: u32,
+    unused: u32,
     edges: SkyEdges,
 }
 
@@ -83,28 +84,25 @@ fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
     return sum;
 }
 
+// Sky and air by one entry point: what they share, the march, is most of what a software driver compiles.
 @fragment
-fn sky(in: FullscreenVarying) -> SkyTexel {
-    let view = view_texel(vec2u(in.position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
-    let ray = sky_ray(air, observer.altitude, view.mu, view.below);
-    let light = kept_light(ray, ray.length, dims.sky_panels, view.nu);
-    if (view.below) {
-        let depth = air_optical_depth(air, columns_along(air, ray, ray.length));
-        return SkyTexel(as_source(light.even, depth), as_source(light.haze, depth));
-    }
-    return SkyTexel(sky_encode_signed(light.even), sky_encode_signed(light.haze));
-}
-
-@fragment
-fn volume(in: FullscreenVarying) -> SkyTexel {
+fn observed(in: FullscreenVarying) -> SkyTexel {
+    let is_air = observer.is_air == 1u;
     let px = vec2u(in.position.xy);
-    let slice = px.x / dims.air_azimuths;
-    let texel = vec2u(px.x - slice * dims.air_azimuths, px.y);
-    let view = view_texel(texel, dims.air_azimuths, dims.air_above, dims.air_below);
+    let slice = select(0u, px.x / dims.air_azimuths, is_air);
+    let size = select(
+        vec3u(dims.sky_azimuths, dims.sky_above, dims.sky_below),
+        vec3u(dims.air_azimuths, dims.air_above, dims.air_below),
+        is_air,
+    );
+    let view = view_texel(vec2u(px.x - slice * dims.air_azimuths, px.y), size.x, size.y, size.z);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
-    let end = slice_distance(w, ray.length);
-    let light = kept_light(ray, end, dims.air_panels, view.nu);
+    let end = select(ray.length, slice_distance(w, ray.length), is_air);
+    let light = kept_light(ray, end, select(dims.sky_panels, dims.air_panels, is_air), view.nu);
+    if !is_air && !view.below {
+        return SkyTexel(sky_encode_signed(light.even), sky_encode_signed(light.haze));
+    }
     let depth = air_optical_depth(air, columns_along(air, ray, end));
     return SkyTexel(as_source(light.even, depth), as_source(light.haze, depth));
 }

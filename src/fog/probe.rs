@@ -20,13 +20,6 @@ const WIDTH: u32 = 256;
 /// So near that a distance of 0 errs by nothing that shows.
 const NEAR_M: f64 = 1e-6;
 
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct ProbeUniform {
-    depth: DepthUniform,
-    fog: FogUniform,
-}
-
 /// What is left of contrast, and the transmittance at 550 nm, over each of `distances_m` (\[0, 1e9\] m) in a flat
 /// homogeneous layer of visibility `visibility_m` (\[1, 1e6\] m), as the GPU draws it.
 ///
@@ -48,7 +41,7 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
     // The numbers a host would pass are f32.
     camera.projection = camera.projection.as_mat4().as_dmat4();
     let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..Default::default() })?;
-    let uniform = ProbeUniform { depth: rays.uniform(), fog: model(visibility_m)?.uniform() };
+    let fog = model(visibility_m)?.uniform();
     let depths: Vec<f32> = (0..WIDTH * height)
         .map(|i| {
             let pixel = DVec2::new(f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5);
@@ -57,7 +50,7 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
             rays.depth_at(distance, DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)) as f32
         })
         .collect();
-    let texels = draw(device, &uniform, &depths, height)?;
+    let texels = draw(device, (&rays.uniform(), &fog), &depths, height)?;
     Ok(texels.iter().take(distances_m.len()).map(|t| [f64::from(t[0] - t[1]), f64::from(t[2])]).collect())
 }
 
@@ -72,7 +65,12 @@ fn model(visibility_m: f64) -> Result<FogModel> {
     FogModel::new(&Law::Layer(layer), &light, &Viewpoint::flat(2.0))
 }
 
-fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) -> Result<Vec<[f32; 4]>> {
+fn draw(
+    device: &Device,
+    (depth, fog): (&DepthUniform, &FogUniform),
+    depths: &[f32],
+    height: u32,
+) -> Result<Vec<[f32; 4]>> {
     let gpu = &device.device;
     let size = wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 };
     let texture = |format, usage| {
@@ -99,8 +97,12 @@ fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) ->
         texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST);
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH * 4), rows_per_image: None };
     device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(depths), rows, size);
-    let buffer = crate::gpu::bind::block(gpu, "fog probe", size_of::<ProbeUniform>());
-    device.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(uniform));
+    let block = |bytes: &[u8]| {
+        let buffer = bind::block(gpu, "fog probe", bytes.len());
+        device.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    };
+    let (depth, fog) = (block(bytemuck::bytes_of(depth)), block(bytemuck::bytes_of(fog)));
     let layout = layout(gpu);
     let pipeline = pass::fullscreen(
         device,
@@ -117,7 +119,8 @@ fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) ->
         label: Some("fog probe"),
         layout: &layout,
         entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 0, resource: depth.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 4, resource: fog.as_entire_binding() },
             wgpu::BindGroupEntry {
                 binding: 1,
                 resource: wgpu::BindingResource::TextureView(&source.create_view(&Default::default())),
@@ -131,7 +134,8 @@ fn draw(device: &Device, uniform: &ProbeUniform, depths: &[f32], height: u32) ->
 }
 
 fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let slots = [(0, Slot::Uniform(size_of::<ProbeUniform>())), (1, Slot::Texels)];
+    let slots =
+        [(0, Slot::Uniform(size_of::<DepthUniform>())), (1, Slot::Texels), (4, Slot::Uniform(size_of::<FogUniform>()))];
     bind::layout(gpu, "fog probe", wgpu::ShaderStages::FRAGMENT, &slots)
 }
 

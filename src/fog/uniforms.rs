@@ -272,7 +272,8 @@ impl FogModel {
             curtain_waves: self.curtains.waves.map(wave),
             lit: self.lit as f32,
             curtain_amount: self.curtains.amount as f32,
-            pad: [0.0; 2],
+            waves: [(self.patch_amount > 0.0, PATCH_WAVES), (self.curtains.amount > 0.0, CURTAIN_WAVES)]
+                .map(|(any, count)| if any { count as u32 } else { 0 }),
         }
     }
 }
@@ -372,5 +373,5 @@ pub struct FogUniform {
     pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
     pub lit: f32,
     pub curtain_amount: f32,
-    pub pad: [f32; 2],
+    pub waves: [u32; 2],
 }

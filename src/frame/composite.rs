@@ -37,6 +37,13 @@ impl Variant {
         wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
     }
 
+    /// The shader of this name without what the variant does not draw.
+    fn shader(&self, name: &str) -> String {
+        let clear = if self.constants.between.value("FOG") > 0.0 { "" } else { ":clear" };
+        let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
+        format!("{name}{clear}{dry}")
+    }
+
     /// Values of the shader's `override` constants.
     pub fn constants(&self) -> Constants {
         let mut all = Constants::NONE;
@@ -201,6 +208,7 @@ impl Composite {
             |made| *made == variant,
             || {
                 let ([(shader, entry), _], constants) = (variant.sampling.shaders(), variant.constants());
+                let shader = &variant.shader(shader);
                 let targets = [variant.target(wgpu::ColorWrites::ALL)];
                 let (constants, samples) = (constants.all(), variant.samples);
                 let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples };

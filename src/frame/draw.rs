@@ -119,6 +119,15 @@ impl View {
         let kinds = f64::from(shot.rays.depth_kinds());
         composition.between("DEPTH_KINDS", kinds, kinds);
         composition.between("DECK_CLOSED", 0.0, yes(composition.block.deck_cover >= 1.0));
+        let block = &composition.block;
+        let target = [
+            ("COLOR_SPACES", f64::from(1u32 << block.color_space)),
+            ("ENCODES", f64::from(block.encode)),
+            ("DITHERS", yes(block.dither_step > 0.0)),
+        ];
+        let curve = f64::from(1u32 << block.tone);
+        target.into_iter().for_each(|(name, value)| composition.constant(name, value, value));
+        composition.constant("CURVES", 7.0, curve);
         let mut around = Default::default();
         if stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
             let told = shot.now.told(composition.near, shot.exposure)?;

@@ -131,6 +131,13 @@ struct Faults {
     lost: AtomicBool,
 }
 
+/// An assembled shader as the driver has it, and the names of its `override` constants.
+#[derive(Clone)]
+pub(crate) struct Shader {
+    pub module: wgpu::ShaderModule,
+    pub overrides: Arc<[String]>,
+}
+
 /// One native queue or GL context with what was found out about it. Shared by contexts and views.
 pub struct Device {
     // Fields go in this order: see `Entrance`.
@@ -144,7 +151,7 @@ pub struct Device {
     /// Its one queue.
     pub queue: wgpu::Queue,
     /// Shaders by name: reading one takes longer than making a pipeline of it.
-    shaders: Mutex<HashMap<String, wgpu::ShaderModule>>,
+    shaders: Mutex<HashMap<String, Shader>>,
     caps: Caps,
     faults: Arc<Faults>,
     submission: Mutex<()>,
@@ -347,15 +354,22 @@ impl Device {
     /// # Errors
     /// [`Status::Internal`] if an include is missing.
     pub fn shader(&self, name: &str) -> Result<wgpu::ShaderModule> {
+        self.shader_and_overrides(name).map(|shader| shader.module)
+    }
+
+    /// As [`Self::shader`], with the names of its `override` constants.
+    pub(crate) fn shader_and_overrides(&self, name: &str) -> Result<Shader> {
         let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = shaders.get(name) {
             return Ok(known.clone());
         }
         let text = super::shader::assemble(name)?;
-        let made = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let overrides = super::shader::overrides(&text);
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
+        let made = Shader { module, overrides };
         shaders.insert(name.to_owned(), made.clone());
         Ok(made)
     }

@@ -3,7 +3,7 @@
 //! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
 //! `common/fullscreen.wgsl`.
 
-use super::Device;
+use super::{Device, device::Shader};
 use crate::error::Result;
 
 /// What a full-screen pipeline is made of.
@@ -39,14 +39,18 @@ pub(crate) fn fullscreen_at(
     desc: &FullscreenDesc<'_>,
     tested: Option<(f64, wgpu::DepthStencilState)>,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader(desc.shader)?;
+    let Shader { module, overrides } = device.shader_and_overrides(desc.shader)?;
+    // A variant lacks those of what it leaves out; in a shader that is whole, one that is not there is a fault.
+    let is_whole = !desc.shader.contains(':');
+    let constants: Vec<_> =
+        desc.constants.iter().copied().filter(|(name, _)| is_whole || overrides.iter().any(|o| o == name)).collect();
     let groups: Vec<_> = desc.layouts.iter().map(|l| Some(*l)).collect();
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(desc.shader),
         bind_group_layouts: &groups,
         immediate_size: 0,
     });
-    let compilation_options = wgpu::PipelineCompilationOptions { constants: desc.constants, ..Default::default() };
+    let compilation_options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
     let at = tested.as_ref().map(|(depth, _)| ("FULLSCREEN_DEPTH", *depth));
     let vertex_constants = at.as_slice();
     let targets: Vec<_> = desc.targets.iter().cloned().map(|t| Some(compiled_once(device, t))).collect();

@@ -1,9 +1,13 @@
 //! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each.
 //!
-//! Variants come from `override` constants and entry points, and where a host's textures are of other types from another file in place of
-//! `common/host.wgsl`: `rain/drops_view.wgsl:multi` reads `common/host_multi.wgsl`. There is no preprocessor. Every assembled shader is
+//! Variants come from `override` constants and entry points, and from other files in place of some: `rain/drops_view.wgsl:multi`
+//! reads `common/host_multi.wgsl` instead of `common/host.wgsl`, as of every file that there is another of for `multi`. A name may have
+//! several such words. So a host's textures may be of other types, and what a pipeline does not draw is not compiled: a driver that
+//! finds dead code only after it has inlined everything takes several times as long. There is no preprocessor. Every assembled shader is
 //! validated by naga in a test ([`names`] lists them), and every uniform's offsets are compared with naga's
 //! ([`struct_layout`]).
+
+use std::{cell::Cell, sync::Arc};
 
 use crate::error::{Error, Result, Status};
 
@@ -20,12 +24,16 @@ fn source(name: &str) -> Option<&'static str> {
     table::SHADERS.binary_search_by_key(&name, |(n, _)| n).ok().map(|i| table::SHADERS[i].1)
 }
 
-/// What a variant has another of, and the names of variants.
-const HOST: &str = "common/host";
+/// Words of variants, and a file of the shaders that have them.
 #[cfg(test)]
-const VARIANTS: [&str; 2] = ["multi", "resolved"];
+const VARIANTS: [(&str, &str); 4] = [
+    ("multi", "common/host.wgsl"),
+    ("resolved", "common/host.wgsl"),
+    ("clear", "frame/composite.wgsl"),
+    ("dry", "frame/composite.wgsl"),
+];
 
-/// The text of shader `name` with its includes put before it, each once, in order of first mention; of a variant after a colon.
+/// The text of shader `name` with its includes put before it, each once, in order of first mention; of variants after colons.
 ///
 /// # Errors
 /// [`Status::Internal`] if a file is missing or includes form a cycle; the message names the chain.
@@ -40,13 +48,22 @@ pub fn assemble(name: &str) -> Result<String> {
 pub fn assemble_from(name: &str, lookup: &dyn Fn(&str) -> Option<String>) -> Result<String> {
     let mut done = Vec::new();
     let mut out = String::new();
-    let (name, variant) = name.split_once(':').unwrap_or((name, ""));
-    let other = |n: &str| match n.strip_suffix(".wgsl") {
-        Some(HOST) if !variant.is_empty() => lookup(&format!("{HOST}_{variant}.wgsl")),
-        _ => lookup(n),
+    let mut words = name.split(':');
+    let name = words.next().unwrap_or_default();
+    let words: Vec<_> = words.map(|word| (word, Cell::new(false))).collect();
+    let other = |n: &str| {
+        let of_word = |(word, used): &(&str, Cell<bool>)| {
+            let found = lookup(&format!("{}_{word}.wgsl", n.strip_suffix(".wgsl")?))?;
+            used.set(true);
+            Some(found)
+        };
+        words.iter().find_map(of_word).or_else(|| lookup(n))
     };
     append(name, &other, &mut Vec::new(), &mut done, &mut out)?;
-    Ok(out)
+    match words.iter().find(|(_, used)| !used.get()) {
+        Some((word, _)) => Err(Error::new(Status::Internal, format!("shader {name} has no variant {word}"))),
+        None => Ok(out),
+    }
 }
 
 fn append(
@@ -80,6 +97,12 @@ fn append(
     }
     done.push(name.to_owned());
     Ok(())
+}
+
+/// Names of the `override` constants of an assembled shader.
+pub(crate) fn overrides(text: &str) -> Arc<[String]> {
+    let name = |line: &str| Some(line.strip_prefix("override ")?.split_once(':')?.0.to_owned());
+    text.lines().filter_map(name).collect()
 }
 
 /// Size in bytes and (member, offset) list of a WGSL struct, as naga lays it out.
@@ -139,18 +162,28 @@ mod tests {
         move |n| set.iter().find(|(k, _)| *k == n).map(|(_, v)| (*v).to_owned())
     }
 
+    fn valid(name: &str) -> String {
+        let text = assemble(name).unwrap();
+        validate(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        text
+    }
+
     #[test]
     fn every_shader_assembles_and_validates() {
         let mut variants = 0;
         for name in names() {
-            let text = assemble(name).unwrap();
-            validate(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
-            for variant in VARIANTS.iter().filter(|_| text.contains("// ---- common/host.wgsl")) {
-                let other = assemble(&format!("{name}:{variant}")).unwrap();
-                validate(&other).unwrap_or_else(|e| panic!("{name}:{variant}: {e}"));
-                assert!(other != text, "{name}:{variant}");
-                variants += 1;
+            let text = valid(name);
+            for (variant, file) in VARIANTS {
+                if text.contains(&format!("// ---- {file}\n")) {
+                    let other = valid(&format!("{name}:{variant}"));
+                    assert!(other != text, "{name}:{variant}");
+                    variants += 1;
+                }
             }
+        }
+        // Each stands for what the others may use.
+        for host in ["", ":multi", ":resolved"] {
+            valid(&format!("frame/composite_view.wgsl{host}:clear:dry"));
         }
         assert!(variants >= 16, "{variants}");
     }
@@ -166,7 +199,39 @@ mod tests {
             assemble_from(name, &files(&set)).map(|t| t.lines().filter(|l| !l.starts_with("//")).collect::<String>())
         };
         assert_eq!((lines("a").unwrap(), lines("a:multi").unwrap()), ("oneA".to_string(), "manyA".to_string()));
-        assert!(lines("a:odd").unwrap_err().to_string().contains("common/host.wgsl"));
+        assert!(lines("a:odd").unwrap_err().to_string().contains("no variant odd"));
+    }
+
+    /// An index that a compiler does not know, into an array of a value: drivers copy all of that value for it, for every pixel, and
+    /// llvmpipe takes 0.3 s to compile the copy of a block of ours. Arrays of bound blocks are indexed where they are bound.
+    #[test]
+    fn no_function_indexes_an_array_of_a_block_that_it_was_given() {
+        use wgpu::naga::{Expression as E, Function, Handle, front::wgsl::parse_str};
+        fn is_given(of: &Function, at: Handle<E>) -> bool {
+            match of.expressions[at] {
+                E::Access { base, .. } | E::AccessIndex { base, .. } => is_given(of, base),
+                E::FunctionArgument(_) => true,
+                _ => false,
+            }
+        }
+        let faults = |text: &str| {
+            let module = parse_str(text).unwrap();
+            let indexes = |f: &Function| {
+                f.expressions.iter().any(|(_, e)| match e {
+                    E::Access { base, .. } => {
+                        matches!(f.expressions[*base], E::AccessIndex { .. }) && is_given(f, *base)
+                    }
+                    _ => false,
+                })
+            };
+            let named = module.functions.iter().filter(|(_, f)| indexes(f)).map(|(_, f)| f.name.clone());
+            named.flatten().collect::<Vec<_>>()
+        };
+        for name in names() {
+            assert_eq!(faults(&assemble(name).unwrap()), [""; 0], "{name}");
+        }
+        let given = "struct S { a: array<f32, 4> } fn f(s: S, i: u32) -> f32 { return s.a[i]; }";
+        assert_eq!(faults(given), ["f"], "one is found");
     }
 
     /// WebGPU promises 16 textures a stage, and tier 0 devices have no more.

@@ -147,7 +147,8 @@ impl SkySettings {
             zeniths: self.zeniths.min(9),
             azimuths: self.azimuths.min(6),
             rule_zeniths: self.rule_zeniths.min(5),
-            rule_azimuths: self.rule_azimuths.min(8),
+            // The radiances' width is no power of two then, as that of the whole ones: llvmpipe compiles a pass anew where it becomes one.
+            rule_azimuths: self.rule_azimuths.min(9),
             build_panels: self.build_panels.min(2),
             ..*self
         }

@@ -155,7 +155,8 @@ pub(crate) struct JobUniform {
 pub(crate) struct ObserverUniform {
     pub altitude: f32,
     pub mu_s: f32,
-    pub unused: [f32; 2],
+    pub is_air: u32,
+    pub unused: u32,
     pub edges: EdgesUniform,
 }
 

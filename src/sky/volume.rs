@@ -98,11 +98,12 @@ pub(crate) struct ObserverPasses {
 impl ObserverPasses {
     pub fn new(device: &Device, settings: &SkySettings, layouts: &ObserverLayouts) -> Result<Self> {
         let layouts = [&layouts.planet, &layouts.observer];
-        let (sky, air) = match settings.model {
-            SkyModel::Table3d => ("sky_from_table", "volume_from_table"),
-            _ => ("sky", "volume"),
-        };
-        Ok(Self { sky: pipeline(device, settings, sky, &layouts)?, air: pipeline(device, settings, air, &layouts)? })
+        let make = |entry| pipeline(device, settings, entry, &layouts);
+        if settings.model == SkyModel::Table3d {
+            return Ok(Self { sky: make("sky_from_table")?, air: make("volume_from_table")? });
+        }
+        let both = make("observed")?;
+        Ok(Self { sky: both.clone(), air: both })
     }
 }
 
@@ -154,8 +155,9 @@ pub struct SkyVolume {
     kit: Arc<Kit>,
     sky: Layered,
     air: Layered,
-    observer_groups: Vec<wgpu::BindGroup>,
-    observers: Vec<wgpu::Buffer>,
+    /// By lamp: of the sky, and of the air.
+    observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
+    observers: [[wgpu::Buffer; 2]; LAMPS],
     view: wgpu::Buffer,
     view_group: wgpu::BindGroup,
     /// The tables' light, which the group holds.
@@ -178,9 +180,9 @@ impl SkyVolume {
         let s = *tables.settings();
         let [sky, air] = layered(&device, &s);
         let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
-        let observers: Vec<_> = (0..LAMPS).map(|_| uniform_buffer(&device, "sky observer", &zero)).collect();
+        let observers = [(); LAMPS].map(|_| [(); 2].map(|_| uniform_buffer(&device, "sky observer", &zero)));
         let group = |b: &wgpu::Buffer| bind(&device, &kit.observer_layouts.observer, &[b.as_entire_binding()]);
-        let observer_groups = observers.iter().map(group).collect();
+        let observer_groups = observers.each_ref().map(|of_lamp| of_lamp.each_ref().map(group));
         let written = ViewUniform::zeroed();
         let view = uniform_buffer(&device, "sky view", bytes_of(&written));
         let textures = [&sky.whole, &air.whole, &tables.light.view, &kit.nothing.view];
@@ -357,8 +359,10 @@ impl SkyVolume {
     fn write_observer(&self, tables: &SkyTables, i: usize, of: &DrawnFor) {
         let edges = EdgesUniform::of(&tables.air(), of.altitude_m);
         let (altitude, mu_s) = (of.altitude_m.max(0.0) as f32, of.mu_s as f32);
-        let uniform = ObserverUniform { altitude, mu_s, unused: [0.0; 2], edges };
-        self.device.queue.write_buffer(&self.observers[i], 0, bytes_of(&uniform));
+        for (is_air, buffer) in (0..).zip(&self.observers[i]) {
+            let uniform = ObserverUniform { altitude, mu_s, is_air, unused: 0, edges };
+            self.device.queue.write_buffer(buffer, 0, bytes_of(&uniform));
+        }
     }
 
     /// Lays a share of what fades in over lamp `i`'s tables.
@@ -398,7 +402,8 @@ impl SkyVolume {
         } else {
             [&self.sky, &self.air]
         };
-        for (pipeline, target) in [&passes.sky, &passes.air].into_iter().zip(targets) {
+        let drawn = [&passes.sky, &passes.air].into_iter().zip(&self.observer_groups[i]);
+        for ((pipeline, group), target) in drawn.zip(targets) {
             let layer = |k: usize| {
                 Some(wgpu::RenderPassColorAttachment {
                     view: &target.layers[LAYERS as usize * i + k],
@@ -417,7 +422,7 @@ impl SkyVolume {
             });
             recorded.set_pipeline(pipeline);
             recorded.set_bind_group(0, &set.observer_group, &[]);
-            recorded.set_bind_group(1, &self.observer_groups[i], &[]);
+            recorded.set_bind_group(1, group, &[]);
             recorded.draw(0..3, 0..1);
         }
         Ok(())

@@ -151,7 +151,7 @@ fn the_compatibility_laws_are_drawn_on_range_and_plane() {
 /// picture's edge as in its centre.
 #[test]
 fn five_percent_at_every_depth_mapping_and_pixel() {
-    let body = "struct Both { depth: DepthUniform, fog: FogUniform }
+    let body = "struct Both { fog: FogUniform, depth: DepthUniform }
         fn answer(i: vec4f) -> vec4f {
             let ray = view_ray(u.depth, i.xy);
             let fog = fog_along(u.fog, ray.origin, ray.direction, view_range(u.depth, i.z, i.xy), view_plane(u.depth, i.z, i.xy));
@@ -167,8 +167,8 @@ fn five_percent_at_every_depth_mapping_and_pixel() {
                 .iter()
                 .map(|(x, y)| [*x as f32, *y as f32, rays.depth_at(v, DVec2::new(*x, *y)) as f32, 0.0])
                 .collect();
-            let mut bytes = bytemuck::bytes_of(&rays.uniform()).to_vec();
-            bytes.extend_from_slice(bytemuck::bytes_of(&m.uniform()));
+            let mut bytes = bytemuck::bytes_of(&m.uniform()).to_vec();
+            bytes.extend_from_slice(bytemuck::bytes_of(&rays.uniform()));
             for (i, g) in inputs.iter().zip(gpu::evaluate("fog/lookup.wgsl", body, "Both", &bytes, &inputs)) {
                 let ndc = DVec2::new(f64::from(i[0]), f64::from(i[1]));
                 let held = rays.view_range(f64::from(i[2]), ndc);
@@ -314,7 +314,8 @@ fn offsets_are_those_of_the_shader() {
         patch_waves,
         curtain_waves,
         lit,
-        curtain_amount
+        curtain_amount,
+        waves
     );
     assert_eq!(members, ours);
 }

@@ -26,7 +26,7 @@ fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::T
 }
 
 /// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform
-/// `u` of type `uniform_type`; `include` is the library's shader file under test.
+/// `u` of type `uniform_type`, of which a fog, if there is one, comes first; `include` is the library's shader file under test.
 pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     evaluate_with(include, body, uniform_type, uniform, inputs, &[])
 }
@@ -66,6 +66,7 @@ pub fn evaluate_with(
         layout: &layout,
         entries: &[
             wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 4, resource: buffer.as_entire_binding() },
             wgpu::BindGroupEntry {
                 binding: 1,
                 resource: wgpu::BindingResource::TextureView(&source.create_view(&Default::default())),
@@ -112,6 +113,14 @@ fn make_layout() -> wgpu::BindGroupLayout {
         entries: &[
             entry(
                 0,
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ),
+            entry(
+                4,
                 wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Uniform,
                     has_dynamic_offset: false,

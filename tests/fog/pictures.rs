@@ -98,8 +98,8 @@ fn draw(shot: &Shot) -> Picture {
     let sky = Vec3::from(shot.light.sky_irradiance.map(|v| v as f32)) / std::f32::consts::PI;
     let sun = Vec3::from(shot.light.sun_irradiance.map(|v| v as f32));
     let height = shot.light.to_sun.z as f32;
-    let mut bytes = bytemuck::bytes_of(&rays.uniform()).to_vec();
-    bytes.extend_from_slice(bytemuck::bytes_of(&m.uniform()));
+    let mut bytes = bytemuck::bytes_of(&m.uniform()).to_vec();
+    bytes.extend_from_slice(bytemuck::bytes_of(&rays.uniform()));
     let lit = sun * height + sky * std::f32::consts::PI;
     for (v, w) in [
         (Vec3::new(0.0, 0.0, shot.eye_m as f32), 0.0),

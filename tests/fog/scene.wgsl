@@ -1,7 +1,7 @@
 // A made-up scene for pictures of fog: ground with squares of 10 m, boards at known distances, a tower, a hill, a sky.
 struct SceneUniform {
-    depth: DepthUniform,
     fog: FogUniform,
+    depth: DepthUniform,
     eye: vec3f,
     sun: vec3f,
     sky_zenith: vec3f,

@@ -1,4 +1,4 @@
-// The frame's fog.
-//!include "fog/lookup.wgsl"
+// The fog of a frame.
+//!include "fog/uniform.wgsl"
 
 @group(0) @binding(4) var<uniform> fog: FogUniform;

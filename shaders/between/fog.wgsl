@@ -1,0 +1,28 @@
+// The fog's share of what lies between the eye and a point. Where a pipeline draws none, fog_clear.wgsl stands here.
+//!include "between/air.wgsl"
+//!include "fog/lookup.wgsl"
+
+// Whether there is any fog.
+override FOG: bool = true;
+
+// `behind` is what air does over the ray's whole length (sky: its light, transmittance 0). A fog bank far away has air
+// before it, the fog round the camera lies before the air (fog/lookup.wgsl).
+fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
+    if !FOG || drawn.y == 0.0 {
+        return behind;
+    }
+    var f = fog_along(fog, ray.origin, ray.direction, range, plane);
+    f.radiance *= drawn.y;
+    f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
+    // What drops near the eye hide is drawn as drops.
+    let thinner = min(f.transmittance * exp(drawn.w * frame.drops.x * min(range, frame.drops.y)), vec3f(1.0));
+    f.radiance *= (1.0 - thinner) / max(1.0 - f.transmittance, vec3f(1e-6));
+    f.transmittance = thinner;
+    var before = Veil(vec3f(0.0), vec3f(1.0));
+    if f.distance > 50.0 {
+        before = air_between(ray.direction, f.distance);
+    }
+    let beyond = mix(1.0, f.shade, drawn.y) * behind.light - before.light;
+    let light = before.light + before.transmittance * f.radiance + f.transmittance * beyond;
+    return Veil(light, behind.transmittance * f.transmittance);
+}

@@ -1,0 +1,28 @@
+// What the numbers of the host's colour mean.
+//!include "common/frame.wgsl"
+//!include "common/tone.wgsl"
+
+const SCENE_LINEAR: u32 = 0u;
+const DISPLAY_SRGB: u32 = 2u;
+
+// Colour spaces that a pipeline can draw, one bit each: the work of the others costs a driver that takes both ways of a branch.
+override COLOR_SPACES: u32 = 7u;
+// Whether it may encode by the sRGB curve, and whether it may dither.
+override ENCODES: bool = true;
+override DITHERS: bool = true;
+
+fn is_space(space: u32) -> bool {
+    let bit = 1u << space;
+    return COLOR_SPACES == bit || ((COLOR_SPACES & bit) != 0u && frame.color_space == space);
+}
+
+// The host's colour as luminance, or linear in the display's space.
+fn linear_host(host: vec3f) -> vec3f {
+    if is_space(SCENE_LINEAR) {
+        return host * frame.cd_m2_per_unit;
+    }
+    if is_space(DISPLAY_SRGB) {
+        return srgb_decode(host);
+    }
+    return host;
+}
