@@ -13,6 +13,9 @@ use crate::{
     scene::{DepthUniform, ViewRays},
 };
 
+/// Largest optical depth straight up that a view takes: e^-1000 is nothing.
+pub(super) const MOST_ZENITH_DEPTH: f64 = 1e3;
+
 /// What a picture of the stars is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct StarView<'a> {
@@ -50,7 +53,9 @@ impl StarView<'_> {
         for (name, value) in ["width", "height"].into_iter().zip(self.size) {
             check_range(name, f64::from(value), 1.0, 65_536.0, "pixels")?;
         }
-        self.zenith_depth.iter().try_for_each(|depth| check_range("zenith_depth", *depth, 0.0, 1e3, ""))?;
+        self.zenith_depth
+            .iter()
+            .try_for_each(|depth| check_range("zenith_depth", *depth, 0.0, MOST_ZENITH_DEPTH, ""))?;
         check_range("transmittance", self.transmittance, 0.0, 1.0, "")?;
         check_range("air_density", self.air_density, 0.0, 10.0, "")?;
         check_range("horizon_deg", self.horizon_deg, -90.0, 90.0, "deg")?;

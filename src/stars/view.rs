@@ -7,6 +7,7 @@ use super::{
     glow_pass::{Dusk, GlowPass},
     light::illuminance_lux,
     limits::{display_threshold_lux, threshold_lux},
+    uniforms::MOST_ZENITH_DEPTH,
 };
 use crate::{
     almanac::Utc,
@@ -122,7 +123,7 @@ impl Tonight {
         let (place, air) = (&scene.place, &scene.conditions.air);
         let altitude_m = place.altitude_m.max(0.0);
         let heavens = Heavens::at(utc, place, settings)?;
-        let zenith_depth = zenith_depth(&scene.planet, altitude_m);
+        let zenith_depth = zenith_depth(&scene.planet, altitude_m).map(|depth| depth.min(MOST_ZENITH_DEPTH));
         let clouds = scene.conditions.cloud_light_at(1.0, LAND_ALBEDO, altitude_m);
         let radius = scene.planet.bottom_radius_m;
         let thinner = (-altitude_m / air.rayleigh_scale_height_m).exp();

@@ -1,7 +1,7 @@
 //! Clouds as slabs of water, and the light that they let through.
 
 use super::blend::smoothstep;
-use super::conditions::{CloudSlab, Conditions, clear_between};
+use super::conditions::{CloudSlab, Conditions};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
@@ -263,6 +263,9 @@ impl Conditions {
         let (mut direct, mut diffuse, mut sky, mut above) = (1.0, 0.0, 1.0, 0.0);
         // Of the direct light, what met no cloud, and what came through one.
         let (mut clear, mut through) = (1.0, 0.0);
+        // Of what met no cloud, what would have met one if the place were below all layers. As a sum of what each layer adds: the
+        // difference of two products that are nearly equal would be their rounding errors, light where there is none.
+        let (mut clear_of_all, mut only_here) = (1.0, 0.0);
         for (cover, s) in self.layers_above(altitude_m) {
             let passed = cover * libm::exp(-s.optical_depth / mu);
             let beam = 1.0 - cover + passed;
@@ -274,6 +277,8 @@ impl Conditions {
             sky *= (1.0 - back) * bounce;
             above = back + (1.0 - back) * (1.0 - back) * above * bounce;
             (clear, through) = (clear * (1.0 - cover), through * beam + clear * passed);
+            only_here = only_here * (1.0 - cover) + clear_of_all * (s.cover - cover);
+            clear_of_all *= 1.0 - s.cover;
             direct = clear + through;
         }
         let albedo = ground_albedo.clamp(0.0, 1.0);
@@ -282,7 +287,7 @@ impl Conditions {
         sky *= bounce;
         // Where layers lie beside one another, there is more of what is under cloud, and less of what lies between.
         let gathered = self.gathered();
-        let left_clear = self.clear_sky() + (clear - clear_between(&self.clouds)).max(0.0) * gathered;
+        let left_clear = self.clear_sky() + only_here * gathered;
         direct = left_clear + through * gathered;
         (diffuse, sky) = (diffuse * gathered, left_clear + (sky - clear).max(0.0) * gathered);
         // The host's figures hold below the clouds, wherever he has any.
@@ -337,6 +342,32 @@ mod tests {
             let l = under(&[slab]).cloud_light(0.6, 0.2);
             assert!(l.direct + l.diffuse < last, "cover must darken");
             last = l.direct + l.diffuse;
+        }
+    }
+
+    /// Under one overcast that comes for another, the product of the holes in all layers is no light, in whatever order it is taken.
+    #[test]
+    fn no_light_comes_from_the_rounding_of_holes() {
+        let part = |cover, optical_depth, base_m| CloudSlab { cover, ..sheet(optical_depth, base_m) };
+        for i in 0..1000 {
+            let t = f64::from(i) / 1000.0;
+            let layers =
+                [part(0.3 + 0.3 * t, 94.0, 307.0), part(0.9 - 0.3 * t, 563.0, 762.0), part(1.0 - t, 200.0, 2743.0)];
+            let c = Conditions { clear_sky: 0.0, ..under(&layers) };
+            let below = c.cloud_light_at(0.01, 0.2, 2.0).direct;
+            assert!(below < 1e-200, "{layers:?}: {below}");
+        }
+    }
+
+    #[test]
+    fn a_place_among_layers_has_the_light_of_those_above_it() {
+        let c =
+            under(&[CloudSlab { cover: 0.4, ..sheet(1e4, 500.0) }, CloudSlab { cover: 0.25, ..sheet(1e4, 3000.0) }]);
+        for (altitude_m, direct) in
+            [(0.0, 0.6 * 0.75), (500.0, 0.8 * 0.75), (1500.0, 0.75), (3000.0, 0.875), (5000.0, 1.0)]
+        {
+            let light = c.cloud_light_at(0.5, 0.0, altitude_m);
+            assert!((light.direct - direct).abs() < 1e-15, "{altitude_m} m: {light:?}");
         }
     }
 

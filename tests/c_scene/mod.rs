@@ -6,7 +6,7 @@ pub mod loss;
 pub mod marks;
 pub mod own;
 #[path = "../support/refusals.rs"]
-mod refusals;
+pub mod refusals;
 pub mod veil;
 
 use std::ffi::c_void;

@@ -42,8 +42,12 @@ impl Host {
     }
 
     pub fn on(device: Arc<Device>, format: wgpu::TextureFormat) -> Self {
+        Self::of(device, format, coarse())
+    }
+
+    pub fn of(device: Arc<Device>, format: wgpu::TextureFormat, desc: ContextDesc) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
-        let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
+        let mut context = Context::new(device.clone(), shared, desc).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
         let view = View::new(&context).unwrap();
         let color = texture(&device, format, 1);

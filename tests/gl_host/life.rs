@@ -114,21 +114,33 @@ fn a_wrong_second_context_is_told_from_a_right_one() {
     host.contexts.refusal.store(7, Ordering::Relaxed);
     let refused = refusal(&host.desc());
     assert_eq!(refused.status, Status::WrongOrder, "{refused}");
-    assert!(refused.to_string().contains("make_current") && refused.to_string().contains("got 7"), "{refused}");
+    assert!(
+        refused.to_string().contains("asked for WK_OPENGL_CONTEXT_WELKIN") && refused.to_string().contains("got 7")
+    );
+    assert_eq!(refused.field(), Some("make_current"));
     host.contexts.refusal.store(0, Ordering::Relaxed);
     let stranger = host.contexts.host.separate();
     let right = host.contexts.welkin.replace(stranger);
     let stranger = refusal(&host.desc());
     assert!(stranger.to_string().contains("shares objects"), "{stranger}");
+    assert_eq!((stranger.status, stranger.field()), (Status::WrongOrder, Some("make_current")));
     host.contexts.welkin = None;
     unsafe extern "C" fn stays(_: *mut c_void, _: u32) -> i32 {
         0
     }
     let same = refusal(&GlHostDesc { make_current: Some(stays), ..host.desc() });
     assert!(same.to_string().contains("left the host's current"), "{same}");
+    assert_eq!((same.status, same.field()), (Status::WrongOrder, Some("make_current")));
     host.contexts.welkin = right;
     assert!(host.contexts.host.is_current());
-    close(host.adopt());
+    let adopted = host.adopt();
+    let other = host.contexts.host.sharing();
+    let right = host.contexts.welkin.replace(other);
+    let later = adopted.host.enter().err().expect("another context than the device was made in");
+    assert_eq!((later.status, later.field()), (Status::WrongOrder, Some("make_current")));
+    assert!(later.to_string().contains("when the device was created"), "{later}");
+    host.contexts.welkin = right;
+    close(adopted);
 }
 
 #[test]

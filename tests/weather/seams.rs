@@ -20,6 +20,10 @@ const MOST: f64 = 1e-6;
 /// Places in a change that are looked at for the largest changes between them.
 const PLACES: usize = 48;
 
+/// Distances from a seam at which it is also looked how large a number becomes, s: the sun through the first of a thin cloud, before
+/// that thickens, is there for seconds.
+const NEAR_S: [f64; 3] = [1.0, 6.0, 36.0];
+
 /// Every number of some conditions. No field can be forgotten: the patterns name all.
 pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
     let Conditions {
@@ -162,9 +166,11 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
     let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
     let place = |k: usize| from_s + (to_s - from_s) * k as f64 / PLACES as f64;
     let grid: Vec<_> = if followed == 0 { Vec::new() } else { (0..=PLACES).map(|k| f(place(k))).collect() };
+    let near = seams.iter().flat_map(|t| NEAR_S.iter().flat_map(move |s| [t - s, t + s]));
+    let near: Vec<_> = if followed == 0 { Vec::new() } else { near.map(f).collect() };
     let part = |i: usize, a: &[f64], b: &[f64]| {
         // What a change brings may have gone by the next seam, where another change overtook it: it was there between.
-        let larger_end = ends.iter().chain(&grid).map(|at| at[i].abs()).fold(0.0, f64::max);
+        let larger_end = ends.iter().chain(&grid).chain(&near).map(|at| at[i].abs()).fold(0.0, f64::max);
         let size = a[i].abs().max(b[i].abs()).max(1e-3 * larger_end);
         if a[i] == b[i] { 0.0 } else { (b[i] - a[i]).abs() / (size * MOST) }
     };
@@ -305,7 +311,7 @@ fn no_chain_of_changes_jumps() {
     let reports = REPORTS.map(|text| Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}")).weather);
     let presets = Weather::preset_names().map(|n| Weather::preset(n).unwrap());
     let all: Vec<Weather> = reports.into_iter().chain(presets).collect();
-    let mut dice = Dice(17);
+    let (mut dice, mut faults) = (Dice(17), Vec::new());
     for n in 0..if is_long() { 400 } else { 8 } {
         let (mut context, up_m) = lit(&host, n);
         let (mut start, mut seams) = (START_S, Vec::new());
@@ -317,6 +323,7 @@ fn no_chain_of_changes_jumps() {
         }
         seams.sort_by(f64::total_cmp);
         let found = jumps(&context, up_m, &seams, true, 3.0);
-        assert!(found.is_empty(), "chain {n}, changes at {seams:?}: {found:?}");
+        faults.extend(found.into_iter().map(|f| format!("chain {n}, changes at {seams:?}: {f}")));
     }
+    assert!(faults.is_empty(), "{} faults, among them {:#?}", faults.len(), &faults[..faults.len().min(10)]);
 }

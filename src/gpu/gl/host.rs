@@ -43,8 +43,7 @@ impl Switch {
         if answer == 0 {
             return Ok(());
         }
-        let rest = format!("must make the {} context current and return 0, got {answer}", which.name());
-        Err(Error::about(Status::WrongOrder, "make_current", rest))
+        Err(which.refuse(format_args!("make that context current and return 0, got {answer}")))
     }
 }
 
@@ -391,14 +390,12 @@ fn here(mark: &Mark, api: &Api, shared: bool) -> Result<()> {
     if mark.is_here(api) {
         return Ok(());
     }
-    Err(Error::new(
-        Status::WrongOrder,
-        if shared {
-            "make_current(WELKIN) must make the context current that it made current when the device was created"
-        } else {
-            "the OpenGL context that the device was created with must be current on this thread"
-        },
-    ))
+    Err(if shared {
+        WhichContext::Welkin.refuse("make the context current that it made current when the device was created")
+    } else {
+        let sentence = "the OpenGL context that the device was created with must be current on this thread";
+        Error::new(Status::WrongOrder, sentence)
+    })
 }
 
 /// Makes the current context wait on the GPU for a fence of the other one.

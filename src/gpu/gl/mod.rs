@@ -53,6 +53,8 @@ pub use image::GlImage;
 pub use open::{GlDevice, adopt};
 pub use target::{GlTarget, GlTargetDesc, Multisample};
 
+use crate::error::{Error, Status};
+
 /// Answers the address of OpenGL function `name` (NUL-terminated), or NULL: `eglGetProcAddress`, `glXGetProcAddress`,
 /// `glfwGetProcAddress` in the host's words. Called with Welkin's or the host's context current.
 pub type GetProc = unsafe extern "C" fn(user: *mut c_void, name: *const c_char) -> *const c_void;
@@ -72,11 +74,14 @@ pub enum WhichContext {
 }
 
 impl WhichContext {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Host => "host's",
-            Self::Welkin => "Welkin's",
-        }
+    /// Refuses what the host's callback made current when it was asked for this context; `accepted` ends
+    /// `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
+    fn refuse(self, accepted: impl std::fmt::Display) -> Error {
+        let name = match self {
+            Self::Host => "WK_OPENGL_CONTEXT_HOST",
+            Self::Welkin => "WK_OPENGL_CONTEXT_WELKIN",
+        };
+        Error::about(Status::WrongOrder, "make_current", format_args!("must, asked for {name}, {accepted}"))
     }
 }
 

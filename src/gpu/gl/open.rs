@@ -165,16 +165,13 @@ impl Proof {
 
     fn check(&self, welkin: &Api) -> Result<()> {
         if welkin.floats::<4>(BLEND_COLOR) == STRANGE {
-            return Err(Error::new(
-                Status::WrongOrder,
-                "make_current(WELKIN) must make another context current than the host's: it left the host's current",
-            ));
+            return Err(
+                WhichContext::Welkin.refuse("make another context current than the host's: it left the host's current")
+            );
         }
         if welkin.IsTexture(self.texture) == 0 {
-            return Err(Error::new(
-                Status::WrongOrder,
-                "make_current(WELKIN) must make a context current that shares objects with the host's: it does not",
-            ));
+            return Err(WhichContext::Welkin
+                .refuse("make a context current that shares objects with the host's: it shares none"));
         }
         Ok(())
     }

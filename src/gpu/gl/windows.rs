@@ -4,7 +4,7 @@
 //! whose callback knows one window only would find itself drawing into that one after a call from another.
 
 use super::{WhichContext, api::Api, host::Switch, mark::Mark, names::VERSION};
-use crate::error::{Error, Result, Status};
+use crate::error::Result;
 
 /// The contexts that calls came from so far.
 pub(super) struct Windows {
@@ -52,10 +52,9 @@ impl Windows {
     /// [`Status::WrongOrder`] if another one is.
     pub(super) fn check_back(&self, host: &Api) -> Result<()> {
         match self.last {
-            Some(last) if !self.marks[last].is_here(host) => Err(Error::new(
-                Status::WrongOrder,
-                "make_current(WK_OPENGL_CONTEXT_HOST) must make the context current that was current when the call came, and made another \
-                 window's current: keep for each thread which one it draws in",
+            Some(last) if !self.marks[last].is_here(host) => Err(WhichContext::Host.refuse(
+                "make the context current that was current when the call came, and made another window's current: keep \
+                 for each thread which one it draws in",
             )),
             _ => Ok(()),
         }
