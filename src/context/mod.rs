@@ -118,7 +118,7 @@ impl Context {
     /// As [`derive()`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
     pub fn set_weather(&mut self, weather: &Weather, start_s: f64, transition_s: f64) -> Result<()> {
         self.world.change_weather(derive(weather)?, start_s, transition_s)?;
-        self.follow()
+        self.refresh()
     }
 
     /// As [`Context::set_weather`], with the host's own figures in place of some couplings.
@@ -133,7 +133,7 @@ impl Context {
         transition_s: f64,
     ) -> Result<()> {
         self.world.change_weather(derive_with(weather, overrides)?, start_s, transition_s)?;
-        self.follow()
+        self.refresh()
     }
 
     /// What keeps rain off, in place of what did before: roofs, bridges, cabs. A moving box is set anew every frame.
@@ -154,7 +154,7 @@ impl Context {
             return Ok(());
         }
         self.world.surroundings_revision += 1;
-        self.follow()
+        self.refresh()
     }
 
     /// What keeps rain off, as depth textures of the host's own, in place of those before; an empty list takes them away. What
@@ -314,9 +314,9 @@ impl Context {
         Ok(LightAt { sun: scene.sun, moon: scene.moon, arriving: scene.ground })
     }
 
-    /// Brings up to date what effects make of weather and surroundings.
-    pub(crate) fn follow(&mut self) -> Result<()> {
+    /// Updates what effects make of weather and surroundings.
+    pub(crate) fn refresh(&mut self) -> Result<()> {
         let world = &self.world;
-        self.held.each().into_iter().try_for_each(|effect| effect.follow(world))
+        self.held.each().into_iter().try_for_each(|effect| effect.refresh(world))
     }
 }

@@ -95,7 +95,7 @@ impl Context {
         let mut loaded = self.read_state(unsealed(bytes)?)?;
         let behind = self.behind.take();
         self.take_up(&mut loaded);
-        let shown = self.follow();
+        let shown = self.refresh();
         if shown.is_err() {
             self.take_up(&mut loaded);
             self.behind = behind;

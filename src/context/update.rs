@@ -61,7 +61,7 @@ impl Context {
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         let keep_s = stepped.fold(self.world.time_s, f64::min);
         self.world.forget_before(keep_s);
-        self.follow()?;
+        self.refresh()?;
         Ok(led)
     }
 

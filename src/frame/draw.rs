@@ -73,7 +73,7 @@ impl View {
         composition.block.compositions = self.planner.compositions(self.effects.weighs_unseen());
         self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&composition.block));
         for effect in self.effects.each() {
-            let with = Drawing { composition: &composition, block: &self.uniform, around: &self.around };
+            let with = Drawing { composition: &composition, block: &self.uniform, surroundings: &self.surroundings };
             effect.draw(&shot, &with, to)?;
         }
         self.take_picture(call.color, to)?;
@@ -130,9 +130,9 @@ impl View {
         composition.constant("CURVES", 7.0, curve);
         let mut around = Default::default();
         if stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
-            let told = shot.now.told(composition.near, shot.exposure)?;
-            self.around.follow(&self.device, &told);
-            around = if stages.has(Stages::SURFACE) { told.present() } else { around };
+            let host = shot.now.host_surroundings(composition.near, shot.exposure)?;
+            self.surroundings.update(&self.device, &host);
+            around = if stages.has(Stages::SURFACE) { host.present() } else { around };
         }
         for (name, is_there) in [("SHELTER", around.shelter), ("MAPS", around.maps), ("LAMPS", around.lamps)] {
             composition.constant(name, yes(is_there), yes(is_there));
@@ -158,7 +158,7 @@ impl View {
     ) -> Result<()> {
         let (Some((_, group, target)), Some((_, tables))) = (&self.bound, &composition.tables) else { return Ok(()) };
         let mut composite = self.composite.lock()?;
-        let groups = [group, tables, self.around.bind_group()];
+        let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = Variant { constants: composition.least, ..*whole };
         let draws = if self.device.caps().software { kinds::draws(&least) } else { [Some(*whole), None] };
@@ -199,7 +199,7 @@ impl View {
         else {
             return Ok(());
         };
-        let with = Drawing { composition, block: &self.uniform, around: &self.around };
+        let with = Drawing { composition, block: &self.uniform, surroundings: &self.surroundings };
         let own = self.effects.each().into_iter().find_map(|effect| effect.veil(shot, &with));
         let (composite, between) = (self.composite.lock()?, &composition.whole.between);
         match &own {
@@ -212,7 +212,7 @@ impl View {
             }
             None => {
                 let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
-                let groups = [group, tables, self.around.bind_group()];
+                let groups = [group, tables, self.surroundings.bind_group()];
                 froxels.draw(to, (Froxels::SHADER, sampling, between), &composite.layouts(sampling), &groups)?;
             }
         }

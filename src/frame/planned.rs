@@ -7,13 +7,13 @@ use crate::{
     effects::{Effects, PARTS, together},
     error::{Error, Result, Status},
     moment::Scene,
-    plan::{self, Budget, Plan, Present, Reason, Situation},
+    plan::{self, Budget, Plan, Presence, Reason, Situation},
     stage::{Frame, Shot, Stages},
 };
 
 /// Which parts a picture of these stages has, and what each costs in it.
-pub(super) fn present(effects: &mut Effects, shot: &Shot<'_>, stages: Stages) -> Present {
-    let mut present = Present { pixels: shot.pixels(), together: together(&shot.now.scene), ..Present::default() };
+pub(super) fn present(effects: &mut Effects, shot: &Shot<'_>, stages: Stages) -> Presence {
+    let mut present = Presence { pixels: shot.pixels(), together: together(&shot.now.scene), ..Presence::default() };
     for effect in effects.each() {
         effect.parts(shot, stages, &mut |part, is_there, steps| {
             if let Some(place) = PARTS.iter().position(|p| p.name == part.name) {

@@ -31,9 +31,9 @@ const RECORDED: u32 = 1;
 const MAPPING: u32 = 2;
 const READY: u32 = 3;
 
-/// What a readback under way was of.
+/// The picture of which a readback is under way.
 #[derive(Clone, Copy)]
-struct Looked {
+struct WatchedPicture {
     format: wgpu::TextureFormat,
     width: u32,
     pitch: u32,
@@ -51,7 +51,7 @@ pub(super) struct UnitWatch {
     told: bool,
     buffer: Option<wgpu::Buffer>,
     state: Arc<AtomicU32>,
-    looked: Option<Looked>,
+    looked: Option<WatchedPicture>,
 }
 
 impl UnitWatch {
@@ -108,8 +108,15 @@ impl UnitWatch {
             );
         }
         let (unit, white) = (frame.cd_m2_per_unit, white_cd_m2);
-        self.looked =
-            Some(Looked { format: color.format(), width: color.width(), pitch, rows, unit, white, with_background });
+        self.looked = Some(WatchedPicture {
+            format: color.format(),
+            width: color.width(),
+            pitch,
+            rows,
+            unit,
+            white,
+            with_background,
+        });
         self.state.store(RECORDED, Ordering::Release);
     }
 
@@ -157,7 +164,7 @@ impl UnitWatch {
 
 /// Luminance of the brightest pixels, cd/m^2; none of a picture in which nothing is drawn. With the sky in it, that of the darker
 /// fifth that is not black: what is not sky.
-fn brightest(bytes: &[u8], looked: &Looked) -> Option<f64> {
+fn brightest(bytes: &[u8], looked: &WatchedPicture) -> Option<f64> {
     let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
     let float =
         |b: &[u8], i: usize| f64::from(f32::from_le_bytes([b[4 * i], b[4 * i + 1], b[4 * i + 2], b[4 * i + 3]]));

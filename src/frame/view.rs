@@ -21,7 +21,7 @@ use crate::{
     gpu::Device,
     plan::Planner,
     stage::{CostItem, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart, can_copy},
-    surroundings::Around,
+    surroundings::SurroundingsBlock,
 };
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -34,7 +34,7 @@ pub struct View {
     pub(crate) effects: Effects,
     pub(super) froxels: Option<Froxels>,
     pub(super) kinds: Option<Kinds>,
-    pub(super) around: Around,
+    pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
     pub(super) planned_for: Option<u64>,
     pub(super) light_scale: f32,
@@ -57,7 +57,7 @@ impl View {
         let composite = context.shared().get(|| SharedComposite::new(&device))?;
         let effects = Effects::new(&device, context.shared(), &context.held)?;
         let planner = Planner::new(PARTS, effects.rebuild_work());
-        let around = Around::new(&device.device);
+        let surroundings = SurroundingsBlock::new(&device.device);
         device.check_made()?;
         drop(_entered);
         Ok(Self {
@@ -69,7 +69,7 @@ impl View {
             effects,
             froxels: None,
             kinds: None,
-            around,
+            surroundings,
             planner,
             planned_for: None,
             light_scale: 0.0,

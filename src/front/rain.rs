@@ -16,7 +16,7 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field; nothing changes then.
     pub fn set_rain_areas(&mut self, areas: &[RainArea]) -> Result<()> {
         self.world.set_regions(areas)?;
-        self.follow()
+        self.refresh()
     }
 
     /// The regions with rain of their own, as they were set.

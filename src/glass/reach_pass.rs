@@ -12,7 +12,7 @@ use crate::{
         bind::Slot,
         pass::{self, FullscreenDesc},
     },
-    surroundings::{Around, Told, layout as around_layout},
+    surroundings::{HostSurroundings, SurroundingsBlock, layout as around_layout},
 };
 
 /// `PaneUniform` of `shaders/glass/maps.wgsl`, which explains the fields.
@@ -35,14 +35,14 @@ pub(super) struct MappedKit {
 
 /// A view's maps as its glass asks them.
 pub(super) struct MapReach {
-    around: Around,
+    surroundings: SurroundingsBlock,
     uniform: wgpu::Buffer,
     groups: [wgpu::BindGroup; 2],
 }
 
 /// What a frame's maps are and where the pane is among them.
 pub(crate) struct Mapped<'a> {
-    pub told: Told<'a>,
+    pub told: HostSurroundings<'a>,
     pub pane: PaneUniform,
 }
 
@@ -80,7 +80,7 @@ impl MapReach {
         let uniform = buffer(device, "glass below maps", size_of::<PaneUniform>() as u64);
         let groups =
             [bind(device, &kit.layouts[0], &[uniform.as_entire_binding()]), bind(device, &kit.layouts[1], &[])];
-        Self { around: Around::new(&device.device), uniform, groups }
+        Self { surroundings: SurroundingsBlock::new(&device.device), uniform, groups }
     }
 
     /// Draws the shares into `target`, of [`NODES`] texels.
@@ -92,9 +92,9 @@ impl MapReach {
         mapped: &Mapped<'_>,
         target: &wgpu::TextureView,
     ) {
-        self.around.follow(device, &mapped.told);
+        self.surroundings.update(device, &mapped.told);
         device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&mapped.pane));
-        let groups = [&self.groups[0], &self.groups[1], self.around.bind_group()];
+        let groups = [&self.groups[0], &self.groups[1], self.surroundings.bind_group()];
         pass::draw(encoder, "glass below maps", &kit.reach, &groups, target);
     }
 }

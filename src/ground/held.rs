@@ -172,7 +172,7 @@ impl HeldGround {
         self.host = Some(Box::new(HostGround::new(grid, &world.frame)));
         (self.generation, self.classes_revision) = (self.generation + 1, self.classes_revision + 1);
         self.terrain_from_s = (world.time_s / STEP_S).floor() * STEP_S;
-        self.follow(world)
+        self.refresh(world)
     }
 
     /// The host's terrain.
@@ -402,9 +402,9 @@ impl HeldEffect for HeldGround {
         self.state.map(|state| state.time_s)
     }
 
-    fn follow(&mut self, world: &World) -> Result<()> {
+    fn refresh(&mut self, world: &World) -> Result<()> {
         let Some(host) = &mut self.host else { return Ok(()) };
-        self.revision += u64::from(host.follow(world, self.model, self.state.as_ref())?);
+        self.revision += u64::from(host.refresh(world, self.model, self.state.as_ref())?);
         Ok(())
     }
 

@@ -58,7 +58,7 @@ impl HeldGround {
             return None;
         };
         let numbers = [self.generation, self.revision, self.classes_revision];
-        Some(textures.follow(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
+        Some(textures.upload(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
     }
 
     fn locked(&self) -> MutexGuard<'_, TerrainTextures> {

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::{
     GroundGrid, GroundModel, GroundWater,
     held::GroundState,
-    host_rain::{Overs, Part, liquid},
+    host_rain::{AreasOverGrid, Part, liquid},
     terrain::{RUN, Terrain, TerrainWater},
     water::{Forcing, STEP_S, Step},
 };
@@ -48,16 +48,16 @@ pub(super) struct HostGround {
     pub water: TerrainWater,
     /// Whether `water` is a state of its own by now; else it is what `shown` makes of it.
     pub begun: bool,
-    shown: Option<Shown>,
+    shown: Option<CellInputs>,
     shadow: Shadow,
     glaze: Glaze,
     /// Room for the rates of the cells.
     rates: Vec<f64>,
 }
 
-/// What water that is no state of its own depends on.
+/// What a cell's water depends on where it has no state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Shown {
+struct CellInputs {
     water: GroundWater,
     falling: Falling,
     wind: DVec2,
@@ -134,7 +134,7 @@ impl HostGround {
     }
 
     /// Finds what the standing boxes keep off of the rain that falls under the weather `c`.
-    fn shade_rain(&mut self, c: &Conditions, overs: &Overs, shelters: &[Shelter]) {
+    fn shade_rain(&mut self, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let mut shadow = std::mem::take(&mut self.shadow);
         let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
         self.shade(&mut shadow, self.falls_m_s(c, overs), wind, shelters);
@@ -142,7 +142,7 @@ impl HostGround {
     }
 
     /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have changed.
-    fn ice_over(&mut self, c: &Conditions, overs: &Overs, shelters: &[Shelter]) -> bool {
+    fn ice_over(&mut self, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) -> bool {
         let mut glaze = std::mem::take(&mut self.glaze);
         let mut changed = glaze.ice != c.surface.ice;
         glaze.ice = c.surface.ice;
@@ -199,7 +199,7 @@ impl HostGround {
     }
 
     /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
-    fn falls_m_s(&self, c: &Conditions, overs: &Overs) -> [f64; 3] {
+    fn falls_m_s(&self, c: &Conditions, overs: &AreasOverGrid) -> [f64; 3] {
         let mut heaviest = c.precipitation;
         for over in overs.all().filter(|over| over.reaches) {
             if liquid(&over.shaft.falling) > liquid(&heaviest) {
@@ -213,7 +213,14 @@ impl HostGround {
     }
 
     /// Leads the water through a step under the weather `c`.
-    fn step(&mut self, c: &Conditions, forcing: &Forcing, seconds: f64, overs: &Overs, shelters: &[Shelter]) -> bool {
+    fn step(
+        &mut self,
+        c: &Conditions,
+        forcing: &Forcing,
+        seconds: f64,
+        overs: &AreasOverGrid,
+        shelters: &[Shelter],
+    ) -> bool {
         let rains = forcing.liquid_mm_h > 0.0 || overs.all().any(|o| o.liquid_mm_h > 0.0);
         if !rains && self.water.is_dry() {
             return false;
@@ -246,7 +253,7 @@ impl HostGround {
     }
 
     /// Takes the water from what the weather says of all the ground, where it gets to.
-    fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &Overs, shelters: &[Shelter]) {
+    fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &AreasOverGrid, shelters: &[Shelter]) {
         self.shade_rain(c, overs, shelters);
         let own = liquid(&c.precipitation);
         let kept = |liquid: f64| {
@@ -296,9 +303,9 @@ impl HostGround {
         (self.begun, self.shown) = (false, None);
     }
 
-    /// Brings up to date with weather, areas and shelter what is no state of its own: the ice, and the water where it has no state.
-    /// Says whether anything may have changed.
-    pub fn follow(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
+    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has none. Answers whether
+    /// anything may have changed.
+    pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Looked at as often as a state is stepped: weather and areas may change all the time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
         let c = world.timeline.at(slot_s);
@@ -315,7 +322,7 @@ impl HostGround {
             (GroundModel::Simulated, Some(state)) => state.water(),
             _ => GroundWater::of_cover(&c.surface),
         };
-        let shown = Shown {
+        let shown = CellInputs {
             water,
             falling: c.precipitation,
             wind: DVec2::new(c.wind.east_m_s, c.wind.north_m_s),

@@ -12,9 +12,9 @@ use crate::{
     world::World,
 };
 
-/// The rain of an area over a grid.
+/// A rain area above a grid.
 #[derive(Clone, Copy)]
-pub(super) struct Over {
+pub(super) struct AreaOverGrid {
     pub shaft: Shaft,
     /// Whether it reaches the grid anywhere.
     pub reaches: bool,
@@ -26,14 +26,14 @@ pub(super) struct Over {
 type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Areas over a grid, in their order.
-pub(super) struct Overs {
-    list: [Option<Over>; MAX_AREAS],
-    /// Over all of the grid.
+pub(super) struct AreasOverGrid {
+    list: [Option<AreaOverGrid>; MAX_AREAS],
+    /// AreaOverGrid all of the grid.
     evens: Evens,
 }
 
-impl Overs {
-    pub fn all(&self) -> impl Iterator<Item = &Over> {
+impl AreasOverGrid {
+    pub fn all(&self) -> impl Iterator<Item = &AreaOverGrid> {
         self.list.iter().flatten()
     }
 
@@ -92,7 +92,7 @@ impl Part {
     }
 
     /// What of areas that may be uneven over the grid is even here.
-    fn evens(&self, overs: &Overs, to_enu: &DMat3) -> Evens {
+    fn evens(&self, overs: &AreasOverGrid, to_enu: &DMat3) -> Evens {
         let mut evens = overs.evens;
         for (even, over) in evens.iter_mut().zip(&overs.list) {
             *even = even.or_else(|| self.even(&over.as_ref()?.shaft, to_enu).1);
@@ -103,7 +103,7 @@ impl Part {
 
 impl HostGround {
     /// Rain and drizzle at a cell where the weather has `own`, mm/h.
-    fn liquid_with(&self, overs: &Overs, evens: &Evens, own: f64, cell: usize) -> f64 {
+    fn liquid_with(&self, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
         overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
             let Some(over) = over else { return sum };
             let (share, begun) = even.unwrap_or_else(|| {
@@ -116,12 +116,12 @@ impl HostGround {
     }
 
     /// The same by what is even over all of the grid.
-    pub(super) fn liquid(&self, overs: &Overs, own: f64, cell: usize) -> f64 {
+    pub(super) fn liquid(&self, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
         self.liquid_with(overs, &overs.evens, own, cell)
     }
 
     /// Rain and drizzle at each cell, mm/h: asked once for each run of cells on which areas lie evenly.
-    pub(super) fn liquids(&self, overs: &Overs, own: f64, liquids: &mut Vec<f64>) {
+    pub(super) fn liquids(&self, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
         liquids.clear();
         let count = self.terrain.grid.len();
         for (run, part) in self.runs.iter().enumerate() {
@@ -138,8 +138,8 @@ impl HostGround {
 
 impl HostGround {
     /// The areas over the terrain at a time; `c` is the weather then.
-    pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<Overs> {
-        let mut overs = Overs { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
+    pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
+        let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
         if world.set.regions.is_empty() {
             return Ok(overs);
         }
@@ -148,7 +148,7 @@ impl HostGround {
             let (most, over_all) = self.whole.even(&shaft, &self.to_enu);
             let liquid_mm_h = if most > 0.0 { liquid(&shaft.falling) } else { 0.0 };
             *even = over_all;
-            *place = Some(Over { shaft, reaches: most > 0.0, liquid_mm_h });
+            *place = Some(AreaOverGrid { shaft, reaches: most > 0.0, liquid_mm_h });
         }
         Ok(overs)
     }

@@ -39,6 +39,6 @@ pub(crate) use hollows::pattern_axes;
 pub use host::GroundCell;
 pub use texture::{GroundTexture, SNIPPET_GLSL, SNIPPET_WGSL};
 pub(crate) use uniform::GroundUniform;
-use uniform::Seen;
+use uniform::WetScene;
 pub(crate) use view::{GroundSeen, GroundView};
 pub use water::GroundWater;

@@ -69,7 +69,7 @@ impl TerrainTextures {
     }
 
     /// Uploads what has changed: surface and water of another grid, or one of them alone.
-    pub fn follow(
+    pub fn upload(
         &mut self,
         device: &Device,
         (terrain, water, ice): (&Terrain, &TerrainWater, impl Fn(usize) -> f32),

@@ -80,8 +80,8 @@ pub(crate) struct GroundUniform {
     pub waves: [[f32; 4]; WAVES],
 }
 
-/// How wet surfaces are seen in a frame.
-pub(crate) struct Seen<'a> {
+/// What a frame's wet surfaces depend on.
+pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
     /// What falls on it.
@@ -146,7 +146,7 @@ fn falls_m_s(scene: &Scene) -> [[f32; 4]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|k| speeds[4 * i + k]))
 }
 
-impl Seen<'_> {
+impl WetScene<'_> {
     pub fn uniform(&self) -> GroundUniform {
         let (scene, cover) = (self.scene, self.cover);
         let rain = self.falling.rain_mm_h;

@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use super::{GroundGrid, GroundUniform, Hollows, Seen, SurfaceClass};
+use super::{GroundGrid, GroundUniform, Hollows, SurfaceClass, WetScene};
 use crate::{
     error::Result,
     gpu::Device,
@@ -118,7 +118,7 @@ fn uniform(
 ) -> Result<GroundUniform> {
     let (width, height) = (f64::from(color.width()), f64::from(color.height()));
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
-    let seen = Seen {
+    let seen = WetScene {
         scene: &now.scene,
         cover: &held.cover,
         falling: now.here.precipitation,

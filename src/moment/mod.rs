@@ -15,7 +15,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::{HostLight, Place},
-    surroundings::{OccluderMaps, Shelter, Told},
+    surroundings::{HostSurroundings, OccluderMaps, Shelter},
     weather::Conditions,
     wind::{Carrying, WindGrid},
 };
@@ -73,13 +73,13 @@ impl<'a> Moment<'a> {
         self.maps.is_some_and(|m| m.ranges().is_some())
     }
 
-    /// What the host has told of the world round the camera. `near`: fall speed of the slowest of what is drawn, m/s, and how far
+    /// The host's shelters, occluder maps and lamps as the camera needs them. `near`: fall speed of the slowest of what is drawn, m/s, and how far
     /// off any of it is, m; `exposure`: what it is exposed by.
     ///
     /// # Errors
     /// As [`Moment::carrying`].
-    pub fn told(&self, near: (f64, f64), exposure: f64) -> Result<Told<'_>> {
-        Ok(Told {
+    pub fn host_surroundings(&self, near: (f64, f64), exposure: f64) -> Result<HostSurroundings<'_>> {
+        Ok(HostSurroundings {
             shelters: self.shelters,
             maps: self.maps,
             lights: self.lamps,

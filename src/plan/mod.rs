@@ -25,6 +25,6 @@ pub use estimate::Estimate;
 pub use governor::GaveWay;
 pub use parts::{Part, Reason, StepWork};
 pub use planner::{PartPlan, Plan, Prediction};
-pub(crate) use planner::{Planner, Present, Situation, Unseen};
+pub(crate) use planner::{Planner, Presence, Situation, Unseen};
 pub(crate) use saved::{Settings, read, write};
 pub use work::{Listed, Price, Units, Work};

@@ -114,14 +114,14 @@ pub(crate) struct PartNow {
 
 /// What a frame has of each part, and what each costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Present {
+pub(crate) struct Presence {
     pub pixels: u64,
     pub parts: [PartNow; MOST_PARTS],
     /// Two parts that cost more beside each other, and how much.
     pub together: ([usize; 2], StepWork),
 }
 
-impl Present {
+impl Presence {
     /// Work of the picture if the host drew something everywhere.
     fn most_work(&self) -> f64 {
         let pixels = self.pixels as f64;
@@ -298,7 +298,7 @@ impl<U: Unseen> Planner<U> {
     }
 
     /// Once a frame: takes a gauge's answer, chooses, fades, predicts. `pure`: the picture may not depend on earlier ones.
-    pub fn begin(&mut self, device: &Device, here: &Situation, present: &Present, pure: bool) {
+    pub fn begin(&mut self, device: &Device, here: &Situation, present: &Presence, pure: bool) {
         let mut pure = pure;
         self.work = present.most_work();
         if self.budget.gauges() {
@@ -329,7 +329,7 @@ impl<U: Unseen> Planner<U> {
     }
 
     /// Takes the gauge's answer, if it has come.
-    fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Present) {
+    fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Presence) {
         let Some(samples) = self.gauge.as_mut().and_then(|g| g.advance(device)) else { return };
         let Some(gauging) = self.gauging.take().filter(|g| g.there.is_near(here)) else { return };
         let choices = &mut self.choices;
@@ -358,7 +358,7 @@ impl<U: Unseen> Planner<U> {
         }
     }
 
-    fn fade(&mut self, present: &Present, pure: bool) {
+    fn fade(&mut self, present: &Presence, pure: bool) {
         let ladder = &self.choices.ladder;
         let planned = |i: &usize| self.asked.pinned.0 & ladder.whole(*i) == 0;
         for (i, part) in self.plan.parts.iter_mut().enumerate().filter(|(i, _)| planned(i)) {
@@ -380,7 +380,7 @@ impl<U: Unseen> Planner<U> {
     }
 
     /// Chooses anew among what was gauged last: a reported time may ask for another set in any frame.
-    fn choose(&mut self, present: &Present) {
+    fn choose(&mut self, present: &Presence) {
         let (set, gave_way) = self.choices.choose(&self.governor, &self.asked, self.left_out);
         self.left_out = set;
         let choices = &mut self.choices;
@@ -474,7 +474,7 @@ impl Choices {
     }
 
     /// Work of the picture with everything, and the steps of what is there; that of every part goes into the plan.
-    fn weigh(&self, samples: &[Sample], present: &Present, plan: &mut Plan) -> (Amount, Set) {
+    fn weigh(&self, samples: &[Sample], present: &Presence, plan: &mut Plan) -> (Amount, Set) {
         let share = |kind: f32| samples.iter().filter(|s| s.kind == kind).count() as f64 / samples.len().max(1) as f64;
         let (objects, sky, pixels) = (share(1.0), share(-1.0), present.pixels as f64);
         let work = |step: &StepWork| (objects * step.object + sky * step.sky) * pixels + step.fixed;

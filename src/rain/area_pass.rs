@@ -60,7 +60,7 @@ const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
 /// What decides which pipeline draws, beside the constants of the veil.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Kind {
+pub(super) struct ShaftKind {
     pub multi: bool,
     pub has_depth: bool,
     pub overlaps: bool,
@@ -75,7 +75,7 @@ pub(super) struct AreaPass {
     blocks: wgpu::Buffer,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
-    pipelines: Recent<(Kind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: Recent<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
@@ -200,7 +200,7 @@ impl AreaPass {
         let Some((tables_layout, tables)) = &composition.tables else { return Ok(()) };
         let (blocks, count) = columns.blocks();
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
-        let kind = Kind {
+        let kind = ShaftKind {
             multi: depth.is_some_and(Layer::is_multisampled),
             has_depth: depth.is_some(),
             overlaps: columns.field.columns.iter().any(|c| c.later != 0),
@@ -267,7 +267,7 @@ impl AreaPass {
         &mut self,
         device: &Arc<Device>,
         tables: &wgpu::BindGroupLayout,
-        kind: Kind,
+        kind: ShaftKind,
         constants: &[Constant],
     ) -> Result<wgpu::RenderPipeline> {
         let columns = &self.layouts[usize::from(kind.multi)];

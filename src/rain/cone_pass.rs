@@ -13,7 +13,7 @@ use crate::{
         bind::{self, Slot},
         pass::{FullscreenDesc, fullscreen},
     },
-    surroundings::Around,
+    surroundings::SurroundingsBlock,
 };
 
 /// What a view holds for rain on cones, made when it first draws them.
@@ -104,7 +104,7 @@ impl ConePass {
         &mut self,
         device: &Arc<Device>,
         encoder: &mut wgpu::CommandEncoder,
-        (blocks, layout, around): (&wgpu::Buffer, &wgpu::BindGroupLayout, &Around),
+        (blocks, layout, around): (&wgpu::Buffer, &wgpu::BindGroupLayout, &SurroundingsBlock),
         (picture, maps): (wgpu::Extent3d, bool),
     ) -> Result<()> {
         let first = self.open.is_none();

@@ -24,7 +24,7 @@ use super::{
     Classes,
     lattice::{HIDDEN_M, SIDE_M, random3},
     sizes::{DropSizes, Weight},
-    uniforms::{Air, StreakCamera},
+    uniforms::{MovingAir, StreakCamera},
 };
 
 /// Cones.
@@ -98,7 +98,7 @@ pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
 impl ConeUniform {
     /// For a camera in the air; `carried` answers how far the wind has gone since a moment.
-    pub fn new(seed: u32, classes: &Classes, shot: &StreakCamera<'_>, air: &Air, carried: Carried<'_>) -> Self {
+    pub fn new(seed: u32, classes: &Classes, shot: &StreakCamera<'_>, air: &MovingAir, carried: Carried<'_>) -> Self {
         let mean = Mean::of(classes);
         let fall = DVec3::Z * mean.fall_m_s;
         let relative = air.velocity_m_s - fall - shot.velocity_m_s;

@@ -19,7 +19,7 @@ use super::{
     Classes,
     drops::GRAVITY_M_S2,
     lattice::{SHELLS, fraction, side_m},
-    uniforms::{Air, StreakCamera},
+    uniforms::{MovingAir, StreakCamera},
 };
 use crate::wind::{WindGrid, WindGridKind};
 
@@ -77,7 +77,7 @@ impl StepUniform {
     pub fn new(
         classes: &Classes,
         shot: &StreakCamera<'_>,
-        air: &Air,
+        air: &MovingAir,
         left: Option<Left>,
         carried: &dyn Fn(f64) -> DVec3,
         around: Option<GridWind<'_>>,

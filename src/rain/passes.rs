@@ -21,7 +21,7 @@ use crate::{
         is_kept,
         pass::{self, QuadsDesc},
     },
-    surroundings::{self, Around},
+    surroundings::{self, SurroundingsBlock},
 };
 
 /// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
@@ -34,7 +34,7 @@ pub(crate) struct RainLayer {
     staged: Vec<u8>,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
-    around: wgpu::BindGroupLayout,
+    surroundings: wgpu::BindGroupLayout,
     /// Of drops and of splashes, for each kind of depth, with and without rims of areas near, and occluder maps; for devices
     /// that cannot draw by lists.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 16],
@@ -48,15 +48,15 @@ pub(crate) struct RainLayer {
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
-/// What one frame draws.
-pub(crate) struct Drawn<'a> {
+/// What a frame draws into the layer before the picture.
+pub(crate) struct LayerDraw<'a> {
     pub rain: &'a RainUniform,
     /// Cones in place of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
     /// Drops that are stepped in place of those without a state.
     pub stepped: Option<&'a Stepped<'a>>,
     /// What keeps rain off, and lamps.
-    pub around: &'a Around,
+    pub surroundings: &'a SurroundingsBlock,
     /// Whether maps are among it.
     pub maps: bool,
     /// Splashes, and how many slots of them there are.
@@ -98,7 +98,7 @@ impl RainLayer {
             blocks: crate::gpu::bind::block(&device.device, "rain", STARTS[4]),
             staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            around: surroundings::layout(&device.device),
+            surroundings: surroundings::layout(&device.device),
             pipelines: [const { [None, None] }; 16],
             listed: None,
             cones: None,
@@ -153,11 +153,11 @@ impl RainLayer {
         &mut self,
         device: &Arc<Device>,
         encoder: &mut wgpu::CommandEncoder,
-        drawn: &Drawn<'_>,
+        drawn: &LayerDraw<'_>,
         (picture, kind): (wgpu::Extent3d, (bool, bool, bool)),
         cone_kind: ConeKind,
     ) -> Result<()> {
-        let frame = [&self.layouts[usize::from(kind.0)], &self.around];
+        let frame = [&self.layouts[usize::from(kind.0)], &self.surroundings];
         if let Some(stones) = &drawn.stones {
             self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
         }
@@ -165,7 +165,7 @@ impl RainLayer {
             let cones = self.cones.get_or_insert_with(|| ConePass::new(device));
             cones.prepare(device, block, frame, cone_kind)?;
             if cone_kind.sheltered {
-                let told = (&self.blocks, &self.around, drawn.around);
+                let told = (&self.blocks, &self.surroundings, drawn.surroundings);
                 cones.shelter(device, encoder, told, (picture, drawn.maps))?;
             }
         }
@@ -180,7 +180,7 @@ impl RainLayer {
         &mut self,
         device: &Arc<Device>,
         encoder: &mut wgpu::CommandEncoder,
-        drawn: &Drawn<'_>,
+        drawn: &LayerDraw<'_>,
         color: &wgpu::Texture,
         depth: Option<Layer<'_>>,
     ) -> Result<()> {
@@ -189,11 +189,11 @@ impl RainLayer {
         self.bind(device, depth, multi);
         self.view(device, color.size());
         let kind = (multi, depth.is_some(), drawn.maps);
-        let sheltered = drawn.around.shelters();
+        let sheltered = drawn.surroundings.shelters();
         let areas = drawn.local.is_some();
         let cone_kind = ConeKind { multi, has_depth: depth.is_some(), sheltered, areas };
         let key = [areas, drawn.maps, multi, depth.is_some()].into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
-        let over = (drawn.over, drawn.around.bind_group());
+        let over = (drawn.over, drawn.surroundings.bind_group());
         self.prepare_far(device, encoder, drawn, (color.size(), kind), cone_kind)?;
         if drawn.rain.shells == 0 {
             self.draw_into(encoder, over, |pass, layer| {
@@ -217,7 +217,7 @@ impl RainLayer {
                 .zip([["rain_vertex", "rain_fragment"], ["splash_vertex", "crown_fragment"]])
             {
                 if slot.is_none() {
-                    let frame = [&self.layouts[usize::from(multi)], &self.around];
+                    let frame = [&self.layouts[usize::from(multi)], &self.surroundings];
                     *slot = Some(pipeline(device, frame, entries, kind, areas)?);
                 }
             }
@@ -228,7 +228,7 @@ impl RainLayer {
                 // The drops' layout lacks a group before this one. wgpu 30 does not see that on OpenGL it then lies elsewhere,
                 // nor that a group is set, if it is the same one.
                 pass.set_bind_group(2, None, &[]);
-                pass.set_bind_group(2, drawn.around.bind_group(), &[]);
+                pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
             }
             match (layer.listed.as_deref(), &layer.pipelines[key]) {
                 (Some((cull, crowns)), _) => {
@@ -255,14 +255,14 @@ impl RainLayer {
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        drawn: &Drawn<'_>,
+        drawn: &LayerDraw<'_>,
         depth: (bool, bool),
         splashes: u32,
     ) -> Result<()> {
-        let frame = [&self.layouts[usize::from(depth.0)], &self.around];
+        let frame = [&self.layouts[usize::from(depth.0)], &self.surroundings];
         let make = || Box::new((CullPass::new(&device.device, &self.blocks), CrownPass::new(&device.device)));
         let (cull, crowns) = &mut **self.listed.get_or_insert_with(make);
-        let around = drawn.around.bind_group();
+        let around = drawn.surroundings.bind_group();
         let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
         let (areas, maps) = (drawn.local.is_some(), drawn.maps);
         cull.prepare_draw(device, frame[0], depth)?;
@@ -277,7 +277,7 @@ impl RainLayer {
         Ok(())
     }
 
-    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), drawn: &Drawn<'_>) {
+    fn draw_stones(&self, pass: &mut wgpu::RenderPass<'_>, kind: (bool, bool, bool), drawn: &LayerDraw<'_>) {
         if let (Some(stones), Some(own)) = (&drawn.stones, &self.stones) {
             own.draw(pass, kind, stones);
         }
@@ -309,7 +309,7 @@ impl RainLayer {
         draw(&mut pass, self);
     }
 
-    fn write(&mut self, device: &Device, drawn: &Drawn<'_>) {
+    fn write(&mut self, device: &Device, drawn: &LayerDraw<'_>) {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
         put(STARTS[0], bytemuck::bytes_of(drawn.rain));

@@ -8,7 +8,7 @@ use super::{
     integrated::{GridWind, Left, StepUniform},
     lattice::SHELLS,
     passes::STARTS,
-    uniforms::{Air, RainUniform, StreakCamera},
+    uniforms::{MovingAir, RainUniform, StreakCamera},
 };
 use crate::{
     error::Result,
@@ -42,7 +42,7 @@ pub(crate) struct StepPass {
 pub(crate) struct Stepped<'a> {
     pub classes: &'a Classes,
     pub shot: &'a StreakCamera<'a>,
-    pub air: &'a Air,
+    pub air: &'a MovingAir,
     /// Nothing of earlier frames may show.
     pub anew: bool,
     pub carried: &'a dyn Fn(f64) -> glam::DVec3,

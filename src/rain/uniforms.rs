@@ -102,7 +102,7 @@ pub(crate) struct StreakCamera<'a> {
 
 /// The air that the drops fall in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Air {
+pub(crate) struct MovingAir {
     pub displacement_m: DVec3,
     pub velocity_m_s: DVec3,
     pub time_s: f64,
@@ -111,7 +111,7 @@ pub(crate) struct Air {
 }
 
 impl RainUniform {
-    pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &StreakCamera<'_>, air: &Air) -> Self {
+    pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let moment = |s: usize| Moment::new(s, air.displacement_m, air.time_s);
         Self {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{
-    Air, AreaField, Classes, ConeUniform, Drawn, DropLight, Local, LocalUniform, RainLayer, RainModel, RainSettings,
-    RainUniform, Splashes, Stepped, StoneDraw, StreakCamera, Streaks,
+    AreaField, Classes, ConeUniform, DropLight, LayerDraw, Local, LocalUniform, MovingAir, RainLayer, RainModel,
+    RainSettings, RainUniform, Splashes, Stepped, StoneDraw, StreakCamera, Streaks,
     area_pass::{AreaPass, Columns},
     candidates,
     cones::{BANDS_M, CONES},
@@ -89,18 +89,18 @@ impl RainView {
     }
 
     /// Whether drops fall near the camera, as far as the settings draw them.
-    pub fn rains(&self) -> bool {
+    pub fn has_drops(&self) -> bool {
         self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
     }
 
     /// Whether drops or cones are drawn.
-    fn draws_rain(&self) -> bool {
-        self.rains() && self.shares[0] > 0.0
+    fn draws_drops(&self) -> bool {
+        self.has_drops() && self.shares[0] > 0.0
     }
 
     /// Whether drops, cones or stones are drawn.
-    fn falls_here(&self) -> bool {
-        self.draws_rain() || self.ice.falls(&self.settings)
+    fn draws_near(&self) -> bool {
+        self.draws_drops() || self.ice.falls(&self.settings)
     }
 
     /// How many drops are drawn round the camera.
@@ -118,18 +118,18 @@ impl RainView {
     }
 
     /// Whether anything falls that the settings draw before the picture.
-    pub fn shows(&self) -> bool {
-        self.rains() || self.ice.falls(&self.settings) || !self.field.columns.is_empty()
+    pub fn is_visible(&self) -> bool {
+        self.has_drops() || self.ice.falls(&self.settings) || !self.field.columns.is_empty()
     }
 
     /// Whether anything of it is drawn in this frame.
-    pub fn draws(&self) -> bool {
-        self.falls_here() || !self.field.columns.is_empty()
+    pub fn is_drawn(&self) -> bool {
+        self.draws_near() || !self.field.columns.is_empty()
     }
 
     /// Whether the plan decides how much of the rain is drawn: where no model was asked for.
     pub fn is_planned(&self) -> bool {
-        self.settings.model == RainModel::Automatic && self.rains()
+        self.settings.model == RainModel::Automatic && self.has_drops()
     }
 
     /// Sets the drawn share of all rain, and the share of near rain drawn as single drops.
@@ -327,7 +327,7 @@ impl RainView {
         over: bool,
         to: &mut Recording<'_>,
     ) -> Result<RainReport> {
-        if !self.falls_here() {
+        if !self.draws_near() {
             return Ok(RainReport::default());
         }
         let (device, now, frame, scene) = (to.device, shot.now, shot.frame, &shot.now.scene);
@@ -340,7 +340,7 @@ impl RainView {
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
         // Hail may fall alone.
-        let wet = self.draws_rain();
+        let wet = self.draws_drops();
         block.shells = if wet && near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
@@ -365,11 +365,11 @@ impl RainView {
             around,
             most,
         });
-        let drawn = Drawn {
+        let drawn = LayerDraw {
             rain: &block,
             cones: cones.as_ref(),
             stepped: stepped.as_ref(),
-            around: with.around,
+            surroundings: with.surroundings,
             maps: now.has_maps(),
             splash: &splashes.uniform(
                 (camera.position_m, height_m),
@@ -399,11 +399,11 @@ impl RainView {
 
 impl DrawnEffect for RainView {
     fn stages(&self) -> Stages {
-        if self.shows() { Stages::PARTICLES } else { Stages(0) }
+        if self.is_visible() { Stages::PARTICLES } else { Stages(0) }
     }
 
     fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
-        if stages.has(Stages::PARTICLES) && self.draws() {
+        if stages.has(Stages::PARTICLES) && self.is_drawn() {
             let _ = self.layer(device, color);
         }
     }
@@ -417,10 +417,10 @@ impl DrawnEffect for RainView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         self.set_shares([1, 0].map(|step| shot.share(&candidates::RAIN, step)));
         to.block.drawn[3] = 1.0;
-        if self.shows() {
+        if self.is_visible() {
             (to.block.drops, to.block.drawn[3]) = self.hidden(shot.device, shot.now);
         }
-        if self.draws() {
+        if self.is_drawn() {
             let layer = self.layer(shot.device, shot.color.texture).clone();
             to.set_texture(Texture::Before, Some(layer));
         } else {
@@ -482,9 +482,9 @@ fn grid_wind<'a>(now: &Moment<'a>) -> Option<(&'a Arc<WindGrid>, DVec3)> {
 }
 
 /// The air that drops are drawn in.
-fn air(now: &Moment<'_>) -> Result<Air> {
+fn air(now: &Moment<'_>) -> Result<MovingAir> {
     let (wind, c) = (now.carrying()?, &now.scene.conditions);
-    Ok(Air {
+    Ok(MovingAir {
         displacement_m: wind.displacement_m(),
         velocity_m_s: wind.velocity_m_s(),
         time_s: now.time_s,

@@ -76,9 +76,9 @@ impl FollowedSky {
         }
     }
 
-    /// Leads the tables after `planet` by as much work as `share` of a build with the default settings; a draft of them at the first frame, and whole with a
-    /// share of 1, where the picture may not depend on earlier ones. Says whether anything was built.
-    pub fn follow(
+    /// Builds the tables of `planet` on by a `share` of the work of a build with the default settings. The first frame has a draft; a share
+    /// of 1 builds them whole, for pictures that may not depend on earlier ones. Answers whether anything was built.
+    pub fn build_toward(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,

@@ -67,7 +67,7 @@ impl DrawnEffect for SkyView {
             self.volume = SkyVolume::new(&tables)?;
             self.rebuild_work = rebuild_work(self.volume.settings());
         }
-        let work = tables.follow(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
+        let work = tables.build_toward(to.device, to.encoder, &at.now.scene.planet, at.frame.frame_id, at.share)?;
         to.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(to.encoder, &tables, &Observer::of(&at.now.scene, at.frame.is_pure()))?;
         to.ends(CostItem::SkyView, drawn)?;

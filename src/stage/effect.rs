@@ -14,7 +14,7 @@ use crate::{
         parts::{MOST_PARTS, MOST_RUNGS, Part},
     },
     scene::ViewRays,
-    surroundings::Around,
+    surroundings::SurroundingsBlock,
 };
 
 /// What an effect is brought up to date for, before the first draw of a frame.
@@ -72,7 +72,7 @@ pub(crate) struct Drawing<'a> {
     pub composition: &'a Composition,
     /// The frame's block on the GPU.
     pub block: &'a wgpu::Buffer,
-    pub around: &'a Around,
+    pub surroundings: &'a SurroundingsBlock,
 }
 
 /// Takes a part, whether a picture has it, and the work of each of its steps.

@@ -29,7 +29,7 @@ pub struct StarDepth<'a> {
 }
 
 /// What a pipeline is made for: the target's format, several samples of depth, any depth at all.
-type Kind = (wgpu::TextureFormat, bool, bool);
+type PointsKind = (wgpu::TextureFormat, bool, bool);
 
 /// The stars that the buffer holds.
 struct Loaded {
@@ -53,9 +53,9 @@ pub struct StarPass {
     none: wgpu::TextureView,
     loaded: Option<Loaded>,
     bound: Option<(Option<wgpu::TextureView>, wgpu::BindGroup)>,
-    pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
+    pipelines: Vec<(PointsKind, wgpu::RenderPipeline)>,
     /// The pipeline's kind and the instances of the next draw.
-    prepared: Option<(Kind, u32)>,
+    prepared: Option<(PointsKind, u32)>,
 }
 
 impl StarPass {
@@ -206,7 +206,7 @@ impl Frustum {
 fn pipeline(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
-    (format, multi, has_depth): Kind,
+    (format, multi, has_depth): PointsKind,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "stars/points.wgsl:multi" } else { "stars/points.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];

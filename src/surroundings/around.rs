@@ -34,21 +34,21 @@ const STARTS: [usize; 4] = {
 };
 
 /// Blocks and bind group of one view.
-pub(crate) struct Around {
+pub(crate) struct SurroundingsBlock {
     layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
     staged: Vec<u8>,
     /// Whether the buffer says that there is something.
-    told: bool,
+    holds_any: bool,
     /// Whether anything near the camera keeps rain off.
     sheltered: bool,
     none: wgpu::TextureView,
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
 
-/// What there is, for shaders' variants.
+/// Which surroundings there are: shaders' variants depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub(crate) struct Present {
+pub(crate) struct HasSurroundings {
     /// Anything that keeps rain off.
     pub shelter: bool,
     /// Maps among it.
@@ -57,8 +57,8 @@ pub(crate) struct Present {
     pub lamps: bool,
 }
 
-/// What a host has told, as a camera at `eye` whose axes `to_enu` turns needs it.
-pub(crate) struct Told<'a> {
+/// The host's shelters, occluder maps and lamps, and the camera near which they matter: at `eye`, its axes turned by `to_enu`.
+pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
@@ -74,11 +74,11 @@ pub(crate) struct Told<'a> {
     pub exposure: f64,
 }
 
-impl Told<'_> {
-    /// What there is of it.
-    pub fn present(&self) -> Present {
+impl HostSurroundings<'_> {
+    /// Which there are.
+    pub fn present(&self) -> HasSurroundings {
         let maps = self.maps.is_some_and(|m| m.ranges().is_some());
-        Present { shelter: maps || !self.shelters.is_empty(), maps, lamps: !self.lights.is_empty() }
+        HasSurroundings { shelter: maps || !self.shelters.is_empty(), maps, lamps: !self.lights.is_empty() }
     }
 }
 
@@ -94,25 +94,25 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     bind::layout(device, "around", all, &slots)
 }
 
-impl Around {
+impl SurroundingsBlock {
     pub fn new(device: &wgpu::Device) -> Self {
         let none = bind::nothing(device, wgpu::TextureFormat::R8Uint);
         let buffer = crate::gpu::bind::block(device, "around", STARTS[3]);
         let layout = layout(device);
         let bound = (None, group(device, &layout, &buffer, &none));
-        Self { layout, buffer, staged: vec![0; STARTS[3]], told: false, sheltered: false, none, bound }
+        Self { layout, buffer, staged: vec![0; STARTS[3]], holds_any: false, sheltered: false, none, bound }
     }
 
     /// Brings the blocks up to date for a frame.
-    pub fn follow(&mut self, device: &Device, told: &Told<'_>) {
-        let present = told.present();
+    pub fn update(&mut self, device: &Device, host: &HostSurroundings<'_>) {
+        let present = host.present();
         self.sheltered = false;
-        if present != Present::default() || self.told {
-            let end = self.stage(told);
+        if present != HasSurroundings::default() || self.holds_any {
+            let end = self.stage(host);
             device.queue.write_buffer(&self.buffer, 0, &self.staged[..end]);
         }
-        self.told = present != Present::default();
-        let ranges = told.maps.and_then(|m| m.ranges());
+        self.holds_any = present != HasSurroundings::default();
+        let ranges = host.maps.and_then(|m| m.ranges());
         if self.bound.0.as_ref() != ranges {
             let view = ranges.map(|t| t.create_view(&Default::default()));
             let view = view.as_ref().unwrap_or(&self.none);
@@ -121,17 +121,17 @@ impl Around {
     }
 
     /// Writes the blocks; answers where what is read of them ends.
-    fn stage(&mut self, told: &Told<'_>) -> usize {
+    fn stage(&mut self, host: &HostSurroundings<'_>) -> usize {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
-        let matters = |s: &Shelter| s.matters(told.eye, told.to_enu, told.wind_m_s, told.slowest_m_s, told.reach_m);
-        let boxes = &told.shelters[..told.shelters.len().min(MAX_SHELTERS)];
+        let matters = |s: &Shelter| s.matters(host.eye, host.to_enu, host.wind_m_s, host.slowest_m_s, host.reach_m);
+        let boxes = &host.shelters[..host.shelters.len().min(MAX_SHELTERS)];
         let (mut i, mut cuts) = (0, 0);
         let mut near = 0u32;
         for first in [true, false] {
             for shelter in boxes.iter().filter(|s| matters(s) == first) {
                 let at = STARTS[0] + 16 + BOX_BYTES * i;
-                put(at, bytemuck::cast_slice(&shelter.rows(told.eye, told.to_enu)));
+                put(at, bytemuck::cast_slice(&shelter.rows(host.eye, host.to_enu)));
                 let begin = cuts;
                 for plane in shelter.cuts() {
                     put(STARTS[0] + CUTS_AT + 16 * cuts, bytemuck::cast_slice(&plane));
@@ -144,8 +144,8 @@ impl Around {
         }
         put(STARTS[0], bytemuck::cast_slice(&[near, i as u32]));
         let mut maps = 0u32;
-        if let Some(m) = told.maps {
-            for uniform in m.uniforms(told.eye, told.to_enu, told.time_s) {
+        if let Some(m) = host.maps {
+            for uniform in m.uniforms(host.eye, host.to_enu, host.time_s) {
                 put(STARTS[1] + 16 + maps as usize * size_of::<OccluderUniform>(), bytemuck::bytes_of(&uniform));
                 maps += 1;
             }
@@ -153,10 +153,10 @@ impl Around {
         }
         put(STARTS[1], &maps.to_ne_bytes());
         self.sheltered = near + maps > 0;
-        let lights = &told.lights[..told.lights.len().min(MAX_LIGHTS)];
+        let lights = &host.lights[..host.lights.len().min(MAX_LIGHTS)];
         put(STARTS[2], &(lights.len() as u32).to_ne_bytes());
         for (i, light) in lights.iter().enumerate() {
-            let uniform = light.uniform(told.eye, told.to_enu, told.exposure);
+            let uniform = light.uniform(host.eye, host.to_enu, host.exposure);
             put(STARTS[2] + 16 + i * size_of::<LightUniform>(), bytemuck::bytes_of(&uniform));
         }
         // What lies behind the last lamp is not read.

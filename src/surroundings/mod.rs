@@ -8,5 +8,5 @@ pub mod shelter;
 pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 
-pub(crate) use around::{Around, Told, layout};
+pub(crate) use around::{HostSurroundings, SurroundingsBlock, layout};
 pub(crate) use occluder_maps::OccluderMaps;

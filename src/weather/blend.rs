@@ -5,7 +5,7 @@
 //! field is continuous in time, those of layers that come and go too.
 
 use super::conditions::{
-    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, FogLayer, SeaState, SurfaceCover,
+    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, SeaState, SurfaceCover,
     WindProfile, clear_between,
 };
 
@@ -124,7 +124,7 @@ impl AerosolLayer {
     }
 }
 
-impl FogLayer {
+impl GroundLayer {
     fn blend(&self, to: &Self, w: f64) -> Self {
         let q = share(self.extinction_per_m, to.extinction_per_m, w);
         Self {

@@ -22,7 +22,7 @@ pub struct Conditions {
     /// Dry or swollen particles that fill the mixed layer; the sky's Mie medium.
     pub aerosol: AerosolLayer,
     /// Droplets or lifted snow in a layer at the ground; drawn by the fog.
-    pub fog: FogLayer,
+    pub fog: GroundLayer,
     /// What falls.
     pub precipitation: Falling,
     /// Cloud layers, lowest first, each in a slot of its height class; those with `cover == 0` are absent. The order of the slots
@@ -89,7 +89,7 @@ pub struct AerosolLayer {
 ///
 /// Where `extinction_per_m` is 0 there is no layer and the other fields mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FogLayer {
+pub struct GroundLayer {
     /// Extinction inside the layer at 550 nm, 1/m.
     pub extinction_per_m: f64,
     /// Extinction goes with (wavelength / 550 nm)^-exponent; 0 for droplets.
@@ -254,7 +254,7 @@ impl AerosolLayer {
     }
 }
 
-impl FogLayer {
+impl GroundLayer {
     /// No fog. The geometry is a shallow one so that a blend has something to start from.
     pub const NONE: Self = Self {
         extinction_per_m: 0.0,

@@ -25,7 +25,7 @@ pub use cloud_light::{
     CloudLight, cloud_optical_depth, slab_diffuse_reflectance, slab_reflectance, water_path_for_rate_kg_m2,
 };
 pub use conditions::{
-    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, FogLayer, LN_20, SeaState, SurfaceCover,
+    AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, LN_20, SeaState, SurfaceCover,
     WindProfile,
 };
 pub use derive::{Overrides, derive, derive_with};

@@ -1,7 +1,7 @@
 //! What hangs in the air: particles through the mixed layer, droplets in a layer at the ground, and how a reported visibility
 //! is shared out among them.
 
-use super::conditions::{AerosolLayer, Air, FogLayer, LN_20};
+use super::conditions::{AerosolLayer, Air, GroundLayer, LN_20};
 use super::derive::Overrides;
 use super::kinds::{AerosolKind, FogKind, LoftedKind};
 use super::model::Weather;
@@ -215,13 +215,13 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
 /// The layer at the ground. Droplets of 10 um scatter without colour or loss (albedo 1, asymmetry 0.85: Hess et al. 1998,
 /// fog); lifted snow has asymmetry 0.89 and dust its own properties. Where dry particles are too thick for the sky, the
 /// layer is what the sky leaves of them: as much as above one another in `aerosol`, thinning out to twice its scale height.
-pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> FogLayer {
+pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
-        return FogLayer::NONE;
+        return GroundLayer::NONE;
     }
     if is_dry(w) && visibility_inside_m(w).is_none() {
         let top = w.fog.top_m.or(w.lofted.top_m).unwrap_or(2.0 * aerosol.scale_height_m);
-        return FogLayer {
+        return GroundLayer {
             extinction_per_m,
             angstrom_exponent: aerosol.angstrom_exponent,
             single_scattering_albedo: aerosol.single_scattering_albedo,
@@ -252,7 +252,7 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
         _ => (1.0, 200.0),
     };
     let sheet = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing);
-    FogLayer {
+    GroundLayer {
         extinction_per_m,
         angstrom_exponent: angstrom,
         single_scattering_albedo: albedo,

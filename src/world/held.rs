@@ -30,8 +30,8 @@ pub(crate) trait HeldEffect {
         None
     }
 
-    /// Brings up to date what follows from weather, surroundings and time without being a state.
-    fn follow(&mut self, _world: &World) -> Result<()> {
+    /// Updates what follows from weather, surroundings and time without being a state.
+    fn refresh(&mut self, _world: &World) -> Result<()> {
         Ok(())
     }
 

@@ -64,7 +64,7 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
     } = aerosol;
     out.extend([extinction_per_m, angstrom_exponent, absorption_angstrom_exponent, single_scattering_albedo]);
     out.extend([asymmetry, scale_height_m, reference_altitude_m]);
-    let FogLayer {
+    let GroundLayer {
         extinction_per_m,
         angstrom_exponent,
         single_scattering_albedo,

@@ -10,7 +10,7 @@ use crate::{
     rain::{
         DropLight,
         lattice::{self, Drop, SPEED_UNIT},
-        uniforms::{Air, Classes, StreakCamera},
+        uniforms::{Classes, MovingAir, StreakCamera},
     },
     scene::{Camera, DepthMapping, ViewRays},
     surroundings,
@@ -27,7 +27,7 @@ struct Bench {
     device: Arc<Device>,
     blocks: wgpu::Buffer,
     pass: CullPass,
-    around: surroundings::Around,
+    surroundings: surroundings::SurroundingsBlock,
     classes: Classes,
     clip: DMat4,
     /// Of the camera.
@@ -46,9 +46,9 @@ impl Bench {
             mapped_at_creation: false,
         });
         let pass = CullPass::new(&device.device, &blocks);
-        let around = surroundings::Around::new(&device.device);
+        let surroundings = surroundings::SurroundingsBlock::new(&device.device);
         let classes = Classes::new(&falling, 1.0, u32::MAX);
-        Self { device, blocks, pass, around, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
+        Self { device, blocks, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
     }
 
     /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the streaks.
@@ -66,7 +66,8 @@ impl Bench {
             exposure_s: EXPOSURE_S,
             gain: 1.0,
         };
-        let air = Air { displacement_m: WIND * TIME_S, velocity_m_s: WIND, time_s: TIME_S, extinction_per_m: 0.0 };
+        let air =
+            MovingAir { displacement_m: WIND * TIME_S, velocity_m_s: WIND, time_s: TIME_S, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
         self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
@@ -74,7 +75,7 @@ impl Bench {
         let layout = surroundings::layout(&self.device.device);
         let lattice = Lattice { shells: 4, per_shell: self.classes.per_shell, states: None, areas: false, maps: false };
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        self.pass.find(&self.device, &mut pass, (&layout, self.around.bind_group()), lattice).unwrap();
+        self.pass.find(&self.device, &mut pass, (&layout, self.surroundings.bind_group()), lattice).unwrap();
         drop(pass);
         self.device.submit_and_wait(encoder).unwrap();
         let found: Vec<u32> = self.read(&self.pass.found);

@@ -72,7 +72,7 @@ impl Bench {
             exposure_s: 1.0 / 60.0,
             gain: 1.0,
         };
-        let air = Air { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
+        let air = MovingAir { displacement_m: wind * time_s, velocity_m_s: wind, time_s, extinction_per_m: 0.0 };
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
         self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
