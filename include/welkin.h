@@ -66,12 +66,17 @@
  *
  * WHAT COMES LATER, AND HOW
  *
- * Numbers, names and layouts here never change within a major version; later versions add new ones. Planned, so that a
- * host can prepare: terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new
- * child of the context with its own functions; base colour and motion are images appended to
- * the target structs; bodies of water are new functions of the context; allocator and file callbacks and the star
- * sky's matrix come as extensions of wk_device_desc and wk_context_desc through `next`; snow falls in the stage
- * PARTICLES, as rain does.
+ * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a major
+ * version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
+ * - Clouds: a layer's own wind is in wk_cloud_layer. They are drawn in the stages BACKGROUND and MEDIUM.
+ * - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
+ *   wk_ground_texture.snow_texture.
+ * - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
+ *   own functions. Terrain and sea test and write the host's depth, which its target struct lends with depth_access.
+ * - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
+ * - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
+ *
+ * A field, a bit or a value that this version does not draw yet is refused by name where it is set.
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -1456,6 +1461,8 @@ typedef uint32_t wk_cloud_layer_has_flags;
 #define WK_CLOUD_LAYER_HAS_WATER 2
 /** droplet_radius_um */
 #define WK_CLOUD_LAYER_HAS_DROPLET_RADIUS 4
+/** wind_m_s and wind_from_deg. Not in this version: clouds do not move yet. */
+#define WK_CLOUD_LAYER_HAS_WIND 8
 
 /** One layer of cloud. */
 typedef struct wk_cloud_layer {
@@ -1479,6 +1486,10 @@ typedef struct wk_cloud_layer {
     double water_g_m3;
     /** Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind. */
     double droplet_radius_um;
+    /** Optional, not in this version: speed of the layer's own wind, m/s. Default 0. */
+    double wind_m_s;
+    /** Optional, not in this version: where that wind comes from, degrees clockwise from true north. Default 0. */
+    double wind_from_deg;
 } wk_cloud_layer;
 
 /** Every field of `wk_cloud_layer` at its default. */
@@ -1492,7 +1503,9 @@ typedef struct wk_cloud_layer {
     /* base_m */ 0.0, \
     /* thickness_m */ 0.0, \
     /* water_g_m3 */ 0.0, \
-    /* droplet_radius_um */ 0.0 \
+    /* droplet_radius_um */ 0.0, \
+    /* wind_m_s */ 0.0, \
+    /* wind_from_deg */ 0.0 \
 }
 
 /** Which optional fields of a wk_weather are set. */
@@ -4325,6 +4338,18 @@ typedef uint32_t wk_area_motion;
 /** A velocity of its own. */
 #define WK_AREA_MOTION_OWN 1
 
+/** Kind of snow in a rain area. */
+typedef uint32_t wk_area_snow;
+
+/** None. */
+#define WK_AREA_SNOW_NONE 0
+/** Flakes. Not in this version. */
+#define WK_AREA_SNOW_FLAKES 1
+/** Snow grains. Not in this version. */
+#define WK_AREA_SNOW_GRAINS 2
+/** Snow pellets. Not in this version. */
+#define WK_AREA_SNOW_PELLETS 3
+
 /** A region with rain of its own. */
 typedef struct wk_rain_area {
     /** sizeof(wk_rain_area) of your header. */
@@ -4375,8 +4400,8 @@ typedef struct wk_rain_area {
     double at_s;
     /** Default WK_AREA_MOTION_WITH_WIND. */
     wk_area_motion motion;
-    /** Must be 0. */
-    uint32_t reserved0;
+    /** What falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version. */
+    wk_area_snow snow;
 } wk_rain_area;
 
 /** Every field of `wk_rain_area` at its default. */
@@ -4396,14 +4421,14 @@ typedef struct wk_rain_area {
     /* velocity_m_s */ { 0.0, 0.0 }, \
     /* at_s */ 0.0, \
     /* motion */ WK_AREA_MOTION_WITH_WIND, \
-    /* reserved0 */ 0 \
+    /* snow */ WK_AREA_SNOW_NONE \
 }
 
 /**
  * Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
  * removes all. At most 16. Unchanged after an error.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
  */
 WK_API
 wk_status wk_context_set_rain_areas(wk_context *context,
@@ -5256,6 +5281,8 @@ typedef struct wk_ground_texture {
      * the camera's position.
      */
     double uv_from_world[2][4];
+    /** The texture of what lies on the ground, of the same grid: 0 in this version, later that of the snow. */
+    uint64_t snow_texture;
 } wk_ground_texture;
 
 /** Every field of `wk_ground_texture` at its default. */
@@ -5268,7 +5295,8 @@ typedef struct wk_ground_texture {
     /* revision */ UINT64_C(0), \
     /* width */ 0, \
     /* height */ 0, \
-    /* uv_from_world */ { { 0.0, 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 0.0 } } \
+    /* uv_from_world */ { { 0.0, 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 0.0 } }, \
+    /* snow_texture */ UINT64_C(0) \
 }
 
 /**

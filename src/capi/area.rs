@@ -17,7 +17,7 @@ use super::{
     status::*,
 };
 use crate::{
-    error::Status,
+    error::{Error, Status},
     rain::{AreaMotion, AreaRain, AreaShape, MAX_AREAS, MAX_CORNERS, RainArea},
 };
 
@@ -31,6 +31,17 @@ pub const WK_AREA_RAIN_STEADY: wk_area_rain = 0;
 pub const WK_AREA_RAIN_SHOWERS: wk_area_rain = 1;
 /// Drizzle.
 pub const WK_AREA_RAIN_DRIZZLE: wk_area_rain = 2;
+
+/// Kind of snow in a rain area.
+pub type wk_area_snow = u32;
+/// None.
+pub const WK_AREA_SNOW_NONE: wk_area_snow = 0;
+/// Flakes. Not in this version.
+pub const WK_AREA_SNOW_FLAKES: wk_area_snow = 1;
+/// Snow grains. Not in this version.
+pub const WK_AREA_SNOW_GRAINS: wk_area_snow = 2;
+/// Snow pellets. Not in this version.
+pub const WK_AREA_SNOW_PELLETS: wk_area_snow = 3;
 
 /// Motion of a rain area.
 pub type wk_area_motion = u32;
@@ -79,8 +90,8 @@ pub struct wk_rain_area {
     pub at_s: f64,
     /// Default WK_AREA_MOTION_WITH_WIND.
     pub motion: wk_area_motion,
-    /// Must be 0.
-    pub reserved0: u32,
+    /// What falls in place of the rain. Default WK_AREA_SNOW_NONE, the only one in this version.
+    pub snow: wk_area_snow,
 }
 
 impl wk_rain_area {
@@ -100,7 +111,7 @@ impl wk_rain_area {
         velocity_m_s: [0.0, 0.0],
         at_s: 0.0,
         motion: WK_AREA_MOTION_WITH_WIND,
-        reserved0: 0,
+        snow: WK_AREA_SNOW_NONE,
     };
 
     fn corners(&self) -> [[f64; 2]; MAX_CORNERS] {
@@ -135,7 +146,7 @@ impl wk_rain_area {
 /// Sets the rain areas, in place of those before. They move by themselves: set them again only to change them. count 0
 /// removes all. At most 16. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_rain_areas(
     context: *mut wk_context,
@@ -147,6 +158,10 @@ pub unsafe extern "C" fn wk_context_set_rain_areas(
         let object = call.get::<ContextObject>("context", context)?;
         let mut list = [RainArea::default(); MAX_AREAS];
         let mut take = |i: usize, c: wk_rain_area| {
+            if c.snow != WK_AREA_SNOW_NONE {
+                let what = "must be WK_AREA_SNOW_NONE: no snow falls in this version";
+                return Err(Error::about(Status::Unsupported, format!("areas[{i}].snow"), what));
+            }
             list[i] = c.area();
             Ok(())
         };

@@ -53,6 +53,8 @@ pub struct wk_ground_texture {
     /// 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
     /// the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
+    /// The texture of what lies on the ground, of the same grid: 0 in this version, later that of the snow.
+    pub snow_texture: u64,
 }
 
 impl wk_ground_texture {
@@ -66,6 +68,7 @@ impl wk_ground_texture {
         width: 0,
         height: 0,
         uv_from_world: [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]],
+        snow_texture: 0,
     };
 }
 

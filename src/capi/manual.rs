@@ -67,9 +67,14 @@
 //!
 //! WHAT COMES LATER, AND HOW
 //!
-//! Numbers, names and layouts here never change within a major version; later versions add new ones. Planned, so that a
-//! host can prepare: terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new
-//! child of the context with its own functions; base colour and motion are images appended to
-//! the target structs; bodies of water are new functions of the context; allocator and file callbacks and the star
-//! sky's matrix come as extensions of wk_device_desc and wk_context_desc through `next`; snow falls in the stage
-//! PARTICLES, as rain does.
+//! Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a major
+//! version, and later versions add new ones. Settled for what is planned, so that a host can prepare:
+//! - Clouds: a layer's own wind is in wk_cloud_layer. They are drawn in the stages BACKGROUND and MEDIUM.
+//! - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
+//!   wk_ground_texture.snow_texture.
+//! - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
+//!   own functions. Terrain and sea test and write the host's depth, which its target struct lends with depth_access.
+//! - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
+//! - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
+//!
+//! A field, a bit or a value that this version does not draw yet is refused by name where it is set.

@@ -66,6 +66,8 @@ pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
 pub const WK_CLOUD_LAYER_HAS_WATER: wk_cloud_layer_has_flags = 2;
 /// droplet_radius_um
 pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
+/// wind_m_s and wind_from_deg. Not in this version: clouds do not move yet.
+pub const WK_CLOUD_LAYER_HAS_WIND: wk_cloud_layer_has_flags = 8;
 
 /// How precipitation falls.
 pub type wk_precipitation_flags = u32;
@@ -100,6 +102,10 @@ pub struct wk_cloud_layer {
     pub water_g_m3: f64,
     /// Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind.
     pub droplet_radius_um: f64,
+    /// Optional, not in this version: speed of the layer's own wind, m/s. Default 0.
+    pub wind_m_s: f64,
+    /// Optional, not in this version: where that wind comes from, degrees clockwise from true north. Default 0.
+    pub wind_from_deg: f64,
 }
 
 impl wk_cloud_layer {
@@ -114,6 +120,8 @@ impl wk_cloud_layer {
         thickness_m: 0.0,
         water_g_m3: 0.0,
         droplet_radius_um: 0.0,
+        wind_m_s: 0.0,
+        wind_from_deg: 0.0,
     };
 }
 

@@ -9,7 +9,7 @@ use super::{
     weather::*,
 };
 use crate::{
-    error::{Error, Result},
+    error::{Error, Result, Status},
     weather::{
         Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, MAX_CLOUD_LAYERS, Overrides,
         Precipitation, PrecipitationKind, Sea, Surface, SurfaceState, Swell, Weather, Wind,
@@ -29,7 +29,12 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     // SAFETY: as above.
     unsafe { layout::check_chain(&param, c.next, &[WK_STRUCT_TYPE_WEATHER_OVERRIDES])? };
     let mut weather = fields(&c).map_err(|e| flat_name(param, e))?;
-    let mut take = |_: usize, layer: wk_cloud_layer| {
+    let mut take = |i: usize, layer: wk_cloud_layer| {
+        if layer.has & WK_CLOUD_LAYER_HAS_WIND != 0 {
+            let field = format!("{param}.clouds[{i}].has");
+            let what = "holds WK_CLOUD_LAYER_HAS_WIND: clouds do not move in this version, leave the bit out";
+            return Err(Error::about(Status::Unsupported, field, what));
+        }
         weather.clouds.push(cloud(&layer)?);
         Ok(())
     };

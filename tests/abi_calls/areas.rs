@@ -36,11 +36,13 @@ fn an_area_rains_where_it_is_and_a_bad_one_is_refused_by_name() {
         (wk_rain_area { at_s: 1e11, ..shower }, "areas[1].at_s must be in"),
         (wk_rain_area { rain: 9, ..shower }, "areas[1].rain must be"),
         (wk_rain_area { motion: 9, ..shower }, "areas[1].motion must be"),
-        (wk_rain_area { reserved0: 9, ..shower }, "areas[1].reserved0 must be 0"),
+        (wk_rain_area { snow: 9, ..shower }, "areas[1].snow must be"),
     ] {
         assert_eq!(set(&[shower, bad], 2), WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains(wanted), "{wanted}: {}", message());
     }
+    assert_eq!(set(&[shower, wk_rain_area { snow: WK_AREA_SNOW_FLAKES, ..shower }], 2), WK_ERROR_UNSUPPORTED);
+    assert!(message().contains("areas[1].snow must be WK_AREA_SNOW_NONE"), "{}", message());
     assert_eq!(set(&[shower; 17], 17), WK_ERROR_INVALID_ARGUMENT);
     assert!(message().contains("at most 16"), "{}", message());
     assert_eq!(rates(), [24.0, 12.0, 0.0, 3.0], "what ran goes on");

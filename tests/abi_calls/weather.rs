@@ -60,6 +60,11 @@ fn lists_have_a_limit_and_a_stride() {
     let (status, text) = set(&world, |w| (w.clouds, w.cloud_count) = (at, 2));
     assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
     assert!(text.contains("weather.clouds[1].cover must be in [0, 1], got 2"), "{text}");
+    layers[1] = wk_cloud_layer { has: WK_CLOUD_LAYER_HAS_WIND, ..layers[0] };
+    let at = layers.as_ptr();
+    let (status, text) = set(&world, |w| (w.clouds, w.cloud_count) = (at, 2));
+    assert_eq!(status, WK_ERROR_UNSUPPORTED);
+    assert!(text.contains("weather.clouds[1].has holds WK_CLOUD_LAYER_HAS_WIND"), "{text}");
     // Every second element: the wrong one is stepped over.
     let (status, text) = set(&world, |w| (w.clouds, w.cloud_count, w.cloud_stride) = (at, 3, 2 * stride));
     assert_eq!(status, WK_OK, "{text}");
