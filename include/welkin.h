@@ -2970,6 +2970,59 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
+ * Queries: the sky's light by direction
+ *
+ * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
+ * picture shows it where the host drew nothing. It has the clear air, the closed part of the cloud deck, fog with what
+ * falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
+ * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
+ *
+ * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in
+ * a new air solves the reference (a second or more; weather in transition is a new air at every time), and other threads
+ * that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
+ * direction costs and how far pictures may be off.
+ * ====================================================================================================
+ */
+
+/** The sky's light from one direction; plain values of a list. */
+typedef struct wk_sky_radiance {
+    /** cd/m^2, three channels of linear Rec. 709, none below 0. */
+    double radiance_cd_m2[3];
+} wk_sky_radiance;
+
+/**
+ * Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
+ * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes from
+ * one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+ */
+WK_API
+wk_status wk_context_get_sky_radiance(const wk_context *context,
+                                      const double (*position_m)[3],
+                                      const double (*directions)[3],
+                                      uint32_t count,
+                                      uint32_t direction_size,
+                                      wk_sky_radiance *radiances,
+                                      uint32_t radiance_size);
+
+/**
+ * As wk_context_get_sky_radiance, at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_sky_radiance and wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sky_radiance_at(const wk_context *context,
+                                         const double (*position_m)[3],
+                                         const double (*directions)[3],
+                                         uint32_t count,
+                                         uint32_t direction_size,
+                                         double time_s,
+                                         wk_sky_radiance *radiances,
+                                         uint32_t radiance_size);
+
+/*
+ * ====================================================================================================
  * Queries: wind and rain
  *
  * How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any

@@ -1,5 +1,5 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (copies, record, first, fog, glass, ground, parts, rain, sky).
+//! (copies, record, first, fog, glass, ground, parts, radiance, rain, sky).
 
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
@@ -9,6 +9,7 @@ mod fog;
 mod glass;
 mod ground;
 mod parts;
+mod radiance;
 mod rain;
 mod record;
 mod sky;
@@ -33,6 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("rain") {
         rain::run()?;
+    }
+    if wanted("radiance") {
+        radiance::run()?;
     }
     if wanted("sky") {
         sky::run()?;

@@ -39,6 +39,8 @@ pub mod conditions;
 
 pub mod query;
 
+pub mod radiance;
+
 pub mod wind;
 
 pub mod frame;

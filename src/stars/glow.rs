@@ -187,7 +187,7 @@ impl NightSky {
     }
 
     /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air: `L T + S (1 - T)`. Below the
-    /// horizon as at it.
+    /// horizon the air is that at it.
     ///
     /// T is the air's transmittance. S is what lit air without end sends: half the mean of the dome, as air scatters alike to all sides,
     /// loses little, and sees the dome above and dark ground below (Schuster 1905 in its simplest form). So a sky without moon is about
@@ -195,7 +195,7 @@ impl NightSky {
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
         let level = DVec3::new(direction.x, direction.y, direction.z.max(0.0)).normalize_or(DVec3::X);
         let left = transmittance(self.zenith_depth, level.z.asin().to_degrees());
-        let above = self.above_air(level);
+        let above = self.above_air(direction);
         std::array::from_fn(|k| above[k] * left[k] + self.lit_air[k] * (1.0 - left[k]))
     }
 }

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, sky::*, stars::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, sky::*, stars::*, status::*,
+    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -133,6 +133,12 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_between", "context", false, |h| unsafe {
             wk_context_get_between(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_sky_radiance", "context", false, |h| unsafe {
+            wk_context_get_sky_radiance(h.cast(), null(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_sky_radiance_at", "context", false, |h| unsafe {
+            wk_context_get_sky_radiance_at(h.cast(), null(), null(), 0, 0, 0.0, null_mut(), 0)
         }),
         case("wk_context_get_ambient", "context", false, |h| unsafe {
             wk_context_get_ambient(h.cast(), null(), null_mut())

@@ -194,6 +194,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_cell",
     "wk_segment",
     "wk_between",
+    "wk_sky_radiance",
     "wk_rain_on",
     "wk_rain_surface",
     "wk_opengl_image",

@@ -7,6 +7,7 @@ mod host;
 mod measure;
 mod night;
 mod queries;
+mod radiance;
 mod refined;
 mod refused;
 mod spaces;
