@@ -1,9 +1,10 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (copies, record, first, fog, glass, ground, parts, radiance, rain, sky).
+//! (copies, record, environment, first, fog, glass, ground, parts, radiance, rain, sky).
 
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
+mod environment;
 mod first;
 mod fog;
 mod glass;
@@ -22,6 +23,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("record") {
         record::run()?;
+    }
+    if wanted("environment") {
+        environment::run()?;
     }
     if wanted("first") {
         first::run()?;

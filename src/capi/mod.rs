@@ -49,6 +49,8 @@ pub mod view;
 
 pub mod veil;
 
+pub mod environment;
+
 pub mod plan;
 
 pub mod rain;

@@ -159,10 +159,10 @@ mod tests {
             let line = Sightline { altitude_m: 1.0, direction: DVec3::NEG_Z, to_lamp };
             let seen = sky.radiance(&line).unwrap();
             let light = sky.reference.irradiance(0.0, zenith.to_radians()).unwrap();
-            for i in 0..3 {
-                let whole =
-                    (light.direct[i] + light.sky[i]) * sky.reference.planet().ground_albedo[i] / std::f64::consts::PI;
-                assert!((seen[i] / whole - 1.0).abs() < 0.01, "{zenith} {i}: {} of {whole}", seen[i]);
+            let albedo = sky.reference.planet().ground_albedo;
+            for (i, seen) in seen.iter().enumerate() {
+                let whole = (light.direct[i] + light.sky[i]) * albedo[i] / std::f64::consts::PI;
+                assert!((seen / whole - 1.0).abs() < 0.01, "{zenith} {i}: {seen} of {whole}");
             }
         }
     }

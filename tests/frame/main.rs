@@ -2,8 +2,10 @@
 
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
+mod environment;
 mod froxels;
 mod host;
+mod lookup;
 mod measure;
 mod night;
 mod queries;

@@ -4,9 +4,10 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, report::*, sky::*, stars::*,
-    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    ground_grid::*, ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, report::*,
+    sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -640,6 +641,10 @@ pub const CALLS: &[(&str, Call)] = &[
             WK_STAGE_ALL
         };
         unsafe { wk_view_record(view, frame.ptr().cast(), stages) }.into()
+    }),
+    ("wk_view_get_environment", |d, w| {
+        let view = handle(d, &w.views);
+        get("wk_environment", |p| unsafe { wk_view_get_environment(view, p.cast()) })
     }),
     ("wk_view_get_frame_textures", |d, w| {
         let view = handle(d, &w.views);
