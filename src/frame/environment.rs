@@ -15,7 +15,7 @@ use crate::{
         recent::Recent,
     },
     moment::Scene,
-    stage::{ColorSpace, Composition, Constant, CostItem, Recording, Sampling, Shot, Stages},
+    stage::{ColorSpace, Composition, Constants, CostItem, Recording, Sampling, Shot, Stages},
 };
 
 /// Texels of a face's edge, and levels down to one texel.
@@ -122,8 +122,8 @@ impl Standing {
     }
 }
 
-/// Samples of the host's images, constants.
-type Kind = (Sampling, [Constant; 2]);
+/// Samples of the host's images, and the constants of a pipeline that draws every part.
+type Kind = (Sampling, Constants);
 
 /// What the levels are made with.
 struct Filter {
@@ -355,13 +355,14 @@ impl EnvironmentMap {
     ) -> Result<()> {
         let (device, layout) = (to.device, &self.layout);
         let make = || {
-            let constants = [between[0], between[1], ("DISCS", 0.0)];
+            let mut constants = between;
+            constants.push(("DISCS", 0.0));
             let desc = FullscreenDesc {
                 shader: "frame/environment.wgsl",
                 entry: "environment",
                 layouts: &[layouts[0], layouts[1], layouts[2], layout],
                 targets: &[FORMAT.into(), FORMAT.into()],
-                constants: &constants,
+                constants: constants.all(),
                 samples: 1,
             };
             Ok(((sampling, between), pass::fullscreen(device, &desc)?))
@@ -427,12 +428,10 @@ impl View {
             return Ok(());
         }
         let faces = map.follow(shot);
-        // The others would make a pipeline of many weathers.
-        let between = ["FOG", "SKY_MARCH"].map(|name| (name, composition.whole.between.value(name)));
         let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
         let composite = self.composite.lock()?;
         let groups = [group, tables, self.around.bind_group()];
-        map.draw(to, faces, (sampling, between), &composite.layouts(sampling), &groups)?;
+        map.draw(to, faces, (sampling, composition.whole.between), &composite.layouts(sampling), &groups)?;
         to.ends(CostItem::Veil, true)
     }
 }

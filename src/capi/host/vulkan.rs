@@ -151,7 +151,7 @@ pub(in crate::capi) unsafe fn record(
     let recorded = view.recorded_of(frame.frame_id);
     view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
     let read = sampled(object, &mut view, stages)?;
-    let transitions = read.iter().map(|texture| wgpu::TextureTransition {
+    let transitions = read.iter().flatten().map(|texture| wgpu::TextureTransition {
         texture,
         selector: None,
         state: wgpu::TextureUses::RESOURCE,
@@ -170,14 +170,14 @@ pub(in crate::capi) unsafe fn record(
 }
 
 /// Textures of the view that these stages fill and the host's shaders read.
-fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<Vec<wgpu::Texture>> {
-    let mut read = Vec::new();
+fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 3]> {
+    let mut read = [const { None }; 3];
     if object.has_veil() && stages.has(Stages::MEDIUM) {
         let veil = view.frame_textures()?;
-        read.extend([veil.light, veil.through]);
+        (read[0], read[1]) = (Some(veil.light), Some(veil.through));
     }
     if object.has_environment() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM)) {
-        read.push(view.environment()?.texture);
+        read[2] = Some(view.environment()?.texture);
     }
     Ok(read)
 }
