@@ -269,6 +269,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_PART_WISH 61
 /** wk_stars */
 #define WK_STRUCT_TYPE_STARS 62
+/** wk_environment */
+#define WK_STRUCT_TYPE_ENVIRONMENT 64
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -2983,6 +2985,59 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
+ * Queries: the sky's light by direction
+ *
+ * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
+ * picture shows it where the host drew nothing. It has the clear air, the closed part of the cloud deck, fog with what
+ * falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
+ * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
+ *
+ * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in
+ * a new air solves the reference (some seconds; weather in transition is a new air at every time), and other threads
+ * that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
+ * direction costs and how far pictures may be off.
+ * ====================================================================================================
+ */
+
+/** The sky's light from one direction; plain values of a list. */
+typedef struct wk_sky_radiance {
+    /** cd/m^2, three channels of linear Rec. 709, none below 0. */
+    double radiance_cd_m2[3];
+} wk_sky_radiance;
+
+/**
+ * Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
+ * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes from
+ * one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+ */
+WK_API
+wk_status wk_context_get_sky_radiance(const wk_context *context,
+                                      const double (*position_m)[3],
+                                      const double (*directions)[3],
+                                      uint32_t count,
+                                      uint32_t direction_size,
+                                      wk_sky_radiance *radiances,
+                                      uint32_t radiance_size);
+
+/**
+ * As wk_context_get_sky_radiance, at a simulation time.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_sky_radiance and wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sky_radiance_at(const wk_context *context,
+                                         const double (*position_m)[3],
+                                         const double (*directions)[3],
+                                         uint32_t count,
+                                         uint32_t direction_size,
+                                         double time_s,
+                                         wk_sky_radiance *radiances,
+                                         uint32_t radiance_size);
+
+/*
+ * ====================================================================================================
  * Queries: wind and rain
  *
  * How the air moves and how far it has moved, what falls through it, and what lands on a surface, at any place and any
@@ -3615,7 +3670,7 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_TONE 4
 /** Stages in one draw, where the target's format does not allow separate draws. */
 #define WK_EFFECT_COMPOSITION 5
-/** Textures for the host's own transparent shaders. */
+/** Textures for the host's own shaders. */
 #define WK_EFFECT_VEIL 6
 /** Taking the host's context and images, and giving them back. */
 #define WK_EFFECT_HAND_OVER 7
@@ -3767,6 +3822,81 @@ WK_API wk_status wk_get_veil_snippet(wk_shading_language language, const char **
 WK_API
 wk_status wk_frame_textures_init(wk_frame_textures *out,
                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * A cube map of what stands around the camera
+ *
+ * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its cloud deck, fog and
+ * rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
+ * itself), stars and the host's objects; the night's glow is even. Its axes are those of the host's world: a shader looks
+ * it up by the reflected direction as it is. Level m of the 7 is what a mirror of roughness m/6 shows (the distribution of Trowbridge
+ * and Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness)
+ * is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and
+ * set their filters by a sampler object. Welkin draws one face a frame, in turn; all six in the first frame, in frames with
+ * WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather leap. Views whose hosts do not ask have none of it.
+ * ====================================================================================================
+ */
+
+/** The cube map of a view. */
+typedef struct wk_environment {
+    /** sizeof(wk_environment) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_ENVIRONMENT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * RGBA half floats: an OpenGL texture name (GL_TEXTURE_CUBE_MAP), or a VkImage of six layers with
+     * VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT (VK_FORMAT_R16G16B16A16_SFLOAT).
+     */
+    uint64_t texture;
+    /** Texels of a face's edge. */
+    uint32_t size;
+    /** Levels, down to one texel. */
+    uint32_t level_count;
+    /**
+     * Multiply texels by this to get cd/m^2; 0 before the first frame. It changes only where all faces are drawn.
+     */
+    double cd_m2_per_unit;
+    /**
+     * Multiply texels by this to get units of the last frame's colour of a scene-linear host, else display values
+     * before the tone curve.
+     */
+    double light_scale;
+} wk_environment;
+
+/** Every field of `wk_environment` at its default. */
+#define WK_ENVIRONMENT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_environment), \
+    /* struct_type */ WK_STRUCT_TYPE_ENVIRONMENT, \
+    /* next */ NULL, \
+    /* texture */ UINT64_C(0), \
+    /* size */ 0, \
+    /* level_count */ 0, \
+    /* cd_m2_per_unit */ 0.0, \
+    /* light_scale */ 0.0 \
+}
+
+/**
+ * Gets the native texture of the cube map. From the first call on, the first call of each frame with
+ * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws what is due of it. It belongs to the view and stays the same until that is
+ * destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such wk_view_record call. Call this
+ * after each frame for its scales.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_view_get_environment(wk_view *view,
+                                  wk_environment *out_environment);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_ENVIRONMENT_INIT`. `struct_size` is `sizeof(wk_environment)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_environment_init(wk_environment *out,
+                              uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -18,7 +18,7 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 
 const PASSES: &str = "
-struct Both { depth: DepthUniform, fog: FogUniform }
+struct Both { fog: FogUniform, depth: DepthUniform }
 @group(0) @binding(0) var<uniform> u: Both;
 @group(0) @binding(1) var colour: texture_2d<f32>;
 @group(0) @binding(2) var depth: texture_2d<f32>;
@@ -91,7 +91,7 @@ impl Bench {
         };
         let layout = gpu.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
-            entries: &[entry(0, buffer_type), entry(1, texture_type), entry(2, texture_type)],
+            entries: &[entry(0, buffer_type), entry(4, buffer_type), entry(1, texture_type), entry(2, texture_type)],
         });
         let text = [shader::assemble("fog/lookup.wgsl")?, shader::assemble("common/fullscreen.wgsl")?, PASSES.into()];
         let source = wgpu::ShaderSource::Wgsl(text.concat().into());
@@ -132,8 +132,8 @@ impl Bench {
     /// Milliseconds of a pass.
     fn time(&self, pipeline: &wgpu::RenderPipeline, model: &FogModel) -> Fallible<f64> {
         let gpu = &self.device.device;
-        let mut bytes = bytemuck::bytes_of(&rays()?.uniform()).to_vec();
-        bytes.extend_from_slice(bytemuck::bytes_of(&model.uniform()));
+        let mut bytes = bytemuck::bytes_of(&model.uniform()).to_vec();
+        bytes.extend_from_slice(bytemuck::bytes_of(&rays()?.uniform()));
         let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: bytes.len() as u64,
@@ -149,6 +149,7 @@ impl Bench {
             layout: &self.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 4, resource: buffer.as_entire_binding() },
                 texture(1, &colour),
                 texture(2, &depth),
             ],

@@ -1,14 +1,16 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (copies, record, first, fog, glass, ground, parts, rain, sky).
+//! (copies, record, environment, first, fog, glass, ground, parts, radiance, rain, sky).
 
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
+mod environment;
 mod first;
 mod fog;
 mod glass;
 mod ground;
 mod parts;
+mod radiance;
 mod rain;
 mod record;
 mod sky;
@@ -22,6 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if wanted("record") {
         record::run()?;
     }
+    if wanted("environment") {
+        environment::run()?;
+    }
     if wanted("first") {
         first::run()?;
     }
@@ -33,6 +38,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("rain") {
         rain::run()?;
+    }
+    if wanted("radiance") {
+        radiance::run()?;
     }
     if wanted("sky") {
         sky::run()?;

@@ -14,6 +14,8 @@ override PARTICLES: bool = false;
 @group(0) @binding(11) var behind: texture_2d<f32>;
 
 override STARS: bool = false;
+// The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
+override DISCS: bool = true;
 
 // Its texel, which several samples of a pixel share.
 var<private> behind_pixel: vec2i;
@@ -48,8 +50,11 @@ fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
         return mix(clear, ground_under_deck(path), frame.deck_cover) + night;
     }
     // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-    let disc = max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
-    let clear = (color_of(spectrum) + disc) * drawn.z + night;
+    var clear = color_of(spectrum);
+    if DISCS {
+        clear += max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
+    }
+    clear = clear * drawn.z + night;
     return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
 }
 

@@ -39,6 +39,8 @@ pub mod conditions;
 
 pub mod query;
 
+pub mod radiance;
+
 pub mod wind;
 
 pub mod frame;
@@ -46,6 +48,8 @@ pub mod frame;
 pub mod view;
 
 pub mod veil;
+
+pub mod environment;
 
 pub mod plan;
 

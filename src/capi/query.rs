@@ -248,7 +248,7 @@ unsafe fn celestial(
     })
 }
 
-fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64> {
+pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64> {
     let Some(time_s) = time_s else { return Ok(context.time_s()) };
     context.check_time(time_s)?;
     Ok(time_s)

@@ -149,6 +149,8 @@ pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
 /// wk_stars
 pub const WK_STRUCT_TYPE_STARS: wk_struct_type = 62;
+/// wk_environment
+pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

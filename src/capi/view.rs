@@ -195,7 +195,7 @@ pub const WK_EFFECT_MEDIUM: wk_effect = 3;
 pub const WK_EFFECT_TONE: wk_effect = 4;
 /// Stages in one draw, where the target's format does not allow separate draws.
 pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
-/// Textures for the host's own transparent shaders.
+/// Textures for the host's own shaders.
 pub const WK_EFFECT_VEIL: wk_effect = 6;
 /// Taking the host's context and images, and giving them back.
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
@@ -227,6 +227,8 @@ pub(super) struct ViewObject {
     view: Mutex<View>,
     /// Whether the host samples the veil, which then is handed over after each frame.
     veil: AtomicBool,
+    /// Whether it samples the cube map of what stands around.
+    environment: AtomicBool,
 }
 
 impl ViewObject {
@@ -238,6 +240,16 @@ impl ViewObject {
     /// Whether the host samples the veil.
     pub(super) fn has_veil(&self) -> bool {
         self.veil.load(Ordering::Relaxed)
+    }
+
+    /// From now on the cube map is handed over.
+    pub(super) fn uses_environment(&self) {
+        self.environment.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the host samples the cube map.
+    pub(super) fn has_environment(&self) -> bool {
+        self.environment.load(Ordering::Relaxed)
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, View> {
@@ -273,7 +285,13 @@ pub unsafe extern "C" fn wk_view_create(
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         object.cell.drain();
         let view = Mutex::new(View::new(&object.read())?);
-        let view = ViewObject { cell: object.cell.clone(), context: object, view, veil: AtomicBool::new(false) };
+        let view = ViewObject {
+            cell: object.cell.clone(),
+            context: object,
+            view,
+            veil: AtomicBool::new(false),
+            environment: AtomicBool::new(false),
+        };
         let handle = handles::insert::<_, ContextObject>(Arc::new(view), Some(context))?;
         // SAFETY: `place` was checked and is the caller's.
         unsafe { place.write(handle) };

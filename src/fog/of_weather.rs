@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{
-    FogLayer, FogLight, FogModel, Law, MAX_EXTINCTION_PER_M, Patches, Phase, Profile, Viewpoint,
+    FogKind, FogLayer, FogLight, FogModel, Law, MAX_EXTINCTION_PER_M, Patches, Phase, Profile, Viewpoint,
     patterns::{CURTAIN_WAVES, Curtains},
+    reference::layer_depth_above,
 };
 use crate::{
     error::Result,
@@ -227,6 +228,18 @@ impl Scene {
         let waves = curtain::waves::<CURTAIN_WAVES>(seed as u32, curtain::OWN_LENGTHS_M)
             .map(|[x, y, z, phase]| phased(DVec3::new(x, y, z), phase));
         Curtains { amount: each * rain_per_m / layer.extinction_per_m, waves }
+    }
+}
+
+impl FogModel {
+    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
+    /// nothing.
+    pub(crate) fn depth_above(&self, altitude_m: f64) -> f64 {
+        if matches!(self.kind, FogKind::Slab | FogKind::Exponential) {
+            layer_depth_above(self, altitude_m)
+        } else {
+            0.0
+        }
     }
 }
 

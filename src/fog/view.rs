@@ -1,6 +1,6 @@
 //! What a view draws of the fog: its block of numbers, and the constants of the composition.
 
-use super::{FogKind, FogModel, FogUniform, FogVariant, Law, candidates, reference::layer_depth_above};
+use super::{FogKind, FogModel, FogUniform, FogVariant, Law, candidates};
 use crate::{
     error::Result,
     gpu::Device,
@@ -37,13 +37,9 @@ impl FogView {
         Ok(())
     }
 
-    /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
-    /// nothing.
+    /// Optical depth straight up from an altitude; see [`FogModel::depth_above`].
     pub fn depth_above(&self, altitude_m: f64) -> f64 {
-        match &self.model {
-            Some(m) if matches!(m.kind, FogKind::Slab | FogKind::Exponential) => layer_depth_above(m, altitude_m),
-            _ => 0.0,
-        }
+        self.model.as_ref().map_or(0.0, |model| model.depth_above(altitude_m))
     }
 }
 

@@ -83,6 +83,7 @@ impl View {
         }
         self.compose(&shot, &composition, &variant, to)?;
         to.ends(CostItem::of(composition.stages), true)?;
+        self.fill_environment(&shot, &composition, to)?;
         self.light_scale = match frame.color_space {
             ColorSpace::SceneLinear => (1.0 / (call.exposure * frame.cd_m2_per_unit)) as f32,
             ColorSpace::DisplayLinear | ColorSpace::DisplaySrgb => 1.0,

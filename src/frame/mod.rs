@@ -7,6 +7,7 @@
 mod check;
 mod composite;
 mod draw;
+mod environment;
 mod froxels;
 mod kinds;
 mod light;
@@ -19,6 +20,7 @@ pub use crate::effects::PARTS;
 pub use crate::gpu::Shared;
 pub use crate::light::tone::{self, Exposure, ToneCurve};
 pub use crate::stage::{ColorSpace, CostItem, Costs, Frame, FrameFlags, ImageLayers, Report, Stages};
+pub use environment::Environment;
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;
 pub use view::View;

@@ -1,6 +1,6 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, froxels::Froxels, kinds::Kinds};
+use super::{View, environment::EnvironmentMap, froxels::Froxels, kinds::Kinds};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
@@ -27,7 +27,8 @@ impl View {
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
         let kinds = self.kinds.as_ref().map_or(0, Kinds::bytes);
-        copy + kinds + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
+        let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
+        copy + kinds + environment + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
 
     /// Makes the colour copy anew if it does not serve the host's colour; whether it did.

@@ -9,6 +9,7 @@ use super::{
     check::rays,
     composite::SharedComposite,
     draw::Call,
+    environment::EnvironmentMap,
     froxels::{FrameTextures, Froxels},
     kinds::Kinds,
     picture::Bound,
@@ -33,6 +34,7 @@ pub struct View {
     pub(super) bound: Option<(Bound, wgpu::BindGroup, wgpu::TextureView)>,
     pub(crate) effects: Effects,
     pub(super) froxels: Option<Froxels>,
+    pub(super) environment: Option<Box<EnvironmentMap>>,
     pub(super) kinds: Option<Kinds>,
     pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
@@ -68,6 +70,7 @@ impl View {
             bound: None,
             effects,
             froxels: None,
+            environment: None,
             kinds: None,
             surroundings,
             planner,
@@ -136,6 +139,7 @@ impl View {
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
         (self.bound, self.copy, self.kinds) = (None, None, None);
+        self.environment.iter_mut().for_each(|map| map.forget());
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
 

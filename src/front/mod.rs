@@ -4,5 +4,6 @@
 mod air;
 mod ground;
 mod rain;
+mod sky;
 mod stars;
 mod view;

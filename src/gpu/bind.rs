@@ -21,6 +21,8 @@ pub(crate) enum Slot {
     Filtered,
     /// Layers of them.
     FilteredArray,
+    /// The six faces of a cube, looked up by direction.
+    FilteredCube,
     /// The same in three dimensions.
     FilteredVolume,
     /// How textures are looked up.
@@ -56,6 +58,7 @@ impl Slot {
             Self::Words => texture(T::Uint, D::D2, false),
             Self::Filtered => texture(float(true), D::D2, false),
             Self::FilteredArray => texture(float(true), D::D2Array, false),
+            Self::FilteredCube => texture(float(true), D::Cube, false),
             Self::FilteredVolume => texture(float(true), D::D3, false),
             Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         }

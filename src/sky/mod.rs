@@ -63,6 +63,7 @@ pub mod reference;
 mod set;
 pub mod settings;
 pub mod sight;
+mod solved;
 pub mod tables;
 mod uniforms;
 mod view;
@@ -80,4 +81,5 @@ pub use uniforms::air_uniform;
 pub use volume::SkyVolume;
 
 pub(crate) use followed::FollowedSky;
+pub(crate) use solved::{Sightline, SolvedSkies, SolvedSky};
 pub(crate) use view::SkyView;

@@ -187,7 +187,7 @@ impl NightSky {
     }
 
     /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air: `L T + S (1 - T)`. Below the
-    /// horizon as at it.
+    /// horizon the air is that at it.
     ///
     /// T is the air's transmittance. S is what lit air without end sends: half the mean of the dome, as air scatters alike to all sides,
     /// loses little, and sees the dome above and dark ground below (Schuster 1905 in its simplest form). So a sky without moon is about
@@ -195,7 +195,7 @@ impl NightSky {
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
         let level = DVec3::new(direction.x, direction.y, direction.z.max(0.0)).normalize_or(DVec3::X);
         let left = transmittance(self.zenith_depth, level.z.asin().to_degrees());
-        let above = self.above_air(level);
+        let above = self.above_air(direction);
         std::array::from_fn(|k| above[k] * left[k] + self.lit_air[k] * (1.0 - left[k]))
     }
 }
@@ -334,6 +334,12 @@ mod tests {
         assert!((0.5..2.0).contains(&ratio), "{ratio}");
         let slanting = 2.5 * (dome(41.8) / dome(90.0)).log10();
         assert!((0.1..0.4).contains(&slanting), "{slanting}");
-        assert_eq!(sky.luminance(-DVec3::Z + DVec3::X), sky.luminance(DVec3::X), "below the horizon as at it");
+        let at = |e: f64| sky.luminance(crate::almanac::celestial::direction(10.0, e));
+        assert!((at(-0.01)[1] / at(0.01)[1] - 1.0).abs() < 1e-3, "no seam at the horizon");
+        // Below it the light that comes from there, through the air at the horizon: as pictures show it.
+        let (down, left) = (crate::almanac::celestial::direction(10.0, -30.0), transmittance(sky.zenith_depth, 0.0));
+        let above = sky.above_air(down);
+        let through = [0, 1, 2].map(|k| above[k] * left[k] + sky.lit_air[k] * (1.0 - left[k]));
+        assert!((0..3).all(|k| (sky.luminance(down)[k] / through[k] - 1.0).abs() < 1e-9));
     }
 }

@@ -54,6 +54,7 @@
 //! Not in it: twinkling, glare in the eye, variable stars, the discs of planets (points up to the field of strong binoculars), clouds
 //! and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
 
+mod behind;
 pub mod catalogue;
 pub mod galaxy;
 pub mod glow;
@@ -70,6 +71,7 @@ pub mod settings;
 pub mod uniforms;
 mod view;
 
+pub(crate) use behind::NightBehind;
 pub use catalogue::{Star, catalogue};
 pub use glow::NightSky;
 pub(crate) use held::{HeldStars, night_lux};

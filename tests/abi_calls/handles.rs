@@ -5,9 +5,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, sky::*, stars::*, status::*, surface::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    ground_grid::*, ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, sky::*,
+    stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*,
+    windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -134,6 +135,12 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_between", "context", false, |h| unsafe {
             wk_context_get_between(h.cast(), null(), 0, 0, null_mut(), 0)
         }),
+        case("wk_context_get_sky_radiance", "context", false, |h| unsafe {
+            wk_context_get_sky_radiance(h.cast(), null(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_sky_radiance_at", "context", false, |h| unsafe {
+            wk_context_get_sky_radiance_at(h.cast(), null(), null(), 0, 0, 0.0, null_mut(), 0)
+        }),
         case("wk_context_get_ambient", "context", false, |h| unsafe {
             wk_context_get_ambient(h.cast(), null(), null_mut())
         }),
@@ -143,6 +150,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_create", "context", false, |h| unsafe { wk_view_create(h.cast(), null(), null_mut()) }),
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
+        case("wk_view_get_environment", "view", false, |h| unsafe { wk_view_get_environment(h.cast(), null_mut()) }),
         case("wk_view_get_frame_textures", "view", false, |h| unsafe {
             wk_view_get_frame_textures(h.cast(), null_mut())
         }),

@@ -5,8 +5,8 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, report::*, stars::*, status::*,
-    timeline::*, view::*, weather::*, wind::*,
+    area::*, conditions::*, context::*, fog_law::*, frame::*, ground::*, query::*, radiance::*, report::*, stars::*,
+    status::*, timeline::*, view::*, weather::*, wind::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -49,6 +49,11 @@ fn ask(world: &World, at: [f64; 3]) -> Vec<(&'static str, wk_status, String)> {
         take("surfaces[0].position_m", landed);
         let mut ground = init::<wk_ground>("wk_ground");
         take("position_m", wk_context_get_ground(context, &at, &mut ground));
+        let mut seen: [wk_sky_radiance; 1] = std::mem::zeroed();
+        let size = size_of::<wk_sky_radiance>() as u32;
+        let (up, out) = ([0.0, 0.0, 1.0], seen.as_mut_ptr());
+        take("position_m", wk_context_get_sky_radiance(context, &at, &up, 1, 24, out, size));
+        take("position_m", wk_context_get_sky_radiance_at(context, &at, &up, 1, 24, 0.0, out, size));
         let mut ambient = init::<wk_ambient>("wk_ambient");
         take("position_m", wk_context_get_ambient(context, &at, &mut ambient));
         let frame = wk_frame { frame_id: next_frame(), position_m: at, ..init("wk_frame") };
@@ -59,6 +64,7 @@ fn ask(world: &World, at: [f64; 3]) -> Vec<(&'static str, wk_status, String)> {
         finite(&light.direction);
         finite(&wind.velocity_m_s);
         finite(&ambient.sh9);
+        finite(&seen[0].radiance_cd_m2);
     }
     answers
 }

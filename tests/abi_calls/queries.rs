@@ -4,8 +4,8 @@ use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, context::*, fog_law::*, frame::*, query::*, status::*, timeline::*, view::*, weather::*,
-    weather_kinds::*,
+    conditions::*, context::*, fog_law::*, frame::*, query::*, radiance::*, status::*, timeline::*, view::*,
+    weather::*, weather_kinds::*,
 };
 
 use super::world::{World, init, message, update};
@@ -196,6 +196,48 @@ fn batches_answer_all_or_nothing() {
         let none = wk_context_get_light(world.context, places.as_ptr(), 3, step, null_mut(), size);
         refused(none, "lights must not be NULL");
         assert_eq!(wk_context_get_light(world.context, null(), 0, 0, null_mut(), 0), WK_OK);
+    }
+}
+
+#[test]
+fn the_sky_answers_towards_all_directions_or_none() {
+    let world = World::new();
+    let directions = [[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.9998, 0.0], [0.0, -0.6, -0.8]];
+    let zero = wk_sky_radiance { radiance_cd_m2: [0.0; 3] };
+    let (step, size) = (24, size_of::<wk_sky_radiance>() as u32);
+    let mut seen = [zero; 4];
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        let get = |directions: &[[f64; 3]], seen: &mut [wk_sky_radiance]| {
+            let (count, out) = (directions.len() as u32, seen.as_mut_ptr());
+            wk_context_get_sky_radiance(world.context, &EYE, directions.as_ptr(), count, step, out, size)
+        };
+        assert_eq!(get(&directions, &mut seen), WK_OK, "{}", message());
+        assert!(seen.iter().flat_map(|s| s.radiance_cd_m2).all(|v| v > 100.0 && v < 1e5), "a sky by day");
+        let mut untouched = [zero; 4];
+        for bad in [[0.0, 0.0, 0.9], [0.0; 3], [f64::NAN, 0.0, 0.0], [1e300, 0.0, 0.0]] {
+            let status = get(&[directions[0], bad], &mut untouched);
+            refused(status, "directions[1] must be a unit vector (east, north, up)");
+        }
+        assert_eq!(untouched[0].radiance_cd_m2, [0.0; 3]);
+        let (first, out) = (directions.as_ptr(), seen.as_mut_ptr());
+        let ask = |at, first, count, step, out, size| {
+            wk_context_get_sky_radiance(world.context, at, first, count, step, out, size)
+        };
+        refused(ask(null(), first, 4, step, out, size), "position_m must not be NULL");
+        refused(ask(&EYE, null(), 4, step, out, size), "directions must not be NULL");
+        refused(ask(&EYE, first, 4, step, null_mut(), size), "radiances must not be NULL");
+        refused(ask(&EYE, first, 4, 16, out, size), "direction_size must be at least 24 and a multiple of 8, got 16");
+        refused(ask(&EYE, first, 4, step, out, 16), "radiance_size must be at least 24");
+        refused(ask(&EYE, first, 70_000, step, out, size), "count must be at most 65536");
+        assert_eq!(ask(&EYE, null(), 0, 0, null_mut(), 0), WK_OK);
+        let mut later = [zero; 4];
+        let at = |time_s, out: &mut [wk_sky_radiance; 4]| {
+            wk_context_get_sky_radiance_at(world.context, &EYE, first, 4, step, time_s, out.as_mut_ptr(), size)
+        };
+        assert_eq!(at(0.0, &mut later), WK_OK, "{}", message());
+        assert_eq!(later.map(|s| s.radiance_cd_m2), seen.map(|s| s.radiance_cd_m2));
+        refused(at(f64::NAN, &mut later), "time_s");
     }
 }
 

@@ -7,10 +7,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, sky::*, stars::*,
-    status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_grid::*,
-    windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    ground_grid::*, ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, sky::*,
+    stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*,
+    wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -153,6 +153,7 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_ambient", "out_ambient", false, move |p| unsafe {
             wk_context_get_ambient(context, &ORIGIN, p.cast())
         }),
+        case("wk_environment", "out_environment", false, move |p| unsafe { wk_view_get_environment(view, p.cast()) }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
         }),
@@ -194,6 +195,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_cell",
     "wk_segment",
     "wk_between",
+    "wk_sky_radiance",
     "wk_rain_on",
     "wk_rain_surface",
     "wk_opengl_image",

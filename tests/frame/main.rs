@@ -2,11 +2,14 @@
 
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
+mod environment;
 mod froxels;
 mod host;
+mod lookup;
 mod measure;
 mod night;
 mod queries;
+mod radiance;
 mod refined;
 mod refused;
 mod spaces;

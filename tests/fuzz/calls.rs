@@ -4,9 +4,10 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, fog_law::*, frame::*, ground::*, ground_grid::*,
-    ground_texture::*, light::*, occluder::*, plan::*, query::*, rain::*, report::*, sky::*, stars::*, status::*,
-    surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*, windscreen::*,
+    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    ground_grid::*, ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, report::*,
+    sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -163,6 +164,14 @@ impl Drop for World {
 /// A place, mostly near the origin.
 fn position(dice: &mut Dice) -> [f64; 3] {
     std::array::from_fn(|_| if dice.one_in(6) { dice.float() } else { 200.0 * dice.unit() - 100.0 })
+}
+
+/// A direction, mostly of no unit length: a new air's first answer takes a second.
+fn direction(dice: &mut Dice) -> [f64; 3] {
+    if dice.one_in(30) {
+        return dice.pick(&[[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 0.8, -0.6]]);
+    }
+    std::array::from_fn(|_| if dice.one_in(6) { dice.float() } else { 2.0 * dice.unit() - 1.0 })
 }
 
 pub type Call = fn(&mut Dice, &mut World) -> Answer;
@@ -532,6 +541,21 @@ pub const CALLS: &[(&str, Call)] = &[
             wk_context_get_between_at(context, segment.ptr().cast(), 1, segment.size(), time, p.cast(), size)
         })
     }),
+    ("wk_context_get_sky_radiance", |d, w| {
+        let (context, at, toward) = (handle(d, &w.contexts), position(d), direction(d));
+        get("wk_sky_radiance", |p| unsafe {
+            let size = size_of::<wk_sky_radiance>() as u32;
+            wk_context_get_sky_radiance(context, &at, &toward, 1, 24, p.cast(), size)
+        })
+    }),
+    ("wk_context_get_sky_radiance_at", |d, w| {
+        let toward: [_; MOST as usize] = std::array::from_fn(|_| direction(d));
+        let mut radiances = room(unsafe { std::mem::zeroed::<wk_sky_radiance>() });
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        let (count, size) = (d.below(MOST as usize + 1) as u32, size_of_element::<wk_sky_radiance>(d));
+        let (list, room) = (toward.as_ptr(), radiances.as_mut_ptr());
+        unsafe { wk_context_get_sky_radiance_at(context, &at, list, count, 24, time, room, size) }.into()
+    }),
     ("wk_context_get_frame_light", |d, w| {
         let (context, mut frame) = (handle(d, &w.contexts), Struct::random(d, "wk_frame", 20));
         get("wk_frame_light", |p| unsafe { wk_context_get_frame_light(context, frame.ptr().cast(), p.cast()) })
@@ -617,6 +641,10 @@ pub const CALLS: &[(&str, Call)] = &[
             WK_STAGE_ALL
         };
         unsafe { wk_view_record(view, frame.ptr().cast(), stages) }.into()
+    }),
+    ("wk_view_get_environment", |d, w| {
+        let view = handle(d, &w.views);
+        get("wk_environment", |p| unsafe { wk_view_get_environment(view, p.cast()) })
     }),
     ("wk_view_get_frame_textures", |d, w| {
         let view = handle(d, &w.views);

@@ -4,7 +4,7 @@
 use std::ptr::null_mut;
 
 use glow::HasContext;
-use welkin::capi::{context::*, device::*, frame::*, opengl::*, status::*, veil::*, view::*};
+use welkin::capi::{context::*, device::*, environment::*, frame::*, opengl::*, status::*, veil::*, view::*};
 use welkin::gpu::gl::{GlImage, GlMode};
 
 use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
@@ -300,6 +300,44 @@ fn the_veil_has_names_that_the_host_can_bind() {
         assert!(texels[0][..3].iter().all(|t| *t > 0.99 && *t <= 1.0), "{:?}", texels[0]);
         assert!(texels.iter().flat_map(|t| &t[..3]).all(|t| (0.0..=1.0).contains(t)));
         assert!(texels.last().unwrap()[2] < texels[0][2], "the far air lets less through");
+        scene.destroy();
+        ok(wk_device_destroy(device));
+    }
+}
+
+#[test]
+fn the_environment_is_a_cube_map_that_the_host_can_bind() {
+    let host = Host::new(Api::Core(3, 3), Window::None, GlMode::Shared);
+    let color = image_of(texture(&host.gl, glow::RGBA8));
+    let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT32F));
+    let fbo = framebuffer(&host.gl, color, Some(depth));
+    let device = device(&host);
+    let scene = Scene::new(device);
+    let mut map = init::<wk_environment>("wk_environment");
+    // SAFETY: live handles.
+    ok(unsafe { wk_view_get_environment(scene.view, &mut map) });
+    assert_eq!((map.size, map.level_count, map.cd_m2_per_unit), (64, 7, 0.0));
+    let _ = picture(&host, &scene, fbo, &target(color, depth), 1);
+    // SAFETY: live handles; the host's context is current.
+    unsafe {
+        ok(wk_view_get_environment(scene.view, &mut map));
+        assert!(map.cd_m2_per_unit > 0.0 && map.light_scale > 0.0);
+        let name = glow::NativeTexture(u32::try_from(map.texture).unwrap().try_into().unwrap());
+        host.gl.bind_texture(glow::TEXTURE_CUBE_MAP, Some(name));
+        for (level, size) in [(0, 64), (3, 8), (6, 1)] {
+            let mean = |face: u32| {
+                let mut texels = vec![[0.0_f32; 4]; size * size];
+                let room = glow::PixelPackData::Slice(Some(bytes(&mut texels)));
+                let face = glow::TEXTURE_CUBE_MAP_POSITIVE_X + face;
+                host.gl.get_tex_image(face, level, glow::RGBA, glow::FLOAT, room);
+                assert_eq!(host.gl.get_error(), glow::NO_ERROR);
+                assert!(texels.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{face} {level}");
+                texels.iter().map(|t| t[2]).sum::<f32>() / (size * size) as f32
+            };
+            // The blue sky overhead (+Z is up), the ground below.
+            let (up, down) = (mean(4), mean(5));
+            assert!(up > 0.01 && down > 0.0 && up != down, "level {level}: {up} {down}");
+        }
         scene.destroy();
         ok(wk_device_destroy(device));
     }

@@ -4,7 +4,7 @@ use std::ffi::c_void;
 use std::ptr::null_mut;
 
 use ash::vk::{self, Handle};
-use welkin::capi::{device::*, frame::*, status::*, veil::*, view::*, vulkan::*};
+use welkin::capi::{device::*, environment::*, frame::*, status::*, veil::*, view::*, vulkan::*};
 
 use crate::Picture;
 use crate::c_scene::{Scene, assert_same, frame, init, message, ok, own_picture};
@@ -184,6 +184,7 @@ fn the_veil_is_an_image_that_the_hosts_shaders_may_read() {
     let device = device(&host);
     let scene = Scene::new(device);
     let mut veil = init::<wk_frame_textures>("wk_frame_textures");
+    let mut map = init::<wk_environment>("wk_environment");
     picture.clear(&host, 0.001, [L::GENERAL, L::GENERAL], &[]);
     let color = image(&picture.colour, L::GENERAL, L::GENERAL);
     let depth = image(&picture.depth, L::GENERAL, L::GENERAL);
@@ -191,6 +192,7 @@ fn the_veil_is_an_image_that_the_hosts_shaders_may_read() {
     // SAFETY: live handles.
     unsafe {
         ok(wk_view_get_frame_textures(scene.view, &mut veil));
+        ok(wk_view_get_environment(scene.view, &mut map));
         for id in 0..3 {
             let frame = wk_frame { frame_id: id, target: (&raw const target).cast(), ..frame(7) };
             ok(wk_view_record(scene.view, &frame, WK_STAGE_ALL));
@@ -199,6 +201,9 @@ fn the_veil_is_an_image_that_the_hosts_shaders_may_read() {
         ok(wk_view_get_frame_textures(scene.view, &mut veil));
         assert_eq!((veil.light, veil.through), before, "they stay the same");
         assert!(veil.light != 0 && veil.light != veil.through && veil.light_scale > 0.0);
+        let before = map.texture;
+        ok(wk_view_get_environment(scene.view, &mut map));
+        assert!(map.texture == before && before != 0 && map.cd_m2_per_unit > 0.0);
     }
     // The host copies a texel out of it, from the layout that the header promises; the validation layer watches.
     let light = vk::Image::from_raw(veil.light);
@@ -208,6 +213,29 @@ fn the_veil_is_an_image_that_the_hosts_shaders_may_read() {
         let promised = welkin::gpu::vulkan::HostImage { image: light, ..out.image };
         host.transition(c, &promised, L::SHADER_READ_ONLY_OPTIMAL, L::TRANSFER_SRC_OPTIMAL);
         host.transition(c, &promised, L::TRANSFER_SRC_OPTIMAL, L::SHADER_READ_ONLY_OPTIMAL);
+        // The cube map, all faces and levels.
+        for [from, to] in [
+            [L::SHADER_READ_ONLY_OPTIMAL, L::TRANSFER_SRC_OPTIMAL],
+            [L::TRANSFER_SRC_OPTIMAL, L::SHADER_READ_ONLY_OPTIMAL],
+        ] {
+            let whole = vk::ImageSubresourceRange {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                level_count: map.level_count,
+                layer_count: 6,
+                ..Default::default()
+            };
+            let access = vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE;
+            let barrier = vk::ImageMemoryBarrier::default()
+                .image(vk::Image::from_raw(map.texture))
+                .old_layout(from)
+                .new_layout(to)
+                .src_access_mask(access)
+                .dst_access_mask(access)
+                .subresource_range(whole);
+            let (all, none) = (vk::PipelineStageFlags::ALL_COMMANDS, vk::DependencyFlags::empty());
+            // SAFETY: plain Vulkan by its rules.
+            unsafe { host.device.cmd_pipeline_barrier(c, all, all, none, &[], &[], &[barrier]) };
+        }
     });
     // SAFETY: live handles.
     unsafe {

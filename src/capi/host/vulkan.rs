@@ -18,7 +18,7 @@ use crate::{
         vulkan::*,
     },
     error::{Error, Result, Status},
-    frame::{ImageLayers, Stages},
+    frame::{ImageLayers, Stages, View},
     gpu::vulkan::{EnabledFeatures, HandOver, HostImage, HostSemaphore, ImageRole, VulkanHost, VulkanHostDesc, adopt},
     rain::OccluderMap,
 };
@@ -150,16 +150,13 @@ pub(in crate::capi) unsafe fn record(
     let mut view = object.lock();
     let recorded = view.recorded_of(frame.frame_id);
     view.record_into(&object.context.read(), &frame, stages, &mut encoder).map_err(in_frame)?;
-    if object.has_veil() && stages.has(Stages::MEDIUM) {
-        let veil = view.frame_textures()?;
-        let read = [veil.light, veil.through];
-        let transitions = read.iter().map(|texture| wgpu::TextureTransition {
-            texture,
-            selector: None,
-            state: wgpu::TextureUses::RESOURCE,
-        });
-        encoder.transition_resources(std::iter::empty(), transitions);
-    }
+    let read = sampled(object, &mut view, stages)?;
+    let transitions = read.iter().flatten().map(|texture| wgpu::TextureTransition {
+        texture,
+        selector: None,
+        state: wgpu::TextureUses::RESOURCE,
+    });
+    encoder.transition_resources(std::iter::empty(), transitions);
     let lent: Vec<_> = [&color, &depth, &mask, &classes, &normals]
         .into_iter()
         .flatten()
@@ -170,6 +167,19 @@ pub(in crate::capi) unsafe fn record(
     unsafe { host.submit(encoder, &over) }
         .inspect_err(|_| view.take_back(recorded))
         .map_err(|e| e.map_field(|field| format!("frame.target.{field}")))
+}
+
+/// Textures of the view that these stages fill and the host's shaders read.
+fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 3]> {
+    let mut read = [const { None }; 3];
+    if object.has_veil() && stages.has(Stages::MEDIUM) {
+        let veil = view.frame_textures()?;
+        (read[0], read[1]) = (Some(veil.light), Some(veil.through));
+    }
+    if object.has_environment() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM)) {
+        read[2] = Some(view.environment()?.texture);
+    }
+    Ok(read)
 }
 
 /// # Safety

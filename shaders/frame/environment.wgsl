@@ -1,0 +1,34 @@
+// One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the composition, its
+// fog and the planet's ground, without the discs of sun and moon and without stars.
+//!include "frame/composite.wgsl"
+
+struct EnvironmentFace {
+    // The face's middle and the ways to its right and lower edges, (east, north, up).
+    forward: vec3f,
+    // Texels per cd/m^2.
+    scale: f32,
+    right: vec3f,
+    pad0: f32,
+    down: vec3f,
+    pad1: f32,
+}
+
+@group(3) @binding(0) var<uniform> face: EnvironmentFace;
+
+// For the host, and for the filter of the rougher levels.
+struct EnvironmentTexel {
+    @location(0) shown: vec4f,
+    @location(1) source: vec4f,
+}
+
+@fragment
+fn environment(in: FullscreenVarying) -> EnvironmentTexel {
+    // All of it, whatever the plan leaves out of the picture; drops near the eye are part of the fog here.
+    drawn = vec4f(1.0, 1.0, 1.0, 0.0);
+    let at = in.uv * 2.0 - 1.0;
+    let direction = normalize(face.forward + at.x * face.right + at.y * face.down);
+    let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY).light;
+    // Half floats end at 65504.
+    let texel = vec4f(min(light * face.scale, vec3f(65504.0)), 1.0);
+    return EnvironmentTexel(texel, texel);
+}

@@ -1,0 +1,99 @@
+//! Queries: the sky's light by direction
+//!
+//! For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
+//! picture shows it where the host drew nothing. It has the clear air, the closed part of the cloud deck, fog with what
+//! falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
+//! (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
+//!
+//! The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in
+//! a new air solves the reference (some seconds; weather in transition is a new air at every time), and other threads
+//! that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
+//! direction costs and how far pictures may be off.
+
+use glam::DVec3;
+
+use super::{
+    MAX_BATCH,
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    input,
+    query::time_or_now,
+    status::*,
+};
+use crate::error::{Error, Status};
+
+/// The sky's light from one direction; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_sky_radiance {
+    /// cd/m^2, three channels of linear Rec. 709, none below 0.
+    pub radiance_cd_m2: [f64; 3],
+}
+
+/// Gets the sky's radiance at a place towards directions now, at most wk_caps.max_batch of them. A direction is a
+/// vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the bytes from
+/// one element to the next: 24 or more, and sizeof(wk_sky_radiance) of your header.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_sky_radiance(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    directions: *const [f64; 3],
+    count: u32,
+    direction_size: u32,
+    radiances: *mut wk_sky_radiance,
+    radiance_size: u32,
+) -> wk_status {
+    let toward = (directions, count, direction_size);
+    // SAFETY: the caller's promises are the same.
+    unsafe { radiance("wk_context_get_sky_radiance", (context, position_m, None), toward, (radiances, radiance_size)) }
+}
+
+/// As wk_context_get_sky_radiance, at a simulation time.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_sky_radiance and wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_sky_radiance_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    directions: *const [f64; 3],
+    count: u32,
+    direction_size: u32,
+    time_s: f64,
+    radiances: *mut wk_sky_radiance,
+    radiance_size: u32,
+) -> wk_status {
+    let (at, toward) = ((context, position_m, Some(time_s)), (directions, count, direction_size));
+    // SAFETY: the caller's promises are the same.
+    unsafe { radiance("wk_context_get_sky_radiance_at", at, toward, (radiances, radiance_size)) }
+}
+
+/// # Safety
+/// The position is NULL or three numbers, the lists NULL or as long as they say.
+unsafe fn radiance(
+    function: &'static str,
+    (context, position_m, time_s): (*const wk_context, *const [f64; 3], Option<f64>),
+    (directions, count, direction_size): (*const [f64; 3], u32, u32),
+    (radiances, radiance_size): (*mut wk_sky_radiance, u32),
+) -> wk_status {
+    guard(function, |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let list = input::Places::new("directions", "direction_size", directions, count, direction_size, MAX_BATCH)?;
+        let room = input::Room::new("radiances", "radiance_size", radiances, count, radiance_size)?;
+        // SAFETY: the caller's promise.
+        let at = unsafe { position("position_m", position_m)? };
+        // SAFETY: every index is below the count that the caller promises.
+        let toward: Vec<DVec3> = (0..count as usize).map(|i| DVec3::from_array(unsafe { *list.at(i) })).collect();
+        let context = object.read();
+        let time_s = time_or_now(&context, time_s)?;
+        let named = |e: Error| e.renamed("position", "position_m");
+        let answers = context.sky_radiance(DVec3::from_array(at), &toward, time_s).map_err(named)?;
+        for (i, radiance) in answers.iter().enumerate() {
+            // SAFETY: as above.
+            unsafe { room.write(i, &wk_sky_radiance { radiance_cd_m2: *radiance }) };
+        }
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,156 @@
+//! The sky's light towards a direction, as a query: what the composition (`shaders/frame/composite.wgsl`, `shaders/between/veil.wgsl`)
+//! draws where the host drew nothing, in f64.
+
+use std::{cell::OnceCell, sync::Arc};
+
+use glam::DVec3;
+
+use crate::{
+    context::{Context, Light, Scene},
+    error::{Error, Result},
+    fog::{FogModel, reference::fog_along},
+    scene::depth::RANGE_SKY_M,
+    sky::{Sightline, SolvedSkies, SolvedSky},
+    stars::NightBehind,
+    world::color_of,
+};
+
+/// Fog whose light comes from nearer than this has no air before it, m.
+const NEAR_FOG_M: f64 = 50.0;
+/// Irradiance of level ground under an overcast sky over pi times its zenith's luminance (Moon and Spencer 1942).
+const UNDER_DECK: f64 = 7.0 / 9.0;
+/// A direction's length may be so far from 1.
+const LENGTH_OFF: f64 = 1e-3;
+
+impl Context {
+    /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time `time_s`: cd/m^2
+    /// a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air, cloud deck, fog, what falls in
+    /// the weather's fog layer, the night's glow, and below the horizon the planet's ground count. The discs of sun and moon, stars
+    /// and planets, rain areas, and the host's objects do not.
+    ///
+    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: some seconds, while
+    /// other threads that ask wait. The last four airs are kept for all contexts of the device.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place or a direction no unit vector; for times as
+    /// [`Context::conditions_at`].
+    pub fn sky_radiance(&self, position: DVec3, directions: &[DVec3], time_s: f64) -> Result<Vec<[f64; 3]>> {
+        let scene = self.scene_at(position, time_s)?;
+        let toward = |i: usize| {
+            let length = directions[i].length();
+            if (length - 1.0).abs() < LENGTH_OFF {
+                return Ok(directions[i] / length);
+            }
+            Err(Error::range(&format!("directions[{i}]"), "a unit vector (east, north, up)", directions[i]))
+        };
+        let units = (0..directions.len()).map(toward).collect::<Result<Vec<_>>>()?;
+        if units.is_empty() {
+            return Ok(Vec::new());
+        }
+        let skies = self.shared().get(|| Ok(SolvedSkies::default()))?;
+        let law = self.fog_law();
+        let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?;
+        let fog_depth = fog.depth_above(scene.place.altitude_m);
+        let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
+        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, night };
+        units.into_iter().map(|d| Ok(seen.with_fog(d)?.to_array())).collect()
+    }
+}
+
+/// Mean luminance of an overcast sky over elevation, 1 at the zenith (CIE S 011, the standard overcast sky).
+fn overcast_gradation(sin_elevation: f64) -> f64 {
+    (1.0 + 2.0 * sin_elevation.max(0.0)) / 3.0
+}
+
+/// All that a direction's light is made of.
+struct Seen<'a> {
+    skies: &'a SolvedSkies,
+    solved: OnceCell<Arc<SolvedSky>>,
+    scene: &'a Scene,
+    fog: FogModel,
+    night: NightBehind,
+}
+
+impl Seen<'_> {
+    /// The lamps that light the picture.
+    fn lamps(&self) -> impl Iterator<Item = &Light> {
+        [&self.scene.sun, &self.scene.moon].into_iter().filter(|light| light.matters)
+    }
+
+    /// The clear sky, solved where it is asked for: a closed deck or dense fog hide all of it.
+    fn clear(&self) -> Result<&SolvedSky> {
+        if let Some(solved) = self.solved.get() {
+            return Ok(solved);
+        }
+        let solved = self.skies.of(&self.scene.planet)?;
+        Ok(self.solved.get_or_init(|| solved))
+    }
+
+    fn line(&self, direction: DVec3, lamp: &Light) -> Sightline {
+        let altitude_m = self.scene.place.altitude_m.clamp(-1e4, 1e8);
+        Sightline { altitude_m, direction, to_lamp: lamp.direction }
+    }
+
+    /// Colour of light at the planet's wavelengths; what lies outside of Rec. 709 is cut, as in a picture.
+    fn color(&self, spectrum: [f64; 3]) -> DVec3 {
+        DVec3::from_array(color_of(&self.scene.color, spectrum)).max(DVec3::ZERO)
+    }
+
+    /// The sky behind all fog: `sky_behind` of the composition.
+    fn behind(&self, d: DVec3) -> Result<DVec3> {
+        let scene = self.scene;
+        let deck = DVec3::from_array(scene.deck_cd_m2);
+        let above = deck * overcast_gradation(d.z);
+        if d.z >= 0.0 && scene.deck_cover >= 1.0 {
+            return Ok(above);
+        }
+        let mut spectrum = [0.0; 3];
+        for lamp in self.lamps() {
+            let seen = self.clear()?.radiance(&self.line(d, lamp))?;
+            (0..3).for_each(|i| spectrum[i] += lamp.spectrum[i] * seen[i]);
+        }
+        let (clear, night) = (self.color(spectrum), DVec3::from_array(self.night.toward(d)));
+        if d.z < 0.0 {
+            let under_deck = deck * self.ground_under_deck(d)?;
+            return Ok((clear * scene.medium_share).lerp(under_deck, scene.deck_cover) + night);
+        }
+        Ok((clear + night).lerp(above, scene.deck_cover))
+    }
+
+    /// Luminance of the ground and of the air before it over that of a closed deck's zenith: `ground_under_deck`.
+    fn ground_under_deck(&self, d: DVec3) -> Result<DVec3> {
+        let Some(lamp) = self.lamps().next() else { return Ok(DVec3::ZERO) };
+        let along = self.clear()?.whole(&self.line(d, lamp))?;
+        let through = DVec3::from_array(along.transmittance);
+        let albedo = if along.ground { self.scene.planet.ground_albedo } else { [0.0; 3] };
+        let air = DVec3::splat(overcast_gradation(0.0)) * (DVec3::ONE - through);
+        Ok(air + DVec3::from_array(albedo) * UNDER_DECK * through)
+    }
+
+    /// Light of the air before `distance_m`, and what it lets through: `air_on`.
+    fn air(&self, d: DVec3, distance_m: f64) -> Result<(DVec3, DVec3)> {
+        let (mut spectrum, mut through) = ([0.0; 3], [1.0; 3]);
+        for lamp in self.lamps() {
+            let (light, left) = self.clear()?.aerial(&self.line(d, lamp), distance_m)?;
+            (0..3).for_each(|i| spectrum[i] += lamp.spectrum[i] * light[i]);
+            through = left;
+        }
+        let through = DVec3::from_array(through);
+        let lit = |v: [f64; 3]| DVec3::from_array(v) * (DVec3::ONE - through);
+        let clear = self.color(spectrum) * self.scene.medium_share;
+        let under_deck = lit(self.scene.deck_cd_m2) * overcast_gradation(0.0);
+        Ok((clear.lerp(under_deck, self.scene.deck_cover) + lit(self.scene.night_floor_cd_m2), through))
+    }
+
+    /// What a pixel of the sky shows: `with_fog`.
+    fn with_fog(&self, d: DVec3) -> Result<DVec3> {
+        let fog = fog_along(&self.fog, DVec3::ZERO, d, RANGE_SKY_M, RANGE_SKY_M);
+        // Nothing of what lies behind is left.
+        let behind = if fog.transmittance.max_element() > 0.0 { self.behind(d)? } else { DVec3::ZERO };
+        let (mut before, mut through) = (DVec3::ZERO, DVec3::ONE);
+        if fog.distance > NEAR_FOG_M {
+            (before, through) = self.air(d, fog.distance)?;
+        }
+        Ok(before + through * fog.radiance + fog.transmittance * (fog.shade * behind - before))
+    }
+}

@@ -1,0 +1,177 @@
+//! Skies of the f64 reference that are kept once they are solved, for queries.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use glam::DVec3;
+
+use super::{
+    Planet,
+    reference::{Along, Options, Reference, View},
+};
+use crate::{
+    error::{Error, Result, Status},
+    gpu::recent::Recent,
+};
+
+/// Airs whose skies are kept. Each takes about 1 MB.
+const MOST: usize = 4;
+
+/// The reference solved for the airs that were asked for last. Any thread.
+pub(crate) struct SolvedSkies(Mutex<Recent<Planet, Arc<SolvedSky>, MOST>>);
+
+impl Default for SolvedSkies {
+    fn default() -> Self {
+        Self(Mutex::new(Recent::new()))
+    }
+}
+
+impl SolvedSkies {
+    /// The sky of an air. Solves it at the first call, which takes some seconds; other threads that ask then wait.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] for a planet out of range; [`Status::Poisoned`] after a panic.
+    pub fn of(&self, planet: &Planet) -> Result<Arc<SolvedSky>> {
+        let poisoned = |_| Error::new(Status::Poisoned, "an earlier call panicked while solving the sky");
+        let mut kept = self.0.lock().map_err(poisoned)?;
+        kept.get_or_make(|known| known == planet, || Ok((*planet, Arc::new(SolvedSky::new(planet)?)))).cloned()
+    }
+}
+
+/// Longer than any ray through the air, m.
+const WHOLE_M: f64 = 1e12;
+/// Steps of the sun's zenith angle between which the ground's light is interpolated, a degree.
+const STEPS_PER_DEG: f64 = 2.0;
+/// Below this the logarithm of a light is taken of it.
+const LEAST: f64 = 1e-30;
+
+/// The sky of one air, per unit of a lamp's irradiance above the air.
+pub(crate) struct SolvedSky {
+    reference: Reference,
+    /// Logarithms of the light on level ground by steps of the sun's zenith angle, as far as they were asked for.
+    ground: Mutex<BTreeMap<i64, [f64; 3]>>,
+}
+
+/// Where and towards what a ray goes, in (east, north, up) of the observer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sightline {
+    pub altitude_m: f64,
+    pub direction: DVec3,
+    pub to_lamp: DVec3,
+}
+
+impl Sightline {
+    fn view(&self) -> View {
+        let zenith = |d: DVec3| d.truncate().length().atan2(d.z);
+        let azimuth = |d: DVec3| d.x.atan2(d.y);
+        View {
+            altitude_m: self.altitude_m,
+            sun_zenith: zenith(self.to_lamp),
+            view_zenith: zenith(self.direction),
+            azimuth: azimuth(self.direction) - azimuth(self.to_lamp),
+        }
+    }
+}
+
+impl SolvedSky {
+    fn new(planet: &Planet) -> Result<Self> {
+        let planet = Planet { solar_irradiance: [1.0; 3], ..*planet };
+        // As the tests that hold the drawn sky against it.
+        let reference = Reference::solve(&planet, &Options { disc_strips: 3, ..Options::default() })?;
+        Ok(Self { reference, ground: Mutex::default() })
+    }
+
+    /// Radiance of the air along a whole ray and of the ground that it meets, a wavelength.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] for a number out of range.
+    pub fn radiance(&self, line: &Sightline) -> Result<[f64; 3]> {
+        let along = self.reference.aerial(&line.view(), WHOLE_M)?;
+        if !along.ground {
+            return Ok(along.radiance);
+        }
+        let ground = self.ground_radiance(line)?;
+        Ok([0, 1, 2].map(|i| along.radiance[i] + ground[i] * along.transmittance[i]))
+    }
+
+    /// All of a ray through the air: what it scatters, what it lets through, and whether it meets the ground.
+    ///
+    /// # Errors
+    /// As [`SolvedSky::radiance`].
+    pub fn whole(&self, line: &Sightline) -> Result<Along> {
+        self.reference.aerial(&line.view(), WHOLE_M)
+    }
+
+    /// Radiance that the air scatters into the first `distance_m` of a ray, and what it lets through there, a wavelength.
+    ///
+    /// # Errors
+    /// As [`SolvedSky::radiance`].
+    pub fn aerial(&self, line: &Sightline, distance_m: f64) -> Result<([f64; 3], [f64; 3])> {
+        let along = self.reference.aerial(&line.view(), distance_m)?;
+        Ok((along.radiance, along.transmittance))
+    }
+
+    /// Radiance of the planet's ground, a Lambert surface, where a ray meets it.
+    fn ground_radiance(&self, line: &Sightline) -> Result<[f64; 3]> {
+        let planet = self.reference.planet();
+        let (bottom, up) = (planet.bottom_radius_m, line.altitude_m.max(0.0));
+        // The smaller root of |r + t d| = bottom, without cancellation.
+        let r = bottom + up;
+        let (mu, c) = (line.direction.z, up * (2.0 * bottom + up));
+        let distance = c / (-r * mu + (r * r * mu * mu - c).max(0.0).sqrt()).max(1e-9);
+        let nu = line.direction.dot(line.to_lamp);
+        let mu_s = ((r * line.to_lamp.z + distance * nu) / bottom).clamp(-1.0, 1.0);
+        let lit = self.ground_light(mu_s.acos())?;
+        Ok([0, 1, 2].map(|i| planet.ground_albedo[i] / std::f64::consts::PI * lit[i]))
+    }
+
+    /// Irradiance of level ground under a lamp's zenith angle: its logarithm is linear between steps.
+    fn ground_light(&self, zenith: f64) -> Result<[f64; 3]> {
+        let at = zenith.to_degrees() * STEPS_PER_DEG;
+        let near = at.floor();
+        let [a, b] = [self.ground_step(near as i64)?, self.ground_step(near as i64 + 1)?];
+        Ok([0, 1, 2].map(|i| (a[i] + (b[i] - a[i]) * (at - near)).exp()))
+    }
+
+    fn ground_step(&self, step: i64) -> Result<[f64; 3]> {
+        let mut steps = self.ground.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = steps.get(&step) {
+            return Ok(*known);
+        }
+        let zenith = (step as f64 / STEPS_PER_DEG).to_radians().min(std::f64::consts::PI);
+        let light = self.reference.irradiance(0.0, zenith)?;
+        let logarithm = [0, 1, 2].map(|i| (light.direct[i] + light.sky[i]).max(LEAST).ln());
+        steps.insert(step, logarithm);
+        Ok(logarithm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_air_is_solved_once() {
+        let skies = SolvedSkies::default();
+        let first = skies.of(&Planet::earth()).unwrap();
+        assert!(Arc::ptr_eq(&first, &skies.of(&Planet::earth()).unwrap()));
+    }
+
+    #[test]
+    fn ground_seen_from_near_is_what_falls_on_it_times_its_albedo() {
+        let sky = SolvedSkies::default().of(&Planet::earth()).unwrap();
+        for zenith in [20.3f64, 61.7, 88.1, 93.6] {
+            let to_lamp = DVec3::new(0.0, zenith.to_radians().sin(), zenith.to_radians().cos());
+            let line = Sightline { altitude_m: 1.0, direction: DVec3::NEG_Z, to_lamp };
+            let seen = sky.radiance(&line).unwrap();
+            let light = sky.reference.irradiance(0.0, zenith.to_radians()).unwrap();
+            let albedo = sky.reference.planet().ground_albedo;
+            for (i, seen) in seen.iter().enumerate() {
+                let whole = (light.direct[i] + light.sky[i]) * albedo[i] / std::f64::consts::PI;
+                assert!((seen / whole - 1.0).abs() < 0.01, "{zenith} {i}: {seen} of {whole}");
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What stands behind the sky's own light towards one direction, in f64: the twin of `night_light` in `shaders/frame/composite.wgsl` and of
+//! the layer that it reads, without the points.
+
+use glam::DVec3;
+
+use super::{
+    NightSky, StarSettings,
+    places::to_world_and_sun,
+    view::{LEAST_THROUGH, POINTS_BEGIN_DEG},
+};
+use crate::{
+    almanac::Utc,
+    error::Result,
+    moment::Scene,
+    world::{night_share, zenith_depth},
+};
+
+/// The night's light behind the sky over a place.
+pub(crate) struct NightBehind {
+    /// Where no glow is drawn, and while night has not come.
+    even_cd_m2: [f64; 3],
+    /// The glow, and how far night has come.
+    glow: Option<(NightSky, f64)>,
+}
+
+impl NightBehind {
+    /// Of a scene at a universal time, through fog of an optical depth straight up.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a time out of the almanac's range.
+    pub fn new(scene: &Scene, utc: Utc, settings: &StarSettings, fog_depth: f64) -> Result<Self> {
+        let even_cd_m2 = scene.night_floor_cd_m2;
+        let open = (1.0 - scene.deck_cover) * (-fog_depth).exp();
+        let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+        let share = night_share(&scene.sun);
+        if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || share == 0.0 {
+            return Ok(Self { even_cd_m2, glow: None });
+        }
+        let (place, altitude_m) = (&scene.place, scene.place.altitude_m.max(0.0));
+        let (to_world, sun) = to_world_and_sun(utc, place, settings.celestial_to_world)?;
+        let depth = zenith_depth(&scene.planet, altitude_m);
+        let sky = NightSky::under(&to_world, sun, altitude_m, depth, settings.airglow);
+        Ok(Self { even_cd_m2, glow: Some((sky, share)) })
+    }
+
+    /// Luminance towards a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709.
+    pub fn toward(&self, direction: DVec3) -> [f64; 3] {
+        let Some((sky, share)) = &self.glow else { return self.even_cd_m2 };
+        let night = sky.luminance(direction);
+        [0, 1, 2].map(|k| self.even_cd_m2[k] + (night[k] - self.even_cd_m2[k]) * share)
+    }
+}
