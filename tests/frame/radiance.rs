@@ -113,17 +113,23 @@ impl Errors {
         );
         for ((found, place), documented) in found.iter().zip(documented) {
             assert!(*found < documented, "{name}: {found} is above the documented {documented}: {place}");
-            assert!(*found > 0.6 * documented, "{name}: {found} is far below the documented {documented}");
+            let far_below = is_whole() && *found < 0.6 * documented;
+            assert!(!far_below, "{name}: {found} is far below the documented {documented}");
         }
     }
 }
 
+fn is_whole() -> bool {
+    std::env::var_os("WELKIN_ACCEPT").is_some()
+}
+
+/// With WELKIN_ACCEPT in every weather: each has an air of its own, which takes seconds to solve.
 #[test]
 fn radiance_asked_for_is_the_radiance_drawn() {
     let mut sky = Sky::new();
     let [mut day, mut dusk, mut night, mut cube] = [const { Errors(Vec::new()) }; 4];
     sky.view.environment().unwrap();
-    for (name, weather) in weathers() {
+    for (name, weather) in weathers().into_iter().step_by(if is_whole() { 1 } else { 2 }) {
         sky.context.set_weather(&weather, 0.0, 0.0).unwrap();
         for (sun_deg, moon_deg) in [(50.0, -40.0), (6.0, -40.0), (-5.0, 30.0), (-12.0, 30.0), (-40.0, -30.0)] {
             sky.context.set_sun(Some(GivenDirection { azimuth_deg: 70.0, elevation_deg: sun_deg })).unwrap();
