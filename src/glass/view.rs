@@ -77,7 +77,7 @@ fn reached<'a>(now: &'a Moment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &W
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));
     }
-    let known = now.weather.at_place(now.eye, now.time_s, now.weather.known(now.time_s));
+    let known = now.weather.falling_at(now.eye, now.time_s, now.weather.known(now.time_s));
     let sizes = DropSizes::new(&known.precipitation, factor_in(&known.air, now.scene.place.altitude_m));
     let pane = PaneAt::new(&frame.camera, plane, screen);
     let drops = pane.drops(now, &sizes);
@@ -116,7 +116,7 @@ impl DrawnEffect for GlassView {
             camera: &frame.camera,
             up: now.scene.world_to_enu.transpose().z_axis,
             altitude_m: now.scene.place.altitude_m,
-            weather: &|t| now.weather.at_place(now.eye, t, now.weather.known(t)),
+            weather: &|t| now.weather.falling_at(now.eye, t, now.weather.known(t)),
             reach: &|plane, screen| reached(now, frame, plane, screen),
             cut: frame.is_pure(),
         };

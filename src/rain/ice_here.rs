@@ -17,7 +17,7 @@ pub(super) struct Ice {
 impl Ice {
     /// Takes what falls at the camera.
     pub fn gather(&mut self, now: &Moment<'_>) {
-        let falling = now.here.precipitation;
+        let falling = now.weather.falling_at(now.eye, now.time_s, now.scene.conditions).precipitation;
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }
 

@@ -25,7 +25,7 @@ use crate::{
         ColorSpace, Composition, Drawing, DrawnEffect, PutPart, RainReport, Recording, Report, Shot, Stages, Texture,
         rounding,
     },
-    weather::Falling,
+    weather::{Conditions, Falling},
     wind::{Remembered, WindGrid},
 };
 
@@ -37,6 +37,8 @@ pub(crate) struct RainView {
     shares: [f32; 2],
     /// Drops a class of each rain of late, and what they were counted for.
     counted: Vec<(Falling, f64, u32, Classes)>,
+    /// The weather's own rain, as much of it as has left its cloud at the camera.
+    own: Falling,
     /// Columns of rain areas about the camera, and what they let fall round it.
     field: AreaField,
     local: Option<Local>,
@@ -54,6 +56,24 @@ const COUNTED: usize = 32;
 /// Least share of a rain near a rim in what cones are made for.
 const LEAST_OF_CONES: f64 = 1e-2;
 
+/// Depth over which rain sets in below its cloud, m: that of the fog layer's upper end in which it falls. And the steps in which it does,
+/// so that a climbing camera does not count drops anew in each frame.
+const ONSET_M: f64 = 100.0;
+const ONSET_STEPS: f64 = 32.0;
+
+/// What falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
+fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
+    let begun = ((c.falling_top_m() - altitude_m) / ONSET_M + 0.5).clamp(0.0, 1.0);
+    let share = (begun * ONSET_STEPS).ceil() / ONSET_STEPS;
+    let f = c.precipitation;
+    Falling {
+        rain_mm_h: f.rain_mm_h * share,
+        drizzle_mm_h: f.drizzle_mm_h * share,
+        extinction_per_m: f.extinction_per_m * share,
+        ..f
+    }
+}
+
 impl RainView {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self {
@@ -61,6 +81,7 @@ impl RainView {
             settings,
             shares: [1.0; 2],
             counted: Vec::new(),
+            own: Falling::NONE,
             field: AreaField::empty(),
             local: None,
             areas: None,
@@ -76,14 +97,14 @@ impl RainView {
     /// For a time that the weather does not know.
     pub fn gather(&mut self, now: &Moment<'_>) -> Result<()> {
         let scene = &now.scene;
-        let falling = &scene.conditions.precipitation;
+        self.own = begun_at(&scene.conditions, scene.place.altitude_m);
         let at = (now.eye, &scene.world_to_enu, scene.place.altitude_m);
         self.field.columns.clear();
         if !now.weather.regions.is_empty() {
             let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
             self.field.set(shafts, at, &now.own_rain, now.time_s);
         }
-        self.local = Some(Local::new(falling, &self.field, at, REACH_M.max(self.reach(now))));
+        self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
         self.ice.gather(now);
         Ok(())
     }
@@ -105,7 +126,7 @@ impl RainView {
 
     /// How many drops are drawn round the camera.
     fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
-        self.classes(device, scene, &scene.conditions.precipitation).per_shell * self.shells() as u32
+        self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
     }
 
     /// Shells of the lattice that are drawn.
@@ -146,7 +167,7 @@ impl RainView {
     /// the rest is diffraction; times the contrast's gain), the distance up to which they do, and the share of it that is drawn.
     fn hidden(&mut self, device: &Device, now: &Moment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
-        let falling = scene.conditions.precipitation;
+        let falling = self.own;
         let reach = self.reach(now);
         let most = self.settings.most_on(device);
         // Stones are rare: they hide as much as if they did within the drops' reach.
@@ -194,7 +215,7 @@ impl RainView {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
         let reach = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
         // The smallest stones are a tenth slower than the smallest drops.
-        (0.9 * self.classes(device, scene, &scene.conditions.precipitation).flux[0].1, reach)
+        (0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach)
     }
 
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
@@ -218,7 +239,7 @@ impl RainView {
     /// Takes what is drawn as drops near the camera off the columns of rain areas, and gives them their pattern.
     fn set_near(&mut self, device: &Device, now: &Moment<'_>) {
         let scene = &now.scene;
-        let falling = scene.conditions.precipitation;
+        let falling = self.own;
         self.field.near_m = self.reach(now);
         // No veil gives way to more than all of it, which is twice what its drops' discs hide.
         let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
@@ -246,7 +267,7 @@ impl RainView {
 
     /// The drops of what falls round the camera, and how many fall where if that differs.
     fn falling_here(&mut self, device: &Device, scene: &Scene) -> (Classes, Option<LocalUniform>) {
-        let weather = scene.conditions.precipitation;
+        let weather = self.own;
         match self.local.unwrap_or(Local::Pure(weather)) {
             Local::Pure(falling) => (self.classes(device, scene, &falling), None),
             Local::Mixed(falling, bits) => {
@@ -269,7 +290,7 @@ impl RainView {
     /// What cones are made for: parts of each rain as at the camera itself, and a little of all that is near, of which there may be
     /// none at the camera.
     fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
-        let weather = scene.conditions.precipitation;
+        let weather = self.own;
         let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
             Local::Pure(falling) => (falling, 0),
             Local::Mixed(falling, bits) => (falling, bits),

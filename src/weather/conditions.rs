@@ -327,6 +327,19 @@ impl WindProfile {
 }
 
 impl Falling {
+    /// Nothing.
+    pub(crate) const NONE: Self = Self {
+        rain_mm_h: 0.0,
+        drizzle_mm_h: 0.0,
+        snow_mm_h: 0.0,
+        ice_pellets_mm_h: 0.0,
+        hail_mm_h: 0.0,
+        freezing: 0.0,
+        showers: 0.0,
+        thunder: 0.0,
+        extinction_per_m: 0.0,
+    };
+
     /// Everything that falls, mm/h of liquid water.
     pub fn total_mm_h(&self) -> f64 {
         self.rain_mm_h + self.drizzle_mm_h + self.snow_mm_h + self.ice_pellets_mm_h + self.hail_mm_h

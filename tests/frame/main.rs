@@ -1,5 +1,6 @@
 //! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
 
+mod above;
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
 mod environment;
