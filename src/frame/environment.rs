@@ -123,7 +123,7 @@ impl Standing {
 }
 
 /// Samples of the host's images, and the constants of a pipeline that draws every part.
-type Kind = (Sampling, Constants);
+type PipelineKind = (Sampling, Constants);
 
 /// What the levels are made with.
 struct Filter {
@@ -141,7 +141,7 @@ pub(super) struct EnvironmentMap {
     layout: wgpu::BindGroupLayout,
     blocks: wgpu::Buffer,
     group: wgpu::BindGroup,
-    pipelines: Recent<Kind, wgpu::RenderPipeline, MOST_PIPELINES>,
+    pipelines: Recent<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
     filter: Filter,
     /// What stood there when the last face was drawn; none: all are to be drawn.
     drawn: Option<Standing>,
@@ -321,7 +321,7 @@ impl EnvironmentMap {
     }
 
     /// The faces to draw for a frame, and the scale of what is drawn.
-    fn follow(&mut self, shot: &Shot<'_>) -> std::ops::Range<u32> {
+    fn faces_due(&mut self, shot: &Shot<'_>) -> std::ops::Range<u32> {
         let (frame, scene) = (shot.frame, &shot.now.scene);
         let (now, white) = (Standing::of(scene), scene.ground.adaptation_cd_m2.clamp(1e-6, 1e9));
         let follows = self.drawn.as_ref().is_some_and(|before| !now.leaps_from(before));
@@ -349,7 +349,7 @@ impl EnvironmentMap {
         &mut self,
         to: &mut Recording<'_>,
         faces: std::ops::Range<u32>,
-        (sampling, between): Kind,
+        (sampling, between): PipelineKind,
         layouts: &[&wgpu::BindGroupLayout; 3],
         groups: &[&wgpu::BindGroup; 3],
     ) -> Result<()> {
@@ -427,7 +427,7 @@ impl View {
         if !is_seen || map.frame_id == Some(shot.frame.frame_id) {
             return Ok(());
         }
-        let faces = map.follow(shot);
+        let faces = map.faces_due(shot);
         let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
         let composite = self.composite.lock()?;
         let groups = [group, tables, self.surroundings.bind_group()];
