@@ -17,6 +17,8 @@ use welkin::{
     weather::{Surface, SurfaceState, Weather},
 };
 
+use crate::textures;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
@@ -98,17 +100,7 @@ impl Copying {
 }
 
 fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: SIZE,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-        view_formats: &[],
-    })
+    textures::texture(device, (SIZE.width, SIZE.height), format, 1)
 }
 
 /// One weather over a picture, and the calls in which its frames are drawn.

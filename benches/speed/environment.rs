@@ -11,25 +11,11 @@ use welkin::{
     weather::Weather,
 };
 
-use crate::depth_texture::depth_texture;
+use crate::{depth_texture::depth_texture, textures::texture};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (1280, 720);
-
-fn color(device: &Device) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC,
-        view_formats: &[],
-    })
-}
 
 /// Milliseconds of a frame that is waited for.
 fn ms(device: &Device, context: &Context, view: &mut View, frame: &Frame<'_>) -> Fallible<f64> {
@@ -55,7 +41,8 @@ pub fn run() -> Fallible<()> {
         let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
         context.set_weather(&Weather::preset(name)?, 0.0, 0.0)?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 30.0 }))?;
-        let (color, depth) = (color(&device), depth_texture(&device, SIZE, &depths));
+        let (color, depth) =
+            (texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1), depth_texture(&device, SIZE, &depths));
         let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
         let [mut without, mut with] = [View::new(&context)?, View::new(&context)?];
         with.environment()?;

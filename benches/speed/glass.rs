@@ -13,6 +13,8 @@ use welkin::{
     weather::{Precipitation, PrecipitationKind, Weather},
 };
 
+use crate::textures;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
@@ -29,18 +31,7 @@ pub fn run() -> Fallible<()> {
     context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 }))?;
     let precipitation = Precipitation { kind: PrecipitationKind::Rain, rate_mm_h: 10.0, ..Default::default() };
     context.set_weather(&Weather { precipitation, visibility_m: 3000.0, ..Weather::default() }, 0.0, 0.0)?;
-    let color = device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: SIZE,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let color = textures::texture(&device, (SIZE.width, SIZE.height), wgpu::TextureFormat::Rgba16Float, 1);
     let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
     // A car's: 1.4 m x 0.7 m of glass at 0.7 m, which is 350 x 175 cells.
     let corners = [(-0.7, -0.35), (0.7, -0.35), (0.7, 0.35), (-0.7, 0.35)].map(|(x, y)| DVec3::new(x, y, -0.7));

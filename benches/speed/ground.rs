@@ -12,6 +12,8 @@ use welkin::{
     weather::{Precipitation, PrecipitationKind, Surface, SurfaceState, Weather},
 };
 
+use crate::textures;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
@@ -19,19 +21,7 @@ const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let shared = std::sync::Arc::new(Shared::new(&device)?);
-    let texture = |format| {
-        use wgpu::TextureUsages as U;
-        device.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: SIZE,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-            view_formats: &[],
-        })
-    };
+    let texture = |format| textures::texture(&device, (SIZE.width, SIZE.height), format, 1);
     let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
     // Level ground 2 m below the eye, from the picture's middle down.
     let row = |y: u32| 0.1 * (y as f32 - 179.5).max(0.0) / 180.0 * 0.45f32.tan() / 2.0;

@@ -14,6 +14,8 @@ mod radiance;
 mod rain;
 mod record;
 mod sky;
+#[path = "../../tests/support/textures.rs"]
+mod textures;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let named: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();

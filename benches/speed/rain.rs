@@ -14,7 +14,7 @@ use welkin::{
     wind::{WindGrid, WindGridKind},
 };
 
-use crate::depth_texture::depth_texture;
+use crate::{depth_texture::depth_texture, textures};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -38,19 +38,7 @@ impl Bench {
         let mut context = Context::new(device.clone(), shared, ContextDesc::default())?;
         context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 35.0 }))?;
         let view = View::new(&context)?;
-        let texture = |format| {
-            use wgpu::TextureUsages as U;
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: SIZE,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-                view_formats: &[],
-            })
-        };
+        let texture = |format| textures::texture(&device, (SIZE.width, SIZE.height), format, 1);
         let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
         Ok(Self { device, context, view, color, depth, frame_id: 0, fov: 0.9 })
     }

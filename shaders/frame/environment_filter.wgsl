@@ -1,5 +1,5 @@
-// Rougher levels of the cube map: the mean of what stands around, seen in a rough mirror whose normal, view and middle of reflection are one
-// direction (Karis 2013, Real Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"), with samples that each stand for a part of the
+// Rougher levels of the cube map: what a rough mirror shows when it is looked at along its normal
+// (Karis 2013, Real Shading in Unreal Engine 4, eq. 7 and "PrefilterEnvMap"), with samples that each stand for a part of the
 // sphere as large as theirs (Krivanek and Colbert 2008, Real-time Shading with Filtered Importance Sampling, eq. 13).
 //!include "common/fullscreen.wgsl"
 

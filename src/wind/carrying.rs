@@ -61,7 +61,7 @@ impl Carrying<'_> {
 /// Moments that are remembered: more than a frame asks for.
 const REMEMBERED: usize = 16;
 
-/// The wind at moments that many frames ask for: a walk over the timeline each, worked out once until the timeline changes.
+/// Keeps the wind at moments that many frames ask for, until the timeline changes: each takes a walk over the timeline.
 #[derive(Default)]
 pub(crate) struct Remembered {
     revision: Cell<u64>,

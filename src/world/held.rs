@@ -30,7 +30,7 @@ pub(crate) trait HeldEffect {
         None
     }
 
-    /// Updates what follows from weather, surroundings and time without being a state.
+    /// Updates what weather, surroundings and time alone decide, and what is therefore not saved.
     fn refresh(&mut self, _world: &World) -> Result<()> {
         Ok(())
     }
