@@ -74,7 +74,8 @@ pub fn catalogue_s10(galactic: DVec3) -> f64 {
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
-        (0..LATITUDES_DEG.len()).flat_map(|row| (0..=LONGITUDES).map(move |i| at_node(row, i))).collect()
+        let nodes = LATITUDES_DEG.len() * (LONGITUDES + 1);
+        (0..nodes).map(|i| at_node(i / (LONGITUDES + 1), i % (LONGITUDES + 1))).collect()
     });
     let latitude = galactic.z.abs().min(1.0).asin().to_degrees();
     let row = LATITUDES_DEG.partition_point(|b| *b <= latitude).clamp(1, LATITUDES_DEG.len() - 1) - 1;
