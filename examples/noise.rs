@@ -140,7 +140,8 @@ impl Job {
         CloudFunction::from_density(cutoff, self.density.unwrap_or(0.96)).map(Some)
     }
 
-    fn run(&self) -> Result<()> {
+    /// Writes the files, and answers what is in them.
+    fn run(&self) -> Result<String> {
         let noise = self.noise()?;
         let cloud = self.cloud(&noise)?;
         let image = match &cloud {
@@ -155,17 +156,12 @@ impl Job {
         }
         let bytes = &noise.levels()[0];
         let mean = bytes.iter().map(|n| f64::from(*n)).sum::<f64>() / 255.0 / bytes.len() as f64;
-        let range = (bytes.iter().min(), bytes.iter().max());
-        println!(
-            "size {:?}, mean {mean:.3}, from {} to {}",
-            noise.size(),
-            range.0.unwrap_or(&0),
-            range.1.unwrap_or(&0)
-        );
+        let [low, high] = [bytes.iter().min(), bytes.iter().max()].map(|n| n.copied().unwrap_or(0));
+        let mut said = format!("size {:?}, mean {mean:.3}, from {low} to {high}", noise.size());
         if let Some(cloud) = &cloud {
-            println!("cutoff {:.4}, cover {:.3}", cloud.cutoff(), noise.cover(cloud.cutoff()));
+            said += &format!("\ncutoff {:.4}, cover {:.3}", cloud.cutoff(), noise.cover(cloud.cutoff()));
         }
-        Ok(())
+        Ok(said)
     }
 
     fn content(&self, file: &str, image: &NoiseImage, is_cloud: bool) -> Result<Vec<u8>> {
@@ -201,9 +197,17 @@ impl Job {
     }
 }
 
+/// Does what a command line says, without its first word.
+pub fn run(words: impl Iterator<Item = String>) -> Result<String> {
+    Job::parse(words)?.run()
+}
+
 fn main() -> ExitCode {
-    match Job::parse(std::env::args().skip(1)).and_then(|job| job.run()) {
-        Ok(()) => ExitCode::SUCCESS,
+    match run(std::env::args().skip(1)) {
+        Ok(said) => {
+            println!("{said}");
+            ExitCode::SUCCESS
+        }
         Err(e) => {
             eprintln!("noise: {e}");
             ExitCode::from(2)

@@ -19,16 +19,14 @@ fn fade3(t: vec3f) -> vec3f {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-// Length of the plane's vectors: its noise deviates as much from its mean as that of space does.
-const SLOPE: f32 = 1.2649111;
+// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the diagonals, along
+// which noise would show streaks. They are 1.25 long, with which noise deviates as much from its mean as it does in space.
+const RAMP: vec2f = vec2f(1.1548494, 0.4783543);
 
-// Product of `from_corner` with one of eight vectors at multiples of 45 degrees.
+// Product of `from_corner` with one of eight vectors.
 fn ramp2(bits: u32, from_corner: vec2f) -> f32 {
-    let turned = (bits & 0x40000000u) != 0u;
-    let minus = (bits & 0x20000000u) != 0u;
-    let diagonal = select(from_corner.x, -from_corner.x, turned) + select(from_corner.y, -from_corner.y, minus);
-    let along = select(from_corner.x, from_corner.y, turned);
-    return SLOPE * select(0.70710678 * diagonal, select(along, -along, minus), (bits & 0x80000000u) != 0u);
+    let along = RAMP * select(from_corner, from_corner.yx, (bits & 0x80000000u) != 0u);
+    return select(along.x, -along.x, (bits & 0x40000000u) != 0u) + select(along.y, -along.y, (bits & 0x20000000u) != 0u);
 }
 
 // Product of `from_corner` with a vector to one of the twelve edges of a cube (Perlin 2002, section 4).
@@ -39,7 +37,7 @@ fn ramp3(bits: u32, from_corner: vec3f) -> f32 {
     return select(u, -u, (bits & 1u) != 0u) + select(v, -v, (bits & 2u) != 0u);
 }
 
-// Gradient noise in the plane, -0.9 to 0.9, 0 at the corners of cells (Perlin 2002).
+// Gradient noise in the plane, -0.85 to 0.85, 0 at the corners of cells (Perlin 2002).
 fn gradient2(cell: vec2u, at: vec2f, period: vec2u, key: u32) -> f32 {
     let far = select(cell + 1u, vec2u(0u), cell + 1u == period);
     let left = scramble(key + cell.x);

@@ -18,7 +18,7 @@
 //! fragment passes, without compute, slice by slice over as many frames as one likes. The two agree within 1 of 255, mip levels
 //! too. [`NoiseImage::load`] reads DDS and KTX2 files. [`CloudFunction`] turns noise into opacity.
 //!
-//! Cost on a software driver of two cores: see `docs/noise.md`.
+//! Cost: `cargo bench --bench speed -- noise`.
 
 mod file;
 mod image;

@@ -1,8 +1,6 @@
 //! Noise in f64 at any point: the twin of `shaders/noise/lattice.wgsl` and `slice.wgsl`.
 
-use std::f64::consts::FRAC_1_SQRT_2;
-
-use glam::{DVec2, DVec3, UVec2, UVec3};
+use glam::{DVec2, DVec3, UVec2, UVec3, Vec2Swizzles as _};
 
 use super::settings::{NoiseKind, NoiseSettings, axes};
 
@@ -43,16 +41,15 @@ fn signed(value: f64, is_minus: bool) -> f64 {
     if is_minus { -value } else { value }
 }
 
-/// Length of the plane's vectors, the root of 1.6: its noise deviates as much from its mean as that of space does, 0.27, so that
-/// the same settings have the same cover in both.
-const SLOPE: f64 = 1.264_911_064_067_351_8;
+/// The plane's vectors: their greater and their lesser coordinate. They point 22.5 degrees off the axes and the diagonals, along
+/// which noise would show streaks. They are 1.25 long: with that noise deviates as much from its mean as it does in
+/// space, 0.27, and the same settings have the same cover in both.
+const RAMP: DVec2 = DVec2::new(1.154_849_415_639_109, 0.478_354_290_456_363);
 
-/// Product of `from_corner` with one of eight vectors at multiples of 45 degrees.
+/// Product of `from_corner` with one of eight vectors.
 fn ramp_2d(bits: u32, from_corner: DVec2) -> f64 {
-    let (turned, is_minus) = (bits & 0x4000_0000 != 0, bits & 0x2000_0000 != 0);
-    let along = signed(if turned { from_corner.y } else { from_corner.x }, is_minus);
-    let diagonal = signed(from_corner.x, turned) + signed(from_corner.y, is_minus);
-    SLOPE * if bits & 0x8000_0000 == 0 { FRAC_1_SQRT_2 * diagonal } else { along }
+    let along = RAMP * if bits & 0x8000_0000 == 0 { from_corner } else { from_corner.yx() };
+    signed(along.x, bits & 0x4000_0000 != 0) + signed(along.y, bits & 0x2000_0000 != 0)
 }
 
 /// Product of `from_corner` with a vector to one of the twelve edges of a cube (Perlin 2002, section 4).
@@ -74,7 +71,7 @@ fn ring(cell: u32, step: i32, period: u32) -> u32 {
     (i64::from(cell) + i64::from(step)).rem_euclid(i64::from(period)) as u32
 }
 
-/// Gradient noise in the plane (Perlin 2002), of one octave: -0.9 to 0.9, 0 at the corners of cells, with continuous second
+/// Gradient noise in the plane (Perlin 2002), of one octave: -0.85 to 0.85, 0 at the corners of cells, with continuous second
 /// derivatives. `at` is in cells; the pattern repeats after `period` cells, at least 1 along each axis. Another `key` is another
 /// pattern.
 pub fn gradient_2d(at: DVec2, period: UVec2, key: u32) -> f64 {

@@ -21,6 +21,11 @@ fn damaged_noise_files_are_read_or_refused_by_name() {
     let settings = NoiseSettings { frequency: [2; 3], ..Default::default() };
     let image = |size| NoiseImage::generate(size, &settings).expect("good settings");
     let files: Vec<_> = [[16, 8, 1], [8, 8, 8]].map(image).iter().flat_map(|i| [i.to_dds(), i.to_ktx2()]).collect();
+    // With the header of older programs: luminance of 8 bits.
+    let mut older = files[2].clone();
+    older.drain(128..148);
+    older[80..92].copy_from_slice(&[0, 0, 2, 0, 0, 0, 0, 0, 8, 0, 0, 0]);
+    let files = [files, vec![older]].concat();
     let mut dice = Dice::new(14);
     let mut accepted = 0;
     for i in 0..times {

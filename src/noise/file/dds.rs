@@ -10,7 +10,9 @@ pub const MAGIC: [u8; 4] = *b"DDS ";
 const HEADER: u32 = 124;
 const PIXEL_FORMAT: u32 = 32;
 const BEFORE_DATA: usize = 128;
-const DX10: usize = 20;
+/// Bytes of the part that pixel formats called [`DX10`] have besides.
+const MORE: usize = 20;
+const DX10: [u8; 4] = *b"DX10";
 
 // Places of the fields.
 const AT_SIZE: usize = 4;
@@ -65,7 +67,7 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
         return Err(foreign("dwCaps2", "that of a plane or a volume", "a cube map"));
     }
     let (is_volume, data) = match is_volume_of_dx10(bytes)? {
-        Some(is_volume) => (is_volume, BEFORE_DATA + DX10),
+        Some(is_volume) => (is_volume, BEFORE_DATA + MORE),
         None => (caps_2 & VOLUME != 0, BEFORE_DATA),
     };
     let depth = if is_volume { word(bytes, AT_DEPTH)? } else { 1 };
@@ -98,11 +100,11 @@ fn is_volume_of_dx10(bytes: &[u8]) -> Result<Option<bool>> {
         return Ok(None);
     }
     let four_cc = &bytes[AT_FOUR_CC..AT_FOUR_CC + 4];
-    if four_cc != b"DX10" {
+    if four_cc != DX10 {
         return Err(foreign("ddspf.dwFourCC", "DX10 (or none, with A8 or L8)", four_cc.escape_ascii()));
     }
-    if bytes.len() < BEFORE_DATA + DX10 {
-        return Err(cut_short(BEFORE_DATA + DX10, bytes.len()));
+    if bytes.len() < BEFORE_DATA + MORE {
+        return Err(cut_short(BEFORE_DATA + MORE, bytes.len()));
     }
     let format = word(bytes, AT_DXGI_FORMAT)?;
     if !matches!(format, R8_UNORM | A8_UNORM) {
@@ -125,7 +127,7 @@ fn is_volume_of_dx10(bytes: &[u8]) -> Result<Option<bool>> {
 pub fn write(image: &NoiseImage) -> Vec<u8> {
     let [width, height, depth] = image.size();
     let (is_volume, levels) = (depth > 1, image.levels().len() as u32);
-    let mut header = [0_u8; BEFORE_DATA];
+    let mut header = [0_u8; BEFORE_DATA + MORE];
     header[..4].copy_from_slice(&MAGIC);
     let mut put = |at: usize, value: u32| header[at..at + 4].copy_from_slice(&value.to_le_bytes());
     let has_levels = levels > 1;
@@ -138,13 +140,14 @@ pub fn write(image: &NoiseImage) -> Vec<u8> {
     put(AT_DEPTH, if is_volume { depth } else { 0 });
     put(AT_LEVELS, levels);
     put(AT_PIXEL_FORMAT, PIXEL_FORMAT);
-    put(AT_PIXEL_FLAGS, LUMINANCE);
-    put(AT_BIT_COUNT, 8);
-    // dwRBitMask.
-    put(92, 0xff);
+    put(AT_PIXEL_FLAGS, FOUR_CC);
+    put(AT_FOUR_CC, u32::from_le_bytes(DX10));
     let complex = if has_levels || is_volume { CAPS_COMPLEX } else { 0 };
     put(108, CAPS_TEXTURE | complex | if has_levels { CAPS_LEVELS } else { 0 });
     put(AT_CAPS_2, if is_volume { VOLUME } else { 0 });
+    put(AT_DXGI_FORMAT, R8_UNORM);
+    put(AT_DIMENSION, if is_volume { DIMENSION_3D } else { DIMENSION_2D });
+    put(AT_ARRAY, 1);
     let mut file = header.to_vec();
     image.levels().iter().for_each(|level| file.extend_from_slice(level));
     file

@@ -48,7 +48,7 @@ impl NoiseImage {
         }
     }
 
-    /// The image as a DDS file with the pixel format L8, which most programs read, and its mip levels.
+    /// The image as a DDS file with the format R8_UNORM (its header is that called DX10) and its mip levels.
     pub fn to_dds(&self) -> Vec<u8> {
         dds::write(self)
     }
