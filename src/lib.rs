@@ -20,6 +20,7 @@ pub mod gpu;
 pub mod ground;
 pub mod light;
 mod moment;
+pub mod noise;
 pub mod plan;
 pub mod planet;
 pub mod rain;

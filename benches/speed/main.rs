@@ -1,5 +1,5 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (copies, record, environment, first, fog, glass, ground, parts, radiance, rain, sky).
+//! (copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky).
 
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
@@ -9,6 +9,7 @@ mod first;
 mod fog;
 mod glass;
 mod ground;
+mod noise;
 mod parts;
 mod radiance;
 mod rain;
@@ -52,6 +53,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("ground") {
         ground::run()?;
+    }
+    if wanted("noise") {
+        noise::run()?;
     }
     Ok(())
 }

@@ -9,6 +9,8 @@ use crate::error::{Error, Result, Status};
 fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     use wgpu::TextureFormat as F;
     match format {
+        F::R8Unorm => Ok(1),
+        F::Rg8Unorm => Ok(2),
         F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm | F::Bgra8UnormSrgb => Ok(4),
         F::R32Float | F::R32Uint | F::Rg16Float => Ok(4),
         F::Rgba16Float => Ok(8),
@@ -22,29 +24,44 @@ fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
 /// # Errors
 /// [`Status::Unsupported`] for other formats, [`Status::DeviceLost`] or a GPU fault.
 pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>> {
-    let (width, height) = (texture.width(), texture.height());
-    let row = width * texel_bytes(texture.format())?;
+    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+    let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
+    copied(device, wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() }, size)
+}
+
+/// The raw bytes of a mip level with all its layers or slices, rows packed.
+///
+/// # Errors
+/// As [`bytes`].
+pub(crate) fn level(device: &Device, texture: &wgpu::Texture, level: u32) -> Result<Vec<u8>> {
+    let size = texture.size().mip_level_size(level, texture.dimension());
+    copied(device, wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() }, size)
+}
+
+/// The raw bytes of a part of a texture as wide as its mip level, rows packed.
+fn copied(device: &Device, from: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Extent3d) -> Result<Vec<u8>> {
+    let row = size.width * texel_bytes(from.texture.format())?;
+    let rows = u64::from(size.height) * u64::from(size.depth_or_array_layers);
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
-        size: u64::from(padded) * u64::from(height),
+        size: u64::from(padded) * rows,
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
     device.check_made()?;
     let mut encoder = device.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo {
-            texture,
-            mip_level: 0,
-            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
-            aspect: wgpu::TextureAspect::All,
-        },
+        from,
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: Some(size.height),
+            },
         },
-        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        size,
     );
     device.submit(encoder);
     let (done, answer) = std::sync::mpsc::channel();
@@ -60,10 +77,10 @@ pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec
     let map = |e| Error::new(Status::Internal, format!("mapping a readback buffer failed: {e}"));
     let view = buffer.get_mapped_range(..).map_err(map)?;
     let mut packed = Vec::new();
-    let size = row as usize * height as usize;
+    let total = row as usize * rows as usize;
     let full =
-        |_| Error::new(Status::OutOfMemory, format!("there are no {size} bytes of memory for a texture read back"));
-    packed.try_reserve_exact(size).map_err(full)?;
+        |_| Error::new(Status::OutOfMemory, format!("there are no {total} bytes of memory for a texture read back"));
+    packed.try_reserve_exact(total).map_err(full)?;
     view.chunks_exact(padded as usize).for_each(|line| packed.extend_from_slice(&line[..row as usize]));
     Ok(packed)
 }

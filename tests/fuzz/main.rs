@@ -6,6 +6,7 @@
 mod calls;
 mod dice;
 mod judge;
+mod noise_files;
 #[path = "../support/refusals.rs"]
 mod refusals;
 mod structs;

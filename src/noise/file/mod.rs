@@ -1,0 +1,125 @@
+//! Noise in files: DDS and KTX2 textures of one channel of 8 bits, planes and volumes, with mip levels.
+
+mod dds;
+mod ktx2;
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+
+use super::image::{NoiseImage, empty};
+use super::settings::{MOST_TEXELS, levels_of, size_of_level, texels};
+use crate::error::{Error, Result, Status};
+
+/// Most bytes of a file: a texture of the most texels with its mip levels, and room for what else formats hold.
+const MOST_BYTES: u64 = 2 * MOST_TEXELS;
+
+impl NoiseImage {
+    /// Reads a DDS or KTX2 file, as [`NoiseImage::from_bytes`].
+    ///
+    /// # Errors
+    /// [`Status::Io`] where the file cannot be read; those of [`NoiseImage::from_bytes`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let failed = |e: std::io::Error| Error::new(Status::Io, format!("{}: {e}", path.display()));
+        let file = File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
+        check_length(length).map_err(|e| e.found_in(path.display()))?;
+        let mut bytes = empty(length)?;
+        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
+        Self::from_bytes(&bytes).map_err(|e| e.found_in(path.display()))
+    }
+
+    /// Reads a texture of one channel of 8 bits, a plane or a volume: DDS with the pixel format A8, L8, R8_UNORM or A8_UNORM, or KTX2
+    /// with VK_FORMAT_R8_UNORM and without supercompression. Mip levels that it has are kept; none are made.
+    ///
+    /// # Errors
+    /// [`Status::Unsupported`] for other files, formats, cube maps, arrays and textures of more than 2^27 texels;
+    /// [`Status::Parse`] for bytes cut short or that contradict themselves; [`Status::OutOfMemory`]. The message names the field
+    /// of the file.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        check_length(bytes.len() as u64)?;
+        if bytes.starts_with(&dds::MAGIC) {
+            dds::read(bytes).map_err(|e| e.found_in("DDS"))
+        } else if bytes.starts_with(&ktx2::MAGIC) {
+            ktx2::read(bytes).map_err(|e| e.found_in("KTX2"))
+        } else {
+            Err(Error::unsupported("a noise texture is a DDS or a KTX2 file; this begins like neither"))
+        }
+    }
+
+    /// The image as a DDS file with the format R8_UNORM (its header is that called DX10) and its mip levels.
+    pub fn to_dds(&self) -> Vec<u8> {
+        dds::write(self)
+    }
+
+    /// The image as a KTX2 file with VK_FORMAT_R8_UNORM and its mip levels.
+    pub fn to_ktx2(&self) -> Vec<u8> {
+        ktx2::write(self)
+    }
+}
+
+fn check_length(bytes: u64) -> Result<()> {
+    if bytes > MOST_BYTES {
+        return Err(Error::unsupported(format!(
+            "a noise texture has at most {MOST_BYTES} bytes, this file has {bytes}"
+        )));
+    }
+    Ok(())
+}
+
+/// A number of 32 bits at a place of a file, the least byte first.
+fn word(bytes: &[u8], at: usize) -> Result<u32> {
+    let part = bytes.get(at..).and_then(|rest| rest.first_chunk());
+    part.map(|four| u32::from_le_bytes(*four)).ok_or_else(|| cut_short(at + 4, bytes.len()))
+}
+
+/// A number of 64 bits.
+fn long(bytes: &[u8], at: usize) -> Result<u64> {
+    Ok(u64::from(word(bytes, at)?) | u64::from(word(bytes, at + 4)?) << 32)
+}
+
+fn cut_short(needed: impl std::fmt::Display, there: usize) -> Error {
+    Error::new(Status::Parse, format!("is cut short: it needs {needed} bytes and has {there}"))
+}
+
+/// A field that says something else than a noise texture's.
+fn foreign(field: &str, accepted: &str, got: impl std::fmt::Display) -> Error {
+    Error::about(Status::Unsupported, field, format_args!("must be {accepted}, got {got}"))
+}
+
+/// Width, height and depth by their names, each from 1 on, together not too large.
+fn check_size(named: [(&str, u32); 3]) -> Result<[u32; 3]> {
+    if let Some((name, _)) = named.iter().find(|(_, texels)| *texels == 0) {
+        return Err(Error::about(Status::Parse, *name, "must be at least 1, got 0"));
+    }
+    let size = named.map(|(_, texels)| texels);
+    // Of three numbers of 32 bits.
+    let product: u128 = size.into_iter().map(u128::from).product();
+    if product > u128::from(MOST_TEXELS) {
+        let most = format!("such that there are at most {MOST_TEXELS} texels");
+        return Err(foreign(named[0].0, &most, format_args!("{} x {} x {}", size[0], size[1], size[2])));
+    }
+    Ok(size)
+}
+
+/// Number of mip levels of a texture of this size, of which 0 says one.
+fn check_levels(field: &str, levels: u32, size: [u32; 3]) -> Result<u32> {
+    let most = levels_of(size);
+    if levels > most {
+        return Err(Error::about(Status::Parse, field, format_args!("must be in [0, {most}], got {levels}")));
+    }
+    Ok(levels.max(1))
+}
+
+/// Bytes of a mip level.
+fn bytes_of_level(size: [u32; 3], level: u32) -> u64 {
+    texels(size_of_level(size, level))
+}
+
+/// A copy of bytes that are there.
+fn copy(bytes: &[u8]) -> Result<Vec<u8>> {
+    let mut room = empty(bytes.len() as u64)?;
+    room.extend_from_slice(bytes);
+    Ok(room)
+}
