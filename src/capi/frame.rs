@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    frame::{ColorSpace, Frame, FrameFlags, ImageLayers},
+    frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
 };
 
@@ -54,6 +54,17 @@ pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
+
+/// What Welkin may do with the target's depth. Nothing that this version draws is opaque, so both give the same picture; sea
+/// and terrain will be.
+pub type wk_depth_access = u32;
+/// Read it: not a bit of it changes, and Welkin draws nothing opaque of its own.
+pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
+/// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays. Needs
+/// depth that can be attached: a depth format, as many samples as the colour, and in Vulkan DEPTH_STENCIL_ATTACHMENT among
+/// its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
+/// WK_FORMAT_R32_FLOAT.
+pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
@@ -121,6 +132,10 @@ pub struct wk_frame {
     /// Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
     /// 0, 0, 0.
     pub velocity_m_s: [f64; 3],
+    /// Default WK_DEPTH_ACCESS_READ.
+    pub depth_access: wk_depth_access,
+    /// Must be 0.
+    pub reserved1: u32,
 }
 
 impl wk_frame {
@@ -144,6 +159,8 @@ impl wk_frame {
         exposure_value: 0.0,
         target: null(),
         velocity_m_s: [0.0; 3],
+        depth_access: WK_DEPTH_ACCESS_READ,
+        reserved1: 0,
     };
 }
 
@@ -301,6 +318,10 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         frame_id: c.frame_id,
         camera,
         depth_mapping,
+        depth_access: match c.depth_access {
+            WK_DEPTH_ACCESS_READ_WRITE => DepthAccess::ReadWrite,
+            _ => DepthAccess::Read,
+        },
         color: images.color,
         depth: images.depth,
         mask: images.mask,
@@ -328,13 +349,14 @@ fn is_orthographic(m: &[f64; 16]) -> bool {
 }
 
 /// The header's names for what the Rust side calls a frame's fields, in the order in which they are tried.
-const NAMES: [(&str, &str); 14] = [
+const NAMES: [(&str, &str); 15] = [
     ("frame.camera.position", "frame.position_m"),
     ("camera.position", "frame.position_m"),
     ("camera", "frame"),
     ("depth_mapping.kind", "frame.depth_kind"),
     ("depth_mapping.reversed", "frame.flags"),
     ("depth_mapping", "frame"),
+    ("depth_access", "frame.depth_access"),
     ("flags", "frame.flags"),
     ("cd_m2_per_unit", "frame.cd_m2_per_unit"),
     ("camera_velocity_m_s", "frame.velocity_m_s"),

@@ -34,7 +34,7 @@ pub(super) struct Call<'a> {
 
 impl<'a> Call<'a> {
     /// As the effects see it, before the plan has chosen.
-    fn shot(&self) -> Shot<'a> {
+    pub(super) fn shot(&self) -> Shot<'a> {
         Shot {
             device: self.device,
             frame: self.frame,
