@@ -3317,6 +3317,34 @@ typedef uint32_t wk_depth_access;
  */
 #define WK_DEPTH_ACCESS_READ_WRITE 1
 
+/**
+ * A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
+ * green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
+ * pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+ */
+typedef uint32_t wk_diagnostic;
+
+/** The picture itself. */
+#define WK_DIAGNOSTIC_NONE 0
+/** Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM. */
+#define WK_DIAGNOSTIC_DISTANCE 1
+/**
+ * Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
+ * columns of rain areas are left out. Stage MEDIUM.
+ */
+#define WK_DIAGNOSTIC_OPTICAL_DEPTH 2
+/** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
+#define WK_DIAGNOSTIC_WETNESS 3
+/**
+ * What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
+ * black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+ */
+#define WK_DIAGNOSTIC_PLAN_ERROR 4
+/**
+ * How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
+ */
+#define WK_DIAGNOSTIC_OVERDRAW 5
+
 /** One frame of one view. */
 typedef struct wk_frame {
     /** sizeof(wk_frame) of your header. */
@@ -3367,8 +3395,8 @@ typedef struct wk_frame {
     double velocity_m_s[3];
     /** Default WK_DEPTH_ACCESS_READ. */
     wk_depth_access depth_access;
-    /** Must be 0. */
-    uint32_t reserved1;
+    /** Default WK_DIAGNOSTIC_NONE. */
+    wk_diagnostic diagnostic;
 } wk_frame;
 
 /** Every field of `wk_frame` at its default. */
@@ -3393,7 +3421,7 @@ typedef struct wk_frame {
     /* target */ NULL, \
     /* velocity_m_s */ { 0.0, 0.0, 0.0 }, \
     /* depth_access */ WK_DEPTH_ACCESS_READ, \
-    /* reserved1 */ 0 \
+    /* diagnostic */ WK_DIAGNOSTIC_NONE \
 }
 
 /**

@@ -26,7 +26,7 @@ use crate::{
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
-    stage::{DrawnEffect, Frame, Shot, Stages},
+    stage::{Diagnostic, DrawnEffect, Frame, Shot, Stages},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -234,6 +234,7 @@ impl Effects {
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
         self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
+        self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
         #[cfg(test)]
         self.plane.gather(now);

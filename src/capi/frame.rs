@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers},
+    frame::{ColorSpace, DepthAccess, Diagnostic, Frame, FrameFlags, ImageLayers},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
 };
 
@@ -65,6 +65,25 @@ pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
 /// its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
 /// WK_FORMAT_R32_FLOAT.
 pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
+
+/// A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
+/// green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
+/// pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+pub type wk_diagnostic = u32;
+/// The picture itself.
+pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
+/// Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
+/// Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
+/// columns of rain areas are left out. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
+/// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
+pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
+/// What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
+/// black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
+/// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
+pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
@@ -134,8 +153,8 @@ pub struct wk_frame {
     pub velocity_m_s: [f64; 3],
     /// Default WK_DEPTH_ACCESS_READ.
     pub depth_access: wk_depth_access,
-    /// Must be 0.
-    pub reserved1: u32,
+    /// Default WK_DIAGNOSTIC_NONE.
+    pub diagnostic: wk_diagnostic,
 }
 
 impl wk_frame {
@@ -160,7 +179,7 @@ impl wk_frame {
         target: null(),
         velocity_m_s: [0.0; 3],
         depth_access: WK_DEPTH_ACCESS_READ,
-        reserved1: 0,
+        diagnostic: WK_DIAGNOSTIC_NONE,
     };
 }
 
@@ -339,6 +358,14 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         flags: FrameFlags(
             c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE | WK_FRAME_NORMALS_IN_EYE_SPACE),
         ),
+        diagnostic: match c.diagnostic {
+            WK_DIAGNOSTIC_DISTANCE => Diagnostic::Distance,
+            WK_DIAGNOSTIC_OPTICAL_DEPTH => Diagnostic::OpticalDepth,
+            WK_DIAGNOSTIC_WETNESS => Diagnostic::Wetness,
+            WK_DIAGNOSTIC_PLAN_ERROR => Diagnostic::PlanError,
+            WK_DIAGNOSTIC_OVERDRAW => Diagnostic::Overdraw,
+            _ => Diagnostic::None,
+        },
         camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),
     })
 }

@@ -22,7 +22,10 @@ use crate::{
     error::{Error, Result},
     gpu::Device,
     plan::Planner,
-    stage::{CostItem, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart, can_copy},
+    stage::{
+        CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart,
+        can_copy,
+    },
     surroundings::SurroundingsBlock,
 };
 
@@ -237,7 +240,8 @@ impl View {
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
         let stages = Stages(stages.0 & there.0);
         let opaque = self.has_opaque(asked);
-        let rays = rays.filter(|_| stages.draw() || opaque);
+        let diagnoses = frame.diagnostic != Diagnostic::None;
+        let rays = rays.filter(|_| stages.draw() || opaque || diagnoses);
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
@@ -258,7 +262,10 @@ impl View {
             if opaque {
                 self.draw_opaque(&call, to)?;
             }
-            self.draw_all(&call, stages, to)?;
+            match diagnoses {
+                true => self.draw_diagnostic(&call, [asked, there], to)?,
+                false => self.draw_all(&call, stages, to)?,
+            }
         }
         self.recorded = self.recorded.with(asked);
         self.report.passes += to.passes;

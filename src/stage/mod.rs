@@ -6,6 +6,7 @@
 //! textures ([`Composition`]); what cannot be a function of one pixel (falling drops, the windscreen) is drawn in passes of its own.
 
 mod composition;
+mod diagnostic;
 mod effect;
 mod opaque;
 mod recording;
@@ -13,6 +14,7 @@ mod target;
 mod uniform;
 
 pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, yes};
+pub use diagnostic::Diagnostic;
 pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
@@ -110,6 +112,8 @@ pub struct Frame<'a> {
     pub origin_bottom_left: bool,
     /// Cut, no history.
     pub flags: FrameFlags,
+    /// A false-colour picture for developers in place of the frame's. Default none.
+    pub diagnostic: Diagnostic,
     /// Velocity of the camera in the host's axes, m/s: rain streaks lean against it. Default 0.
     pub camera_velocity_m_s: DVec3,
 }
@@ -133,6 +137,7 @@ impl<'a> Frame<'a> {
             exposure: None,
             origin_bottom_left: false,
             flags: FrameFlags(0),
+            diagnostic: Diagnostic::None,
             camera_velocity_m_s: DVec3::ZERO,
         }
     }

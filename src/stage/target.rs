@@ -281,6 +281,15 @@ impl Sampling {
         }
     }
 
+    /// Shader of the diagnostic pictures; its entry point is `diagnose`.
+    pub fn diagnostic(self) -> &'static str {
+        match self {
+            Self::Single => "frame/diagnostic.wgsl",
+            Self::Multi => "frame/diagnostic.wgsl:multi",
+            Self::Resolved => "frame/diagnostic.wgsl:resolved",
+        }
+    }
+
     /// Shader that tells kinds of pixels apart, of pictures with one sample.
     pub fn kinds(self) -> &'static str {
         if self == Self::Single { "frame/kinds.wgsl" } else { "frame/kinds.wgsl:resolved" }

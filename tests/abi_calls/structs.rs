@@ -424,7 +424,7 @@ fn stages_are_checked() {
 }
 
 #[test]
-fn depth_that_may_be_written_is_checked() {
+fn depth_access_and_diagnostic_pictures_are_checked() {
     let world = World::new();
     let texture = |format| {
         let desc = wk_texture_desc { width: 8, height: 8, format, ..init("wk_texture_desc") };
@@ -442,6 +442,16 @@ fn depth_that_may_be_written_is_checked() {
         (unsafe { wk_view_record(world.view, &frame, WK_STAGE_SURFACE) }, message())
     };
     assert_eq!(record(WK_DEPTH_ACCESS_READ, depth).0, WK_OK, "{}", message());
+    let frame = |diagnostic| wk_frame { frame_id: next_frame(), diagnostic, ..init("wk_frame") };
+    // SAFETY: live pointers.
+    let status = |diagnostic| unsafe { wk_view_record(world.view, &frame(diagnostic), WK_STAGE_PREPARE) };
+    assert!((WK_DIAGNOSTIC_NONE..=WK_DIAGNOSTIC_OVERDRAW).all(|diagnostic| status(diagnostic) == WK_OK));
+    assert_eq!(status(WK_DIAGNOSTIC_OVERDRAW + 1), WK_ERROR_INVALID_ARGUMENT);
+    assert!(
+        message().contains("frame.diagnostic must be one of WK_DIAGNOSTIC_NONE, WK_DIAGNOSTIC_DISTANCE"),
+        "{}",
+        message()
+    );
     for (access, depth, status, wanted) in [
         (2, depth, WK_ERROR_INVALID_ARGUMENT, "frame.depth_access must be one of WK_DEPTH_ACCESS_READ, WK_DEPTH_"),
         (1, null_mut(), WK_ERROR_INVALID_ARGUMENT, "frame.depth_access must be read only where the frame has no depth"),
