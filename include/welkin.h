@@ -1104,7 +1104,8 @@ typedef struct wk_vulkan_image {
      */
     uint32_t samples;
     /**
-     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read.
+     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for what is read,
+     * DEPTH_STENCIL_ATTACHMENT too for depth with WK_DEPTH_ACCESS_READ_WRITE.
      */
     uint32_t usage;
     /** Array layers that it was created with. Default 1. For an occluder map it must be 1. */
@@ -3300,6 +3301,50 @@ typedef uint32_t wk_color_space;
 /** Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes. */
 #define WK_COLOR_DISPLAY_SRGB 2
 
+/**
+ * What Welkin may do with the target's depth. Nothing that this version draws is opaque, so both give the same picture; sea
+ * and terrain will be.
+ */
+typedef uint32_t wk_depth_access;
+
+/** Read it: not a bit of it changes, and Welkin draws nothing opaque of its own. */
+#define WK_DEPTH_ACCESS_READ 0
+/**
+ * Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays. Needs
+ * depth that can be attached: a depth format, as many samples as the colour, and in Vulkan DEPTH_STENCIL_ATTACHMENT among
+ * its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
+ * WK_FORMAT_R32_FLOAT.
+ */
+#define WK_DEPTH_ACCESS_READ_WRITE 1
+
+/**
+ * A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
+ * green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
+ * pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+ */
+typedef uint32_t wk_diagnostic;
+
+/** The picture itself. */
+#define WK_DIAGNOSTIC_NONE 0
+/** Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM. */
+#define WK_DIAGNOSTIC_DISTANCE 1
+/**
+ * Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
+ * columns of rain areas are left out. Stage MEDIUM.
+ */
+#define WK_DIAGNOSTIC_OPTICAL_DEPTH 2
+/** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
+#define WK_DIAGNOSTIC_WETNESS 3
+/**
+ * What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
+ * black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+ */
+#define WK_DIAGNOSTIC_PLAN_ERROR 4
+/**
+ * How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
+ */
+#define WK_DIAGNOSTIC_OVERDRAW 5
+
 /** One frame of one view. */
 typedef struct wk_frame {
     /** sizeof(wk_frame) of your header. */
@@ -3348,6 +3393,10 @@ typedef struct wk_frame {
      * 0, 0, 0.
      */
     double velocity_m_s[3];
+    /** Default WK_DEPTH_ACCESS_READ. */
+    wk_depth_access depth_access;
+    /** Default WK_DIAGNOSTIC_NONE. */
+    wk_diagnostic diagnostic;
 } wk_frame;
 
 /** Every field of `wk_frame` at its default. */
@@ -3370,7 +3419,9 @@ typedef struct wk_frame {
     /* reserved0 */ 0, \
     /* exposure_value */ 0.0, \
     /* target */ NULL, \
-    /* velocity_m_s */ { 0.0, 0.0, 0.0 } \
+    /* velocity_m_s */ { 0.0, 0.0, 0.0 }, \
+    /* depth_access */ WK_DEPTH_ACCESS_READ, \
+    /* diagnostic */ WK_DIAGNOSTIC_NONE \
 }
 
 /**

@@ -4,6 +4,9 @@
 //! [`Effects`] with its line in [`Effects::each`] and [`Effects::all`], what it gathers in [`Effects::gather`], and its parts in
 //! [`PARTS`]; one with a state adds a field to [`Held`] likewise.
 
+#[cfg(test)]
+pub(crate) mod plane;
+
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex},
@@ -23,7 +26,7 @@ use crate::{
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
-    stage::{DrawnEffect, Frame, Shot, Stages},
+    stage::{Diagnostic, DrawnEffect, Frame, Shot, Stages},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -163,7 +166,12 @@ pub(crate) struct Effects {
     pub rain: RainView,
     pub glass: GlassView,
     pub stars: StarsView,
+    #[cfg(test)]
+    pub plane: plane::PlaneView,
 }
+
+/// How many a view has.
+const COUNT: usize = if cfg!(test) { 7 } else { 6 };
 
 impl Effects {
     /// Those of a view.
@@ -178,17 +186,37 @@ impl Effects {
             rain: RainView::new(device, RainSettings::default()),
             glass: GlassView::new(shared),
             stars: StarsView::default(),
+            #[cfg(test)]
+            plane: plane::PlaneView::default(),
         })
     }
 
     /// All of them, in their order.
-    pub fn each(&mut self) -> [&mut dyn DrawnEffect; 6] {
-        [&mut self.sky, &mut self.fog, &mut self.ground, &mut self.rain, &mut self.glass, &mut self.stars]
+    pub fn each(&mut self) -> [&mut dyn DrawnEffect; COUNT] {
+        [
+            &mut self.sky,
+            &mut self.fog,
+            &mut self.ground,
+            &mut self.rain,
+            &mut self.glass,
+            &mut self.stars,
+            #[cfg(test)]
+            &mut self.plane,
+        ]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn DrawnEffect; 6] {
-        [&self.sky, &self.fog, &self.ground, &self.rain, &self.glass, &self.stars]
+    pub fn all(&self) -> [&dyn DrawnEffect; COUNT] {
+        [
+            &self.sky,
+            &self.fog,
+            &self.ground,
+            &self.rain,
+            &self.glass,
+            &self.stars,
+            #[cfg(test)]
+            &self.plane,
+        ]
     }
 
     /// Takes what there is of each in a moment, of a frame in which `stages` are asked for.
@@ -206,7 +234,10 @@ impl Effects {
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
         self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
+        self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
+        #[cfg(test)]
+        self.plane.gather(now);
         let utc = world.utc_at(now.time_s);
         self.stars.gather((now, frame), utc, &held.stars.settings, fog_depth)
     }

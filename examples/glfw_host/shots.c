@@ -99,6 +99,12 @@ static bool shallow_fog(demo *d)
     return sun_at(d, 298, 12) && set(d, &w, NULL);
 }
 
+static bool fog_in_numbers(demo *d)
+{
+    d->weather.diagnostic = WK_DIAGNOSTIC_OPTICAL_DEPTH;
+    return shallow_fog(d);
+}
+
 static bool rain(demo *d, double rate_mm_h)
 {
     wk_weather w = weather_here(4000, 0.95);
@@ -293,6 +299,7 @@ const shot SHOTS[] = {
     {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers},
     {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers},
     {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL},
+    {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL},
     {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
     {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},

@@ -14,6 +14,7 @@ bool weather_check(wk_status status)
 
 bool weather_open(weather_link *w, const platform *p)
 {
+    w->diagnostic = WK_DIAGNOSTIC_NONE;
     wk_opengl_host_desc host = WK_OPENGL_HOST_DESC_INIT;
     host.get_proc = p->get_proc;
     host.make_current = p->make_current;
@@ -110,6 +111,7 @@ static bool record(weather_link *w, const picture *p, const camera *c, double cd
     f.flags = (p->reversed ? WK_FRAME_DEPTH_REVERSED : 0) | flags;
     f.color_space = WK_COLOR_SCENE_LINEAR;
     f.cd_m2_per_unit = cd_m2_per_unit;
+    f.diagnostic = w->diagnostic;
     f.target = &target;
     return weather_check(wk_view_record(w->view, &f, stages));
 }

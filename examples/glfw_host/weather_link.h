@@ -21,6 +21,7 @@ typedef struct weather_link {
     wk_view *view;       /* the camera's picture of it */
     double time_s;       /* simulation time */
     uint64_t generation; /* of the picture's textures */
+    wk_diagnostic diagnostic; /* a number of each pixel in false colours in place of the picture */
     wk_caps caps;
     char summary[128];
     wk_effect_cost costs[16]; /* what the effects of all measured frames took together */

@@ -81,6 +81,19 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
+// ln(1 + x) without cancellation at small x >= 0.
+fn depth_ln_1p(x: f32) -> f32 {
+    let series = x * (1.0 - x * (0.5 - x * (0.33333333 - x * (0.25 - x * (0.2 - x * 0.16666667)))));
+    return select(log(1.0 + x), series, x < 0.125);
+}
+
+// What stands at clip w in a buffer whose depth is logarithmic: the inverse of view_depth, for the fragment shaders of opaque things.
+// The other kinds come from the projection. The f64 twin is ViewRays::depth_at.
+fn written_depth(u: DepthUniform, w: f32) -> f32 {
+    let e = depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far;
+    return clamp((e - u.turn_offset) / u.turn_scale, 0.0, 1.0);
+}
+
 // Metres along the pixel's ray.
 fn view_range(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return min(view_depth(u, depth, ndc) * view_ray(u, ndc).slant, RANGE_SKY);

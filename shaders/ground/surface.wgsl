@@ -197,6 +197,9 @@ fn wetted(host: vec3f, albedo_known: bool, at: vec3f, up: vec3f, surface: HostSu
     return Wetted(facing, look, clamp(albedo, vec3f(0.0), vec3f(look.most_albedo)));
 }
 
+// Share of the surface under a film, standing water or clear ice, for the diagnostic picture of it.
+var<private> water_cover: f32;
+
 // `host` is the host's colour as luminance, or as display-linear colour where `albedo_known` says that it is all that is
 // known of the albedo.
 fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: HostSurface) -> Veil {
@@ -264,6 +267,7 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     let soaked = max(soaked_share, ground.glaze) * kept * look.soaks * gets;
     let wet = mix(vec3f(1.0), below, soaked);
     let cover = max(covered_share(hollow, film_level, FILM_EDGE), ground.glaze) * filmed;
+    water_cover = mix(cover, 1.0, pool);
     let thin = mirror(film, to_eye);
     let deep = mirror(water, to_eye);
     let thin_share = thin.share * cover * (1.0 - pool);

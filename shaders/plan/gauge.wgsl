@@ -3,6 +3,7 @@
 // without clear sky, and with a veil in place of drops but nothing else for them; 1 where the host drew something, -1 where it
 // drew nothing, 0 under the mask; exposed luminance; optical depth of what drops hide.
 //!include "frame/composite.wgsl"
+//!include "frame/exposed.wgsl"
 
 // Pixels of the picture are looked at through these, written by the variant for one or several samples.
 struct Looked {
@@ -11,18 +12,6 @@ struct Looked {
     plane: f32,
     ndc: vec2f,
     mask: f32,
-}
-
-// Exposed luminance, 1 = white: what error is measured in, before a tone curve.
-fn exposed(host: vec3f, veil: Veil) -> f32 {
-    var light = veil.light * frame.exposure;
-    var behind = linear_host(host);
-    if is_space(SCENE_LINEAR) {
-        behind *= frame.exposure;
-    } else {
-        light = tone_curve(frame.tone, light);
-    }
-    return dot(behind * veil.transmittance + light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
 // The upper halves of two numbers: eight bits of each are enough.

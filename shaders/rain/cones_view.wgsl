@@ -15,3 +15,9 @@ fn cones_fragment(in: FullscreenVarying) -> @location(0) vec4f {
     }
     return rain_on_cones(view_ray(rain.depth, ndc).direction, in.uv, range);
 }
+
+// Counts how often a pixel is drawn, as common/count.wgsl does.
+@fragment
+fn cones_counted(in: FullscreenVarying) -> @location(0) vec4f {
+    return vec4f(1.0, 0.0, 0.0, 0.0);
+}

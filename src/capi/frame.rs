@@ -26,7 +26,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    frame::{ColorSpace, Frame, FrameFlags, ImageLayers},
+    frame::{ColorSpace, DepthAccess, Diagnostic, Frame, FrameFlags, ImageLayers},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
 };
 
@@ -54,6 +54,36 @@ pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
+
+/// What Welkin may do with the target's depth. Nothing that this version draws is opaque, so both give the same picture; sea
+/// and terrain will be.
+pub type wk_depth_access = u32;
+/// Read it: not a bit of it changes, and Welkin draws nothing opaque of its own.
+pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
+/// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays. Needs
+/// depth that can be attached: a depth format, as many samples as the colour, and in Vulkan DEPTH_STENCIL_ATTACHMENT among
+/// its usage. Not with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, and not on an own device, whose depth is
+/// WK_FORMAT_R32_FLOAT.
+pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
+
+/// A false-colour picture in place of a frame's, for developers: one number of each pixel on a scale from black over blue,
+/// green, yellow and red to white. The call with the number's stage draws it; other calls of the frame draw nothing. Masked
+/// pixels stay yours. Where nothing of what it shows is in the frame, all is black.
+pub type wk_diagnostic = u32;
+/// The picture itself.
+pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
+/// Distance along the ray, by decades: black 1 m or less, white 100 km and more, and the sky. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
+/// Optical depth of air, fog and what falls between the eye and what is seen: black 0, 1 a step, white 5 and more. The
+/// columns of rain areas are left out. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
+/// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
+pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
+/// What the plan leaves out of air, fog and clear sky: relative change of luminance over a hundredth of white, by decades:
+/// black 1e-4 or less, white 10 and more. Drops and stars are not counted. Stage MEDIUM.
+pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
+/// How often what falls was drawn over a pixel: black never, 4 times a step, white 20 times and more. Stage PARTICLES.
+pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
 
 /// Flags of a frame.
 pub type wk_frame_flags = u32;
@@ -121,6 +151,10 @@ pub struct wk_frame {
     /// Velocity of the camera in the host's world, m/s, at most 2000 in all. Streaks of rain lean against it. Default
     /// 0, 0, 0.
     pub velocity_m_s: [f64; 3],
+    /// Default WK_DEPTH_ACCESS_READ.
+    pub depth_access: wk_depth_access,
+    /// Default WK_DIAGNOSTIC_NONE.
+    pub diagnostic: wk_diagnostic,
 }
 
 impl wk_frame {
@@ -144,6 +178,8 @@ impl wk_frame {
         exposure_value: 0.0,
         target: null(),
         velocity_m_s: [0.0; 3],
+        depth_access: WK_DEPTH_ACCESS_READ,
+        diagnostic: WK_DIAGNOSTIC_NONE,
     };
 }
 
@@ -301,6 +337,10 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         frame_id: c.frame_id,
         camera,
         depth_mapping,
+        depth_access: match c.depth_access {
+            WK_DEPTH_ACCESS_READ_WRITE => DepthAccess::ReadWrite,
+            _ => DepthAccess::Read,
+        },
         color: images.color,
         depth: images.depth,
         mask: images.mask,
@@ -318,6 +358,14 @@ pub(super) fn from_c<'a>(c: &wk_frame, images: Images<'a>, bottom_left: bool) ->
         flags: FrameFlags(
             c.flags & (WK_FRAME_CUT | WK_FRAME_NO_HISTORY | WK_FRAME_MEASURE | WK_FRAME_NORMALS_IN_EYE_SPACE),
         ),
+        diagnostic: match c.diagnostic {
+            WK_DIAGNOSTIC_DISTANCE => Diagnostic::Distance,
+            WK_DIAGNOSTIC_OPTICAL_DEPTH => Diagnostic::OpticalDepth,
+            WK_DIAGNOSTIC_WETNESS => Diagnostic::Wetness,
+            WK_DIAGNOSTIC_PLAN_ERROR => Diagnostic::PlanError,
+            WK_DIAGNOSTIC_OVERDRAW => Diagnostic::Overdraw,
+            _ => Diagnostic::None,
+        },
         camera_velocity_m_s: DVec3::from_array(c.velocity_m_s),
     })
 }
@@ -328,13 +376,14 @@ fn is_orthographic(m: &[f64; 16]) -> bool {
 }
 
 /// The header's names for what the Rust side calls a frame's fields, in the order in which they are tried.
-const NAMES: [(&str, &str); 14] = [
+const NAMES: [(&str, &str); 15] = [
     ("frame.camera.position", "frame.position_m"),
     ("camera.position", "frame.position_m"),
     ("camera", "frame"),
     ("depth_mapping.kind", "frame.depth_kind"),
     ("depth_mapping.reversed", "frame.flags"),
     ("depth_mapping", "frame"),
+    ("depth_access", "frame.depth_access"),
     ("flags", "frame.flags"),
     ("cd_m2_per_unit", "frame.cd_m2_per_unit"),
     ("camera_velocity_m_s", "frame.velocity_m_s"),

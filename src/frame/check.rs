@@ -65,6 +65,7 @@ impl View {
         if let Some(depth) = frame.depth {
             check_depth(depth, color)?;
         }
+        self.check_depth_access(frame, color)?;
         if let Some(mask) = frame.mask {
             check_mask(mask, color)?;
         }

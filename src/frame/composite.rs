@@ -37,11 +37,14 @@ impl Variant {
         wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
     }
 
-    /// The shader of this name without what the variant does not draw.
-    fn shader(&self, name: &str) -> String {
+    /// Shader and entry point, without what the variant does not draw.
+    fn program(&self) -> (String, &'static str) {
+        let [(composed, entry), _] = self.sampling.shaders();
+        let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;
+        let (name, entry) = if diagnoses { (self.sampling.diagnostic(), "diagnose") } else { (composed, entry) };
         let clear = if self.constants.between.value("FOG") > 0.0 { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        format!("{name}{clear}{dry}")
+        (format!("{name}{clear}{dry}"), entry)
     }
 
     /// Values of the shader's `override` constants.
@@ -207,8 +210,8 @@ impl Composite {
         self.pipelines.get_or_make(
             |made| *made == variant,
             || {
-                let ([(shader, entry), _], constants) = (variant.sampling.shaders(), variant.constants());
-                let shader = &variant.shader(shader);
+                let ((shader, entry), constants) = (variant.program(), variant.constants());
+                let shader = &shader;
                 let targets = [variant.target(wgpu::ColorWrites::ALL)];
                 let (constants, samples) = (constants.all(), variant.samples);
                 let desc = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples };

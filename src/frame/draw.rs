@@ -34,7 +34,7 @@ pub(super) struct Call<'a> {
 
 impl<'a> Call<'a> {
     /// As the effects see it, before the plan has chosen.
-    fn shot(&self) -> Shot<'a> {
+    pub(super) fn shot(&self) -> Shot<'a> {
         Shot {
             device: self.device,
             frame: self.frame,
@@ -95,7 +95,7 @@ impl View {
     }
 
     /// Plans the frame, once for all its draws, and gives a draw what the plan has chosen.
-    fn plan_frame(&mut self, shot: &mut Shot<'_>, stages: Stages) {
+    pub(super) fn plan_frame(&mut self, shot: &mut Shot<'_>, stages: Stages) {
         let frame = shot.frame;
         if self.planned_for != Some(frame.frame_id) {
             self.planned_for = Some(frame.frame_id);
@@ -114,7 +114,7 @@ impl View {
 
     /// What the composition must be able to draw, with the constants that are the frame's own; and what is around it, brought up to
     /// date.
-    fn variant(&mut self, shot: &Shot<'_>, composition: &mut Composition) -> Result<Variant> {
+    pub(super) fn variant(&mut self, shot: &Shot<'_>, composition: &mut Composition) -> Result<Variant> {
         let (frame, color) = (shot.frame, shot.color.texture);
         let stages = composition.stages;
         let kinds = f64::from(shot.rays.depth_kinds());

@@ -6,11 +6,13 @@
 
 mod check;
 mod composite;
+mod diagnose;
 mod draw;
 mod environment;
 mod froxels;
 mod kinds;
 mod light;
+mod opaque;
 mod picture;
 mod planned;
 mod unit;
@@ -19,7 +21,9 @@ mod view;
 pub use crate::effects::PARTS;
 pub use crate::gpu::Shared;
 pub use crate::light::tone::{self, Exposure, ToneCurve};
-pub use crate::stage::{ColorSpace, CostItem, Costs, Frame, FrameFlags, ImageLayers, Report, Stages};
+pub use crate::stage::{
+    ColorSpace, CostItem, Costs, DepthAccess, Diagnostic, Frame, FrameFlags, ImageLayers, Report, Stages,
+};
 pub use environment::Environment;
 pub use froxels::{FrameTextures, SNIPPET_GLSL, SNIPPET_WGSL};
 pub use light::FrameLight;

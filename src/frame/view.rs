@@ -12,6 +12,7 @@ use super::{
     environment::EnvironmentMap,
     froxels::{FrameTextures, Froxels},
     kinds::Kinds,
+    opaque::OpaqueStep,
     picture::Bound,
     unit::UnitWatch,
 };
@@ -21,7 +22,10 @@ use crate::{
     error::{Error, Result},
     gpu::Device,
     plan::Planner,
-    stage::{CostItem, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart, can_copy},
+    stage::{
+        CostItem, Diagnostic, Frame, FrameFlags, FrameUniform, Prepare, Recording, Report, Stages, can_be_apart,
+        can_copy,
+    },
     surroundings::SurroundingsBlock,
 };
 
@@ -36,6 +40,7 @@ pub struct View {
     pub(super) froxels: Option<Froxels>,
     pub(super) environment: Option<Box<EnvironmentMap>>,
     pub(super) kinds: Option<Kinds>,
+    pub(super) opaque: Option<OpaqueStep>,
     pub(super) surroundings: SurroundingsBlock,
     pub(super) planner: Planner<Unseen>,
     pub(super) planned_for: Option<u64>,
@@ -72,6 +77,7 @@ impl View {
             froxels: None,
             environment: None,
             kinds: None,
+            opaque: None,
             surroundings,
             planner,
             planned_for: None,
@@ -138,7 +144,7 @@ impl View {
 
     /// Lets go what the view holds of the picture's size.
     fn forget_images(&mut self) {
-        (self.bound, self.copy, self.kinds) = (None, None, None);
+        (self.bound, self.copy, self.kinds, self.opaque) = (None, None, None, None);
         self.environment.iter_mut().for_each(|map| map.forget());
         self.effects.each().into_iter().for_each(|effect| effect.forget_picture());
     }
@@ -212,6 +218,7 @@ impl View {
         }
         self.check_call(frame, stages)?;
         self.check_images(frame, stages)?;
+        self.check_depth_is_one(frame)?;
         let device = self.device.clone();
         let recorded = self.recorded_of(frame.frame_id);
         self.record_stages(context, frame, stages, &mut Recording::new(&device, encoder))
@@ -232,7 +239,9 @@ impl View {
         let asked = stages;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
         let stages = Stages(stages.0 & there.0);
-        let rays = rays.filter(|_| stages.draw());
+        let opaque = self.has_opaque(asked);
+        let diagnoses = frame.diagnostic != Diagnostic::None;
+        let rays = rays.filter(|_| stages.draw() || opaque || diagnoses);
         if frame.frame_id != self.report.frame_id {
             self.report = Report { frame_id: frame.frame_id, bytes: self.report.bytes, ..Default::default() };
             self.recorded = Stages(0);
@@ -250,7 +259,13 @@ impl View {
             let veiled = self.recorded.with(asked).has(Stages::MEDIUM);
             let device = &self.device.clone();
             let call = Call { device, frame, now: &now, rays: &rays, color, exposure, veiled };
-            self.draw_all(&call, stages, to)?;
+            if opaque {
+                self.draw_opaque(&call, to)?;
+            }
+            match diagnoses {
+                true => self.draw_diagnostic(&call, [asked, there], to)?,
+                false => self.draw_all(&call, stages, to)?,
+            }
         }
         self.recorded = self.recorded.with(asked);
         self.report.passes += to.passes;

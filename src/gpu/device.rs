@@ -45,6 +45,15 @@ impl Default for DeviceOptions {
     }
 }
 
+/// A host's depth as it is attached.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttachedDepth {
+    /// What is attached.
+    pub texture: wgpu::Texture,
+    /// What is read is a copy of it, which [`HostBinding::refresh_depth`] brings up to date.
+    pub is_copied: bool,
+}
+
 /// What a host-owned device needs round every batch of GPU calls: making its context current, fences, state.
 pub trait HostBinding: Send + Sync {
     /// Called before the first GPU call of a batch.
@@ -63,6 +72,17 @@ pub trait HostBinding: Send + Sync {
     /// # Errors
     /// A copy that the host's context refuses.
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
+        Ok(())
+    }
+    /// What is attached where a host's `depth`, as it is read, is to be written; `None` for that texture itself.
+    fn attached_depth(&self, _depth: &wgpu::Texture) -> Option<AttachedDepth> {
+        None
+    }
+    /// Brings a copy that `depth` is up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// As [`HostBinding::refresh`].
+    fn refresh_depth(&self, _depth: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
     /// The first error flag that OpenGL raised since the last question. Asked while entered.
@@ -290,6 +310,20 @@ impl Device {
     /// A copy that the host's context refuses.
     pub(crate) fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
         self.binding.as_ref().map_or(Ok(()), |b| b.refresh(color))
+    }
+
+    /// What is attached where a host's `depth` is to be written.
+    pub(crate) fn attached_depth(&self, depth: &wgpu::Texture) -> AttachedDepth {
+        let other = self.binding.as_ref().and_then(|b| b.attached_depth(depth));
+        other.unwrap_or_else(|| AttachedDepth { texture: depth.clone(), is_copied: false })
+    }
+
+    /// Brings a copy that `depth` is up to date with all that was submitted.
+    ///
+    /// # Errors
+    /// A copy that the host's context refuses.
+    pub(crate) fn refresh_depth(&self, depth: &wgpu::Texture) -> Result<()> {
+        self.binding.as_ref().map_or(Ok(()), |b| b.refresh_depth(depth))
     }
 
     /// Whether the native device is gone.

@@ -28,6 +28,16 @@ impl Layer<'_> {
         })
     }
 
+    /// A view of the layer alone to draw into, with all that its format holds.
+    pub fn attached_view(self) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: self.index,
+            array_layer_count: Some(1),
+            ..Default::default()
+        })
+    }
+
     /// Whether it has several samples a pixel.
     pub fn is_multisampled(self) -> bool {
         self.texture.sample_count() > 1

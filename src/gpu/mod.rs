@@ -22,6 +22,6 @@ mod layer;
 mod shared;
 mod stand_in;
 mod x11;
-pub use device::{Caps, Device, DeviceOptions, Entered, HostBinding};
+pub use device::{AttachedDepth, Caps, Device, DeviceOptions, Entered, HostBinding};
 pub(crate) use layer::{KeptLayer, Layer, check_depth_format, is_kept};
 pub use shared::Shared;

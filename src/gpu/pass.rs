@@ -104,17 +104,24 @@ pub struct QuadsDesc<'a> {
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     /// Of the layer, of one sample.
     pub format: wgpu::TextureFormat,
+    /// Counts how often a pixel is drawn, in place of `fragment`.
+    pub counts: bool,
 }
 
-/// Makes the pipeline; GPU faults come through [`Device::check`].
-pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> wgpu::RenderPipeline {
+/// Makes the pipeline.
+///
+/// # Errors
+/// As [`fullscreen`].
+pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeline> {
+    let counting = desc.counts.then(|| device.shader("common/count.wgsl")).transpose()?;
+    let fragment = counting.as_ref().map_or(desc.fragment, |module| (module, "count", &[]));
     let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(desc.label),
         bind_group_layouts: desc.layouts,
         immediate_size: 0,
     });
     let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-    device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(desc.label),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -127,9 +134,9 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> wgpu::RenderPipeline {
         depth_stencil: None,
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
-            module: desc.fragment.0,
-            entry_point: Some(desc.fragment.1),
-            compilation_options: options(desc.fragment.2),
+            module: fragment.0,
+            entry_point: Some(fragment.1),
+            compilation_options: options(fragment.2),
             targets: &[Some(wgpu::ColorTargetState {
                 format: desc.format,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -138,7 +145,7 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> wgpu::RenderPipeline {
         }),
         multiview_mask: None,
         cache: None,
-    })
+    }))
 }
 
 /// Draws a full-screen triangle with `pipeline` into `target`, clearing nothing.

@@ -77,6 +77,7 @@ pub(super) struct AreaPass {
     none: wgpu::TextureView,
     pipelines: Recent<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
+    counts: bool,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -159,8 +160,9 @@ impl Columns<'_> {
 }
 
 impl AreaPass {
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, counts: bool) -> Self {
         Self {
+            counts,
             blocks: crate::gpu::bind::block(&device.device, "rain areas", size_of::<Blocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
@@ -270,7 +272,7 @@ impl AreaPass {
         kind: ShaftKind,
         constants: &[Constant],
     ) -> Result<wgpu::RenderPipeline> {
-        let columns = &self.layouts[usize::from(kind.multi)];
+        let (columns, counts) = (&self.layouts[usize::from(kind.multi)], self.counts);
         let make = || {
             let module =
                 device.shader(if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" })?;
@@ -289,9 +291,10 @@ impl AreaPass {
                     layouts: &[Some(columns), Some(tables)],
                     buffers: &[],
                     format: FORMAT,
+                    counts,
                 },
             );
-            Ok(((kind, constants.to_vec()), pipeline))
+            Ok(((kind, constants.to_vec()), pipeline?))
         };
         self.pipelines.get_or_make(|(k, c)| *k == kind && c == constants, make).cloned()
     }

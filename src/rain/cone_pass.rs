@@ -27,10 +27,11 @@ pub(super) struct ConePass {
     open: Option<OpenPass>,
     bytes: u64,
     pipelines: [Option<wgpu::RenderPipeline>; 16],
+    counts: bool,
 }
 
 impl ConePass {
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, counts: bool) -> Self {
         let block = crate::gpu::bind::block(&device.device, "cones", size_of::<ConeUniform>());
         let layout = layout(&device.device);
         let (streaks, bytes) = upload(device);
@@ -49,7 +50,7 @@ impl ConePass {
         let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: CONES as u32 };
         let none = open_pass::grid(&device.device, one);
         let group = group(&device.device, &layout, &block, &streaks, &samplers, &none);
-        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 16] }
+        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: [const { None }; 16], counts }
     }
 
     /// Bytes of GPU memory held.
@@ -76,7 +77,7 @@ impl ConePass {
                 device,
                 &FullscreenDesc {
                     shader: if kind.multi { "rain/cones_view.wgsl:multi" } else { "rain/cones_view.wgsl" },
-                    entry: "cones_fragment",
+                    entry: if self.counts { "cones_counted" } else { "cones_fragment" },
                     layouts: &[frame, &self.layout, around],
                     targets: &[wgpu::ColorTargetState {
                         format: super::passes::FORMAT,

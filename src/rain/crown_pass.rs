@@ -25,6 +25,7 @@ pub(super) struct CrownPass {
     makes: [Option<wgpu::ComputePipeline>; 8],
     /// For either kind of depth.
     draws: [Option<wgpu::RenderPipeline>; 2],
+    counts: bool,
 }
 
 /// Which shaders a frame needs: for depth of several samples, with rims of areas near, with occluder maps.
@@ -35,7 +36,7 @@ fn key(kind: CrownKind) -> usize {
 }
 
 impl CrownPass {
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &wgpu::Device, counts: bool) -> Self {
         let layout = bind::layout(device, "crowns", wgpu::ShaderStages::COMPUTE, &[(0, Slot::Storage(CROWN_BYTES))]);
         let crowns = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("crowns"),
@@ -48,7 +49,7 @@ impl CrownPass {
             layout: &layout,
             entries: &[group_entry(0, &crowns)],
         });
-        Self { layout, crowns, group, makes: [const { None }; 8], draws: [None, None] }
+        Self { layout, crowns, group, makes: [const { None }; 8], draws: [None, None], counts }
     }
 
     /// Bytes of GPU memory held.
@@ -83,7 +84,7 @@ impl CrownPass {
                 device,
                 frame,
                 (["crown_vertex", "crown_fragment"], &attributes, CROWN_BYTES),
-                (multi, true),
+                ((multi, true), self.counts),
             )?);
         }
         Ok(())

@@ -49,6 +49,7 @@ pub(super) struct CullPass {
     makes: [Option<wgpu::ComputePipeline>; 8],
     /// For each kind of depth.
     draws: [Option<wgpu::RenderPipeline>; 4],
+    counts: bool,
     #[cfg(test)]
     room: Option<u64>,
 }
@@ -103,7 +104,7 @@ impl CullPass {
     }
 
     /// For the drops of `blocks`, the rain's.
-    pub fn new(device: &wgpu::Device, blocks: &wgpu::Buffer) -> Self {
+    pub fn new(device: &wgpu::Device, blocks: &wgpu::Buffer, counts: bool) -> Self {
         let [frame, found, streaks] = layouts(device);
         let source = source_layout(device);
         let make = |label, size, usage| {
@@ -140,6 +141,7 @@ impl CullPass {
             order: None,
             makes: [const { None }; 8],
             draws: [const { None }; 4],
+            counts,
             #[cfg(test)]
             room: None,
         }
@@ -201,7 +203,7 @@ impl CullPass {
                 device,
                 frame,
                 (["listed_vertex", "rain_fragment"], &attributes, STREAK_BYTES),
-                depth,
+                (depth, self.counts),
             )?);
         }
         Ok(())
@@ -299,11 +301,11 @@ pub(super) fn listed_pipeline(
     device: &Device,
     frame: &wgpu::BindGroupLayout,
     ([vertex, fragment], attributes, bytes): ([&str; 2], &[wgpu::VertexAttribute], u64),
-    (multi, has_depth): (bool, bool),
+    ((multi, has_depth), counts): ((bool, bool), bool),
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_view.wgsl:multi" } else { "rain/drops_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
-    Ok(pass::quads(
+    pass::quads(
         device,
         &QuadsDesc {
             label: "listed",
@@ -316,8 +318,9 @@ pub(super) fn listed_pipeline(
                 attributes,
             })],
             format: FORMAT,
+            counts,
         },
-    ))
+    )
 }
 
 #[cfg(test)]

@@ -43,6 +43,8 @@ pub(crate) struct RainLayer {
     stepped: Option<Box<StepPass>>,
     /// Hail and pellets, when some fell.
     stones: Option<StonePass>,
+    /// Whether it counts how often its pixels are drawn, in place of the drops' light.
+    counts: bool,
     none: Option<wgpu::TextureView>,
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
@@ -93,8 +95,10 @@ pub(super) const STARTS: [usize; 5] = {
 };
 
 impl RainLayer {
-    pub fn new(device: &Device) -> Self {
+    /// A layer of light, or one that counts how often its pixels are drawn.
+    pub fn new(device: &Device, counts: bool) -> Self {
         Self {
+            counts,
             blocks: crate::gpu::bind::block(&device.device, "rain", STARTS[4]),
             staged: vec![0; STARTS[4]],
             layouts: [layout(&device.device, false), layout(&device.device, true)],
@@ -108,6 +112,11 @@ impl RainLayer {
             texture: None,
             bound: None,
         }
+    }
+
+    /// Whether it counts.
+    pub fn counts(&self) -> bool {
+        self.counts
     }
 
     /// Bytes of GPU memory that the layer holds.
@@ -157,12 +166,13 @@ impl RainLayer {
         (picture, kind): (wgpu::Extent3d, (bool, bool, bool)),
         cone_kind: ConeKind,
     ) -> Result<()> {
-        let frame = [&self.layouts[usize::from(kind.0)], &self.surroundings];
+        let (frame, counts) = ([&self.layouts[usize::from(kind.0)], &self.surroundings], self.counts);
         if let Some(stones) = &drawn.stones {
-            self.stones.get_or_insert_with(|| StonePass::new(device)).prepare(device, stones, frame, FORMAT, kind)?;
+            let own = self.stones.get_or_insert_with(|| StonePass::new(device, counts));
+            own.prepare(device, stones, frame, FORMAT, kind)?;
         }
         if let Some(block) = drawn.cones {
-            let cones = self.cones.get_or_insert_with(|| ConePass::new(device));
+            let cones = self.cones.get_or_insert_with(|| ConePass::new(device, counts));
             cones.prepare(device, block, frame, cone_kind)?;
             if cone_kind.sheltered {
                 let told = (&self.blocks, &self.surroundings, drawn.surroundings);
@@ -218,7 +228,7 @@ impl RainLayer {
             {
                 if slot.is_none() {
                     let frame = [&self.layouts[usize::from(multi)], &self.surroundings];
-                    *slot = Some(pipeline(device, frame, entries, kind, areas)?);
+                    *slot = Some(pipeline(device, frame, entries, kind, [areas, self.counts])?);
                 }
             }
         }
@@ -260,7 +270,8 @@ impl RainLayer {
         splashes: u32,
     ) -> Result<()> {
         let frame = [&self.layouts[usize::from(depth.0)], &self.surroundings];
-        let make = || Box::new((CullPass::new(&device.device, &self.blocks), CrownPass::new(&device.device)));
+        let (own, counts) = (&device.device, self.counts);
+        let make = || Box::new((CullPass::new(own, &self.blocks, counts), CrownPass::new(own, counts)));
         let (cull, crowns) = &mut **self.listed.get_or_insert_with(make);
         let around = drawn.surroundings.bind_group();
         let states = self.stepped.as_ref().filter(|_| drawn.stepped.is_some()).and_then(|s| s.states());
@@ -362,13 +373,13 @@ fn pipeline(
     [frame, around]: [&wgpu::BindGroupLayout; 2],
     [vertex, fragment]: [&str; 2],
     (multi, has_depth, maps): (bool, bool, bool),
-    areas: bool,
+    [areas, counts]: [bool; 2],
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/drops_view.wgsl:multi" } else { "rain/drops_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     // Mixtures take each column by itself: what lies over what is in their order.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
-    Ok(pass::quads(
+    pass::quads(
         device,
         &QuadsDesc {
             label: "drops",
@@ -377,6 +388,7 @@ fn pipeline(
             layouts: &[Some(frame), None, Some(around)],
             buffers: &[],
             format: FORMAT,
+            counts,
         },
-    ))
+    )
 }

@@ -32,6 +32,7 @@ pub(super) struct StonePass {
     group: wgpu::BindGroup,
     /// Falling and hopping, for each kind of depth.
     pipelines: [[Option<wgpu::RenderPipeline>; 2]; 8],
+    counts: bool,
 }
 
 /// The kind of depth that a pass has: several samples, any at all; and whether there are occluder maps.
@@ -42,7 +43,7 @@ fn key((multi, any, maps): Depth) -> usize {
 }
 
 impl StonePass {
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, counts: bool) -> Self {
         let device = &device.device;
         let block = crate::gpu::bind::block(device, "stones", size_of::<StoneUniform>());
         let slots = [(0, Slot::Uniform(size_of::<StoneUniform>()))];
@@ -52,7 +53,7 @@ impl StonePass {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() }],
         });
-        Self { block, layout, group, pipelines: [const { [None, None] }; 8] }
+        Self { block, layout, group, pipelines: [const { [None, None] }; 8], counts }
     }
 
     /// Brings the block up, and makes the pipelines for a kind of depth if they are not there. `rain` and `around` are the
@@ -71,7 +72,8 @@ impl StonePass {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&drawn.block));
         for (slot, vertex) in self.pipelines[key(depth)].iter_mut().zip(["falling_vertex", "hopping_vertex"]) {
             if slot.is_none() {
-                *slot = Some(pipeline(device, &[Some(rain), Some(&self.layout), Some(around)], format, vertex, depth)?);
+                let layouts = [Some(rain), Some(&self.layout), Some(around)];
+                *slot = Some(pipeline(device, &layouts, (format, self.counts), vertex, depth)?);
             }
         }
         Ok(())
@@ -93,14 +95,14 @@ impl StonePass {
 fn pipeline(
     device: &Device,
     layouts: &[Option<&wgpu::BindGroupLayout>],
-    format: wgpu::TextureFormat,
+    (format, counts): (wgpu::TextureFormat, bool),
     vertex: &str,
     (multi, has_depth, maps): Depth,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(if multi { "rain/stones_view.wgsl:multi" } else { "rain/stones_view.wgsl" })?;
     let constants = [("HAS_DEPTH", f64::from(u8::from(has_depth)))];
     let near = [("MAPS", f64::from(u8::from(maps)))];
-    Ok(pass::quads(
+    pass::quads(
         device,
         &QuadsDesc {
             label: "stones",
@@ -109,6 +111,7 @@ fn pipeline(
             layouts,
             buffers: &[],
             format,
+            counts,
         },
-    ))
+    )
 }

@@ -77,7 +77,7 @@ fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
 impl RainView {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self {
-            layer: RainLayer::new(device),
+            layer: RainLayer::new(device, false),
             settings,
             shares: [1.0; 2],
             counted: Vec::new(),
@@ -107,6 +107,13 @@ impl RainView {
         self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
         self.ice.gather(now);
         Ok(())
+    }
+
+    /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew where that changes.
+    pub fn set_counting(&mut self, device: &Device, counts: bool) {
+        if self.layer.counts() != counts {
+            (self.layer, self.areas) = (RainLayer::new(device, counts), None);
+        }
     }
 
     /// Whether drops fall near the camera, as far as the settings draw them.
@@ -259,8 +266,9 @@ impl RainView {
         }
         self.set_near(to.device, shot.now);
         let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: shot.veiled };
+        let counts = self.layer.counts();
         let target = self.layer.view(to.device, shot.color.texture.size());
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device)));
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, counts)));
         pass.draw(to, &columns, with, shot.frame.depth_layer(), target)?;
         Ok(true)
     }
@@ -475,7 +483,7 @@ impl DrawnEffect for RainView {
         }
         self.set_near(shot.device, shot.now);
         let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: true };
-        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device)));
+        let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(shot.device, self.layer.counts())));
         let (layout, group) = pass.bound(shot.device, &columns, with, shot.frame.depth_layer())?;
         Some(("frame/froxels_areas.wgsl", layout, group))
     }

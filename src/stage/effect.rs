@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use super::{Composition, Frame, FrameFlags, Recording, Report, Stages};
+use super::{Composition, Frame, FrameFlags, OpaqueDraw, Recording, Report, Stages};
 use crate::{
     error::Result,
     gpu::{Device, Layer},
@@ -94,6 +94,22 @@ pub(crate) trait DrawnEffect {
 
     /// Brings what it keeps up to the moment.
     fn prepare(&mut self, _at: &Prepare<'_>, _to: &mut Recording<'_>) -> Result<()> {
+        Ok(())
+    }
+
+    /// Whether it has anything opaque to draw in the moment that was gathered.
+    fn has_opaque(&self) -> bool {
+        false
+    }
+
+    /// Draws what is opaque, into the host's colour and depth, before the composition of stage SURFACE. What lies on surfaces, air and
+    /// what falls see its depth as they see the host's.
+    fn draw_opaque(
+        &mut self,
+        _shot: &Shot<'_>,
+        _with: &OpaqueDraw<'_>,
+        _pass: &mut wgpu::RenderPass<'_>,
+    ) -> Result<()> {
         Ok(())
     }
 

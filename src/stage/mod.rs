@@ -6,19 +6,24 @@
 //! textures ([`Composition`]); what cannot be a function of one pixel (falling drops, the windscreen) is drawn in passes of its own.
 
 mod composition;
+mod diagnostic;
 mod effect;
+mod opaque;
 mod recording;
 mod target;
 mod uniform;
 
 pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, yes};
+pub use diagnostic::Diagnostic;
 pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
+pub use opaque::DepthAccess;
+pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report};
 pub use target::{ColorSpace, Stages};
 pub(crate) use target::{
-    Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals, color_copy,
-    is_copy_of, rounding,
+    Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,
+    check_written, color_copy, is_copy_of, rounding,
 };
 pub(crate) use uniform::{FrameUniform, is_float, uniform};
 
@@ -78,10 +83,13 @@ pub struct Frame<'a> {
     pub camera: Camera,
     /// What the numbers in `depth` mean.
     pub depth_mapping: DepthMapping,
+    /// Whether Welkin may write `depth`. Default: it only reads it.
+    pub depth_access: DepthAccess,
     /// Colour to draw into; may be absent for [`Stages::PREPARE`] alone. Needs RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
     /// The host's depth; without it every pixel shows the sky. Needs TEXTURE_BINDING. It has as many samples as `color`, or
-    /// any number where `color` has one (resolved): then the first sample counts.
+    /// any number where `color` has one (resolved): then the first sample counts. With [`DepthAccess::ReadWrite`] it needs
+    /// RENDER_ATTACHMENT too.
     pub depth: Option<&'a wgpu::Texture>,
     /// Red channel 1 keeps the host's pixel (cab, HUD), 0 draws weather.
     pub mask: Option<&'a wgpu::Texture>,
@@ -104,6 +112,8 @@ pub struct Frame<'a> {
     pub origin_bottom_left: bool,
     /// Cut, no history.
     pub flags: FrameFlags,
+    /// A false-colour picture for developers in place of the frame's. Default none.
+    pub diagnostic: Diagnostic,
     /// Velocity of the camera in the host's axes, m/s: rain streaks lean against it. Default 0.
     pub camera_velocity_m_s: DVec3,
 }
@@ -115,6 +125,7 @@ impl<'a> Frame<'a> {
             frame_id,
             camera,
             depth_mapping: DepthMapping { reversed: true, ..Default::default() },
+            depth_access: DepthAccess::Read,
             color: Some(color),
             depth,
             mask: None,
@@ -126,6 +137,7 @@ impl<'a> Frame<'a> {
             exposure: None,
             origin_bottom_left: false,
             flags: FrameFlags(0),
+            diagnostic: Diagnostic::None,
             camera_velocity_m_s: DVec3::ZERO,
         }
     }

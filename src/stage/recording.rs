@@ -123,6 +123,9 @@ pub struct Report {
     pub rain: RainReport,
     /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
+    /// Effects with something opaque that was not drawn, because the host's depth may only be read
+    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)). 0 in this version, which has none.
+    pub opaque_left_out: u32,
     /// What the plan expects of the frame.
     pub prediction: Prediction,
     /// What the host said that the weather took in it, ms ([`View::report_time`](crate::frame::View::report_time)).

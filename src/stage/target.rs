@@ -134,6 +134,24 @@ pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
     check_usage("depth", texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
+/// Checks that the depth that is attached can be written beside the colour target.
+///
+/// # Errors
+/// As [`check_color`].
+pub(crate) fn check_written(depth: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
+    let format = depth.format();
+    if !format.has_depth_aspect() {
+        let rest = "which cannot be written as depth_access asks; Depth16Unorm, Depth24Plus(Stencil8) and \
+                    Depth32Float(Stencil8) can, or let depth_access be read only";
+        return Err(Error::unsupported(format!("{format:?}, {rest}")).within("depth.format"));
+    }
+    if depth.sample_count() != color.sample_count() {
+        let accepted = format!("those of color, {}, where depth_access writes it", color.sample_count());
+        return Err(Error::range("depth.samples", &accepted, depth.sample_count()));
+    }
+    check_usage("depth", depth, wgpu::TextureUsages::RENDER_ATTACHMENT)
+}
+
 /// Checks the optional mask (red channel: 0 draws weather, 1 leaves the host's pixel).
 ///
 /// # Errors
@@ -260,6 +278,15 @@ impl Sampling {
             Self::Resolved => {
                 [("frame/composite_view.wgsl:resolved", "composite"), ("plan/gauge_view.wgsl:resolved", "gauge")]
             }
+        }
+    }
+
+    /// Shader of the diagnostic pictures; its entry point is `diagnose`.
+    pub fn diagnostic(self) -> &'static str {
+        match self {
+            Self::Single => "frame/diagnostic.wgsl",
+            Self::Multi => "frame/diagnostic.wgsl:multi",
+            Self::Resolved => "frame/diagnostic.wgsl:resolved",
         }
     }
 

@@ -216,7 +216,7 @@ fn pipeline(
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &attributes,
     };
-    Ok(pass::quads(
+    pass::quads(
         device,
         &QuadsDesc {
             label: "stars",
@@ -225,8 +225,9 @@ fn pipeline(
             layouts: &[Some(layout)],
             buffers: &[Some(instances)],
             format,
+            counts: false,
         },
-    ))
+    )
 }
 
 #[cfg(test)]

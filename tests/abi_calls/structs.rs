@@ -422,3 +422,52 @@ fn stages_are_checked() {
         assert!(message().contains("stages must be"), "{}", message());
     }
 }
+
+#[test]
+fn depth_access_and_diagnostic_pictures_are_checked() {
+    let world = World::new();
+    let texture = |format| {
+        let desc = wk_texture_desc { width: 8, height: 8, format, ..init("wk_texture_desc") };
+        let mut texture = null_mut();
+        // SAFETY: live pointers.
+        assert_eq!(unsafe { wk_texture_create(world.device, &desc, &mut texture) }, WK_OK, "{}", message());
+        texture
+    };
+    let (color, depth) = (texture(WK_FORMAT_RGBA8_UNORM), texture(WK_FORMAT_R32_FLOAT));
+    let record = |depth_access, depth| {
+        let target = wk_own_target { color, depth, ..init("wk_own_target") };
+        let target = (&raw const target).cast();
+        let frame = wk_frame { frame_id: next_frame(), depth_access, target, ..init("wk_frame") };
+        // SAFETY: live pointers.
+        (unsafe { wk_view_record(world.view, &frame, WK_STAGE_SURFACE) }, message())
+    };
+    assert_eq!(record(WK_DEPTH_ACCESS_READ, depth).0, WK_OK, "{}", message());
+    let frame = |diagnostic| wk_frame { frame_id: next_frame(), diagnostic, ..init("wk_frame") };
+    // SAFETY: live pointers.
+    let status = |diagnostic| unsafe { wk_view_record(world.view, &frame(diagnostic), WK_STAGE_PREPARE) };
+    assert!((WK_DIAGNOSTIC_NONE..=WK_DIAGNOSTIC_OVERDRAW).all(|diagnostic| status(diagnostic) == WK_OK));
+    assert_eq!(status(WK_DIAGNOSTIC_OVERDRAW + 1), WK_ERROR_INVALID_ARGUMENT);
+    assert!(
+        message().contains("frame.diagnostic must be one of WK_DIAGNOSTIC_NONE, WK_DIAGNOSTIC_DISTANCE"),
+        "{}",
+        message()
+    );
+    for (access, depth, status, wanted) in [
+        (2, depth, WK_ERROR_INVALID_ARGUMENT, "frame.depth_access must be one of WK_DEPTH_ACCESS_READ, WK_DEPTH_"),
+        (1, null_mut(), WK_ERROR_INVALID_ARGUMENT, "frame.depth_access must be read only where the frame has no depth"),
+        (
+            1,
+            depth,
+            WK_ERROR_UNSUPPORTED,
+            "frame.target.depth.format: R32Float, which cannot be written as depth_access",
+        ),
+    ] {
+        let (got, text) = record(access, depth);
+        assert!(got == status && text.contains(wanted), "{wanted}: {got} {text}");
+    }
+    // SAFETY: live handles.
+    unsafe {
+        assert_eq!(wk_texture_destroy(color), WK_OK);
+        assert_eq!(wk_texture_destroy(depth), WK_OK);
+    }
+}

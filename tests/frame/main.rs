@@ -3,6 +3,9 @@
 mod above;
 #[path = "../support/coarse_sky.rs"]
 mod coarse_sky;
+#[path = "../support/depth_texture.rs"]
+mod depth_texture;
+mod diagnostic;
 mod environment;
 mod froxels;
 mod host;

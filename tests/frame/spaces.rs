@@ -218,7 +218,7 @@ fn draw_edge(host: &Host, samples: u32) {
 }
 
 /// The mean of each pixel's samples.
-fn resolve(host: &Host) -> Vec<[f32; 4]> {
+pub fn resolve(host: &Host) -> Vec<[f32; 4]> {
     let to = texture(&host.device, host.color.format(), 1);
     let (from, target) = (host.color.create_view(&Default::default()), to.create_view(&Default::default()));
     let mut encoder = host.device.device.create_command_encoder(&Default::default());

@@ -332,7 +332,7 @@ fn refusal(host: &Host, desc: &GlTargetDesc) -> welkin::Error {
     error
 }
 
-fn assert_refused(host: &Host, desc: &GlTargetDesc, status: Status, parts: &[&str]) {
+pub fn assert_refused(host: &Host, desc: &GlTargetDesc, status: Status, parts: &[&str]) {
     let error = refusal(host, desc);
     assert_eq!(error.status, status, "{error}");
     for part in parts {

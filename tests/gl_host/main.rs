@@ -17,6 +17,8 @@ mod loss;
 mod marks;
 mod matrix;
 mod memory;
+#[path = "../support/opaque_card.rs"]
+mod opaque_card;
 mod own;
 mod painter;
 mod pictures;
@@ -27,6 +29,7 @@ mod state;
 mod unusual;
 mod veil;
 mod windows;
+mod written;
 
 /// The size of the pictures that come through the C functions.
 const SIZE: (u32, u32) = (images::WIDTH, images::HEIGHT);

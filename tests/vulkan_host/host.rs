@@ -361,7 +361,7 @@ impl Host {
         self.run(wait, &[], true, |c| {
             let region = vk::BufferImageCopy::default()
                 .image_subresource(vk::ImageSubresourceLayers {
-                    aspect_mask: vk::ImageAspectFlags::COLOR,
+                    aspect_mask: aspects(image.format),
                     base_array_layer: image.layer,
                     layer_count: 1,
                     ..Default::default()

@@ -12,6 +12,8 @@ mod images;
 mod loss;
 mod marks;
 mod memory;
+#[path = "../support/opaque_card.rs"]
+mod opaque_card;
 mod refusals;
 mod reuse;
 mod sharing;
@@ -19,6 +21,7 @@ mod sharing;
 mod textures;
 mod veil;
 mod weather;
+mod written;
 
 use ash::vk;
 use host::{Host, Owned, Setup};

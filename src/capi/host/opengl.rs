@@ -7,7 +7,7 @@ use crate::{
     capi::{
         context::ContextObject,
         device::{self, WK_DEVICE_FORCE_TIER0, wk_device},
-        frame::{self, Images, in_frame, wk_frame},
+        frame::{self, Images, WK_DEPTH_ACCESS_READ_WRITE, in_frame, wk_frame},
         occluder::wk_occluder_map,
         opengl::*,
         view::ViewObject,
@@ -38,7 +38,8 @@ pub(in crate::capi) unsafe fn open(c: &wk_opengl_host_desc) -> Result<*mut wk_de
 /// `c.target` is NULL or a live target struct with live names.
 pub(in crate::capi) unsafe fn record(host: &GlHost, object: &ViewObject, c: &wk_frame, stages: Stages) -> Result<()> {
     // SAFETY: the caller's promise.
-    let desc = description(&unsafe { target::<wk_opengl_target>(c.target)? })?;
+    let target = unsafe { target::<wk_opengl_target>(c.target)? };
+    let desc = description(&target, c.depth_access == WK_DEPTH_ACCESS_READ_WRITE)?;
     // Before the host's images are touched.
     let mut frame = frame::from_c(c, Images::default(), true)?;
     object.lock().check_call(&frame, stages).map_err(in_frame)?;
@@ -82,8 +83,8 @@ pub(in crate::capi) fn set_occluder_maps<'a>(
     object.write().set_occluder_maps(&list).map_err(in_map("opengl"))
 }
 
-/// The target as the Rust side takes it; `None` without a colour image.
-fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
+/// The target as the Rust side takes it, its depth perhaps to be written; `None` without a colour image.
+fn description(c: &wk_opengl_target, write_depth: bool) -> Result<Option<GlTargetDesc>> {
     let (color, depth, mask) = (image(&c.color), image(&c.depth), image(&c.mask));
     let (surface_classes, normals) = (image(&c.surface_classes), image(&c.normals));
     let Some(color) = color else {
@@ -112,7 +113,7 @@ fn description(c: &wk_opengl_target) -> Result<Option<GlTargetDesc>> {
             WK_OPENGL_MULTISAMPLE_RESOLVE => Multisample::Resolve,
             _ => Multisample::Each,
         },
-        write_depth: false,
+        write_depth,
     }))
 }
 

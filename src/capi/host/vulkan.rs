@@ -10,7 +10,7 @@ use crate::{
         context::ContextObject,
         device::{self, wk_device},
         device_cell::DeviceCell,
-        frame::{self, Images, in_frame, wk_frame},
+        frame::{self, Images, WK_DEPTH_ACCESS_READ_WRITE, in_frame, wk_frame},
         input::{self, List, Named},
         layout,
         occluder::wk_occluder_map,
@@ -126,6 +126,9 @@ pub(in crate::capi) unsafe fn record(
     let [color, depth, mask, classes, normals] = all_of(imports)?;
     let read = [("depth", &depth), ("mask", &mask), ("surface_classes", &classes), ("normals", &normals)];
     check_distinct(read, &color)?;
+    if let (Some(depth), WK_DEPTH_ACCESS_READ_WRITE) = (&depth, c.depth_access) {
+        depth.image.check_written("frame.target.depth")?;
+    }
     // SAFETY: as above.
     let (waits, signals) =
         unsafe { (semaphores(&waits_of(&target), target.waits)?, semaphores(&signals_of(&target), target.signals)?) };

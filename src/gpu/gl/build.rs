@@ -115,6 +115,9 @@ impl Workshop<'_> {
             return Err(Error::range("target.depth", &accepted, other.facts.samples));
         }
         let resolve = self.resolves(desc.multisample, samples)?;
+        if desc.write_depth {
+            check_written_back(&parts, resolve)?;
+        }
         let read = |image: Option<GlImage>, side| image.map(|image| self.read_part(desc, image, side)).transpose();
         let mask_part = read(desc.mask, Side::Mask)?;
         let classes_part = read(desc.surface_classes, Side::Classes)?;
@@ -436,6 +439,22 @@ impl Workshop<'_> {
         };
         // SAFETY: the texture was made by this device, respects the description and holds the host's pixels.
         Ok(unsafe { self.device.create_texture_from_hal::<Gles>(texture, &desc, uses) })
+    }
+}
+
+/// Refuses depth that is drawn to with fewer samples than it has: the samples' own depths would be lost.
+fn check_written_back(parts: &[Part], resolve: bool) -> Result<()> {
+    if resolve {
+        let rest = "must be each where depth is written: of the depths of a pixel's samples only one would be left";
+        return Err(Error::about(Status::Unsupported, "target.multisample", rest));
+    }
+    let samples = parts[0].facts.samples;
+    match parts.get(1).filter(|depth| depth.facts.samples != samples) {
+        Some(depth) => {
+            let accepted = format!("an image with as many samples as color, {samples}, where it is written");
+            Err(Error::range("target.depth", &accepted, depth.facts.samples))
+        }
+        None => Ok(()),
     }
 }
 

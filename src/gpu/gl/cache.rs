@@ -70,6 +70,12 @@ impl Inner {
         self.targets.iter().find(|e| e.target.color == *color && self.active.contains(&e.target.id))
     }
 
+    /// The target in use whose depth is read as `depth`.
+    pub(super) fn entry_with_depth(&self, depth: &wgpu::Texture) -> Option<&Entry> {
+        let is_it = |e: &&Entry| e.target.depth_read.as_ref() == Some(depth) && self.active.contains(&e.target.id);
+        self.targets.iter().find(is_it)
+    }
+
     /// Makes sure that the host's window, if it is the target, has the size that the host says: at once where it is `new`, else
     /// as it was some frames ago.
     fn check_window(&mut self, info: &GlInfo, desc: &GlTargetDesc, new: bool) -> Result<()> {

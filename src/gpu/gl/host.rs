@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    gpu::HostBinding,
+    gpu::{AttachedDepth, HostBinding},
 };
 
 /// The host's callback with its argument.
@@ -232,6 +232,18 @@ impl HostBinding for GlHost {
     fn refresh(&self, color: &wgpu::Texture) -> Result<()> {
         let inner = self.inner();
         inner.entry_of(color).map_or(Ok(()), |entry| entry.read_again(&inner.api))
+    }
+
+    fn attached_depth(&self, depth: &wgpu::Texture) -> Option<AttachedDepth> {
+        let inner = self.inner();
+        let entry = inner.entry_with_depth(depth)?;
+        let texture = entry.target.depth.clone()?;
+        Some(AttachedDepth { texture, is_copied: entry.reads_copied_depth() })
+    }
+
+    fn refresh_depth(&self, depth: &wgpu::Texture) -> Result<()> {
+        let inner = self.inner();
+        inner.entry_with_depth(depth).map_or(Ok(()), |entry| entry.refresh(&inner.api))
     }
 
     fn closing(&self) {

@@ -58,7 +58,7 @@ pub struct GlTargetDesc {
     pub generation: u64,
     /// What is done about multisampled images.
     pub multisample: Multisample,
-    /// Whether depth that was copied in is copied back.
+    /// Whether depth may be written: what was copied in is copied back then.
     pub write_depth: bool,
 }
 
@@ -201,6 +201,12 @@ impl Entry {
             }
         }
         Ok(())
+    }
+
+    /// Whether depth is read from a copy of what is attached.
+    pub(super) fn reads_copied_depth(&self) -> bool {
+        let is_copied = |part: &Part| part.copy.as_ref().is_some_and(|copy| !copy.drawn_to);
+        self.parts.iter().any(|part| part.side == Side::Depth && is_copied(part))
     }
 
     /// Copies back what was drawn into copies and gives the host's objects back as they were.

@@ -64,6 +64,20 @@ impl HostImage {
         rest == other
     }
 
+    /// Refuses depth that was not created to be written, in a message about the parameter `name`.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the usage.
+    pub fn check_written(&self, name: &str) -> Result<()> {
+        let needed = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        if self.usage.contains(needed) {
+            return Ok(());
+        }
+        let bits = layouts::usage_names(needed, " and ");
+        let rest = format!("lacks {bits}, with which the image must be created where depth_access writes it");
+        Err(Error::invalid(format!("{name}.usage"), rest))
+    }
+
     /// The aspects that a layout change must name.
     pub(super) fn aspects(&self) -> vk::ImageAspectFlags {
         match wgpu_format(self.format) {

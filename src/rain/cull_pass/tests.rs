@@ -45,7 +45,7 @@ impl Bench {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let pass = CullPass::new(&device.device, &blocks);
+        let pass = CullPass::new(&device.device, &blocks, false);
         let surroundings = surroundings::SurroundingsBlock::new(&device.device);
         let classes = Classes::new(&falling, 1.0, u32::MAX);
         Self { device, blocks, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }

@@ -1,0 +1,104 @@
+// One number of each pixel in false colours, in place of the picture: for developers (docs/diagnostics.md). Where the picture has
+// several samples a pixel, the first stands for them.
+//!include "frame/host_picture.wgsl"
+//!include "frame/composite.wgsl"
+//!include "frame/exposed.wgsl"
+
+// Which number: those of src/stage/diagnostic.rs.
+override DIAGNOSTIC: u32 = 1u;
+// What it is about is not in the frame.
+override ABSENT: bool = false;
+// The target holds display values by the sRGB curve.
+override ENCODED: bool = false;
+
+const DISTANCE: u32 = 1u;
+const OPTICAL_DEPTH: u32 = 2u;
+const WETNESS: u32 = 3u;
+const PLAN_ERROR: u32 = 4u;
+const OVERDRAW: u32 = 5u;
+
+// Numbers of the scale's steps from one colour to the next.
+const STEPS: f32 = 5.0;
+// Draws of a pixel a step.
+const DRAWS_OF_STEP: f32 = 4.0;
+
+// The scale from 0 to 1, by the sRGB curve: black, blue, green, yellow, red, white.
+fn scale_color(share: f32) -> vec3f {
+    var colors = array<vec3f, 6>(
+        vec3f(0.0),
+        vec3f(0.0, 0.0, 1.0),
+        vec3f(0.0, 1.0, 0.0),
+        vec3f(1.0, 1.0, 0.0),
+        vec3f(1.0, 0.0, 0.0),
+        vec3f(1.0),
+    );
+    let at = clamp(share, 0.0, 1.0) * STEPS;
+    let below = min(u32(at), 4u);
+    return mix(colors[below], colors[below + 1u], at - f32(below));
+}
+
+fn log10(x: f32) -> f32 {
+    return log2(x) * 0.30103;
+}
+
+// Of all air and fog between the eye and what is seen, what drops hide among it.
+fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
+    drawn = vec4f(1.0, 1.0, 1.0, 0.0);
+    let air = Veil(vec3f(0.0), exp(-sky_path(ray.direction, seen.range).depth));
+    let through = with_fog(ray, seen.range, seen.plane, air).transmittance;
+    return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
+}
+
+// Relative change of luminance over a hundredth of white by what the plan leaves out of air, fog and clear sky.
+fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
+    drawn = vec4f(1.0, 1.0, 1.0, frame.drawn.w);
+    let all = exposed(host, weather_over(ray, seen.range, seen.plane));
+    drawn = frame.drawn;
+    let planned = exposed(host, weather_over(ray, seen.range, seen.plane));
+    return abs(planned - all) / (all + 0.01);
+}
+
+// Place on the scale.
+fn measured(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
+    if ABSENT {
+        return 0.0;
+    }
+    if DIAGNOSTIC == DISTANCE {
+        return log10(max(seen.range, 1.0)) / STEPS;
+    }
+    if DIAGNOSTIC == OPTICAL_DEPTH {
+        return optical_depth(ray, seen) / STEPS;
+    }
+    if DIAGNOSTIC == WETNESS {
+        water_cover = 0.0;
+        drawn = frame.drawn;
+        let veil = on_surface(Veil(vec3f(0.0), vec3f(1.0)), linear_host(host), ray, seen);
+        return water_cover;
+    }
+    if DIAGNOSTIC == PLAN_ERROR {
+        return log10(max(plan_error(host, ray, seen) * 1e4, 1.0)) / STEPS;
+    }
+    return textureLoad(drops, seen.pixel, 0).r / (STEPS * DRAWS_OF_STEP);
+}
+
+@fragment
+fn diagnose(in: FullscreenVarying) -> @location(0) vec4f {
+    let pixel = vec2i(in.position.xy);
+    behind_pixel = pixel;
+    let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
+    if HAS_DEPTH {
+        seen.depth = textureLoad(host_depth, pixel, 0).r;
+        seen.range = view_range(frame.depth, seen.depth, ndc);
+        seen.plane = view_plane(frame.depth, seen.depth, ndc);
+    }
+    if HAS_MASK {
+        seen.mask = textureLoad(host_mask, pixel, 0).r;
+    }
+    let host = textureLoad(host_color, pixel, 0);
+    var shown = scale_color(measured(host.rgb, view_ray(frame.depth, ndc), seen));
+    if !ENCODED {
+        shown = srgb_decode(shown);
+    }
+    return vec4f(mix(shown, host.rgb, seen.mask), host.a);
+}

@@ -1,0 +1,142 @@
+//! The opaque step: what effects draw into the host's colour and depth, in one pass before the composition. There is no pass where no
+//! effect has anything opaque.
+
+use super::{View, draw::Call};
+use crate::{
+    error::{Error, Result},
+    gpu::{
+        Device, KeptLayer, Layer,
+        bind::{self, Slot},
+        is_kept,
+    },
+    stage::{
+        CostItem, DepthAccess, Frame, FrameUniform, OpaqueDraw, OpaqueTarget, Recording, Stages, check_written, uniform,
+    },
+};
+
+/// What the step holds between frames.
+pub(super) struct OpaqueStep {
+    layout: wgpu::BindGroupLayout,
+    /// Stands for a mask where the host gives none.
+    none: wgpu::TextureView,
+    bound: Option<Bound>,
+}
+
+/// Views and bind group of a frame's images: made anew only when the host hands over others.
+struct Bound {
+    color: KeptLayer,
+    depth: KeptLayer,
+    mask: Option<KeptLayer>,
+    views: [wgpu::TextureView; 2],
+    group: wgpu::BindGroup,
+}
+
+impl OpaqueStep {
+    fn new(device: &wgpu::Device) -> Self {
+        let slots = [(0, Slot::Uniform(size_of::<FrameUniform>())), (1, Slot::Texels)];
+        let layout = bind::layout(device, "opaque", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
+        Self { layout, none: bind::nothing(device, wgpu::TextureFormat::R8Unorm), bound: None }
+    }
+
+    fn bind(
+        &mut self,
+        device: &Device,
+        block: &wgpu::Buffer,
+        [color, depth]: [Layer<'_>; 2],
+        mask: Option<Layer<'_>>,
+    ) -> &Bound {
+        let same = |b: &Bound| color == b.color && depth == b.depth && is_kept(mask, b.mask.as_ref());
+        if self.bound.as_ref().is_some_and(|b| !same(b)) {
+            self.bound = None;
+        }
+        self.bound.get_or_insert_with(|| {
+            let mask_view = mask.map(Layer::view);
+            let resource = wgpu::BindingResource::TextureView(mask_view.as_ref().unwrap_or(&self.none));
+            let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("opaque"),
+                layout: &self.layout,
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 1, resource },
+                ],
+            });
+            let views = [color.attached_view(), depth.attached_view()];
+            Bound { color: color.kept(), depth: depth.kept(), mask: mask.map(Layer::kept), views, group }
+        })
+    }
+}
+
+impl View {
+    /// Whether an effect has anything opaque to draw in these stages.
+    pub(super) fn has_opaque(&self, stages: Stages) -> bool {
+        stages.has(Stages::SURFACE) && self.effects.all().iter().any(|effect| effect.has_opaque())
+    }
+
+    /// Refuses depth that cannot be written, whatever there is to draw now, where the host lets Welkin write it.
+    pub(super) fn check_depth_access(&self, frame: &Frame<'_>, color: &wgpu::Texture) -> Result<()> {
+        match (frame.depth_access, frame.depth) {
+            (DepthAccess::Read, _) => Ok(()),
+            (DepthAccess::ReadWrite, None) => {
+                Err(Error::invalid("depth_access", "must be read only where the frame has no depth"))
+            }
+            (DepthAccess::ReadWrite, Some(depth)) => check_written(&self.device.attached_depth(depth).texture, color),
+        }
+    }
+
+    /// Refuses depth that is copied between submissions, where the host makes them.
+    pub(super) fn check_depth_is_one(&self, frame: &Frame<'_>) -> Result<()> {
+        let written = frame.depth.filter(|_| frame.depth_access == DepthAccess::ReadWrite);
+        if written.is_some_and(|depth| self.device.attached_depth(depth).is_copied) {
+            let what =
+                "a renderbuffer that is written where the host submits: it is copied between submissions; use record";
+            return Err(Error::unsupported(what).within("depth"));
+        }
+        Ok(())
+    }
+
+    /// Draws what effects have that is opaque, or counts them where the host's depth may only be read.
+    pub(super) fn draw_opaque(&mut self, call: &Call<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let (frame, color) = (call.frame, call.color);
+        let (DepthAccess::ReadWrite, Some(read)) = (frame.depth_access, frame.depth) else {
+            self.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
+            return Ok(());
+        };
+        let attached = self.device.attached_depth(read);
+        let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
+        let block = uniform(frame, call.now, call.rays, color.texture, call.exposure, false);
+        self.device.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&block));
+        let step = self.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
+        let layout = step.layout.clone();
+        let bound = step.bind(&self.device, &self.uniform, [color, depth], frame.mask_layer());
+        let keep = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("opaque"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &bound.views[0],
+                depth_slice: None,
+                resolve_target: None,
+                ops: keep,
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &bound.views[1],
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &bound.group, &[]);
+        let shot = call.shot();
+        let target = OpaqueTarget::of(frame, color.texture, depth.texture);
+        let with = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&shot) };
+        for effect in self.effects.each().into_iter().filter(|effect| effect.has_opaque()) {
+            effect.draw_opaque(&shot, &with, &mut pass)?;
+        }
+        drop(pass);
+        to.passes += 1;
+        if attached.is_copied {
+            to.flush();
+            self.device.refresh_depth(read)?;
+        }
+        to.ends(CostItem::Surface, true)
+    }
+}

@@ -1,0 +1,91 @@
+//! What effects draw that is opaque: into the host's own colour and depth, before what lies on surfaces.
+
+use glam::DMat4;
+
+use super::{Frame, Shot};
+use crate::scene::{ClipSpace, DepthKind};
+
+/// What Welkin may do with a host's depth.
+///
+/// Nothing that this version draws is opaque, so both give the same picture; sea and terrain will be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum DepthAccess {
+    /// Read it. Not a bit of it changes, and nothing opaque of Welkin's is drawn ([`Report::opaque_left_out`](super::Report::opaque_left_out)
+    /// counts that).
+    #[default]
+    Read,
+    /// Test and write it where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE), before the water on surfaces. They
+    /// hide, and are hidden by, what the host drew before. Stencil stays as it is. Needs a depth format with RENDER_ATTACHMENT and as many
+    /// samples as the colour.
+    ReadWrite,
+}
+
+/// What pipelines of opaque things are made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct OpaqueTarget {
+    pub color: wgpu::TextureFormat,
+    pub depth: wgpu::TextureFormat,
+    pub samples: u32,
+    /// 1 is near.
+    pub reversed: bool,
+    /// The fragment shader writes depth: `written_depth` of `shaders/common/depth.wgsl`.
+    pub logarithmic: bool,
+}
+
+#[cfg_attr(not(test), expect(dead_code, reason = "for opaque effects, which only the tests have yet"))]
+impl OpaqueTarget {
+    /// Of a frame that is drawn into `color` and `depth`.
+    pub fn of(frame: &Frame<'_>, color: &wgpu::Texture, depth: &wgpu::Texture) -> Self {
+        Self {
+            color: color.format(),
+            depth: depth.format(),
+            samples: color.sample_count(),
+            reversed: frame.depth_mapping.reversed,
+            logarithmic: matches!(frame.depth_mapping.kind, DepthKind::Logarithmic { .. }),
+        }
+    }
+
+    /// What is nearer passes and is written; of two at one depth the host's stays. Stencil is kept.
+    pub fn depth_test(&self) -> wgpu::DepthStencilState {
+        let nearer = if self.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
+        wgpu::DepthStencilState {
+            format: self.depth,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(nearer),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }
+    }
+
+    /// Colour is replaced; the host's alpha stays, as in the composition.
+    pub fn color_target(&self) -> wgpu::ColorTargetState {
+        wgpu::ColorTargetState { format: self.color, blend: None, write_mask: wgpu::ColorWrites::COLOR }
+    }
+}
+
+/// What opaque things are drawn with, beside the pass itself: its attachments are the host's, and its group 0 is that of
+/// `shaders/common/opaque.wgsl`.
+#[cfg_attr(not(test), expect(dead_code, reason = "as above"))]
+pub(crate) struct OpaqueDraw<'a> {
+    pub target: OpaqueTarget,
+    /// Of group 0.
+    pub layout: &'a wgpu::BindGroupLayout,
+    /// From camera-relative east-north-up to wgpu's clip space of these images.
+    pub clip: DMat4,
+}
+
+impl OpaqueDraw<'_> {
+    /// The clip space of `shot` as wgpu has it: z from 0 to 1, y by the first row's end.
+    pub fn clip_of(shot: &Shot<'_>) -> DMat4 {
+        let rows = shot.clip().transpose();
+        let (frame, w) = (shot.frame, rows.w_axis);
+        let z = match (frame.depth_mapping.kind, frame.depth_mapping.clip) {
+            // The fragment shader says the depth; nothing before the eye may be clipped.
+            (DepthKind::Logarithmic { .. }, _) => 0.5 * w,
+            (_, ClipSpace::MinusOneToOne) => 0.5 * (rows.z_axis + w),
+            (_, ClipSpace::ZeroToOne) => rows.z_axis,
+        };
+        let y = if frame.origin_bottom_left { -rows.y_axis } else { rows.y_axis };
+        DMat4::from_cols(rows.x_axis, y, z, w).transpose()
+    }
+}
