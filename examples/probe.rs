@@ -6,6 +6,9 @@
 //! probe rain-speed
 //! probe rain
 //! probe ice
+//! probe slab
+//! probe cover --genus NAME --okta 0..8 --seeds N
+//! probe lightning --rate FLASHES_A_MINUTE --hours H
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
@@ -22,7 +25,10 @@ const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model N
                      probe fog --visibility METRES < distances.csv\n       \
                      probe rain-speed < diameters.csv\n       \
                      probe rain < rates.csv\n       \
-                     probe ice < rates.csv";
+                     probe ice < rates.csv\n       \
+                     probe slab < slabs.csv\n       \
+                     probe cover --genus NAME --okta 0..8 --seeds N\n       \
+                     probe lightning --rate FLASHES_A_MINUTE --hours H";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -84,6 +90,29 @@ fn fog(rest: impl Iterator<Item = String>) -> Result<String> {
     welkin::fog::probe_csv(&*device()?, visibility, &input)
 }
 
+impl Options {
+    fn given(&self, name: &str) -> Result<&str> {
+        self.get(name).ok_or_else(|| usage(&format!("{name} is missing")))
+    }
+
+    fn number(&self, name: &str, most: f64) -> Result<f64> {
+        let text = self.given(name)?;
+        let value = text.parse::<f64>().ok().filter(|v| (0.0..=most).contains(v));
+        value.ok_or_else(|| usage(&format!("{name} must be a number from 0 to {most}, not {text:?}")))
+    }
+}
+
+fn cover(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--genus", "--okta", "--seeds"], rest)?;
+    let (okta, seeds) = (options.number("--okta", 8.0)?, options.number("--seeds", 1e4)?);
+    welkin::clouds::probe::cover_csv(options.given("--genus")?, okta / 8.0, seeds.max(1.0) as u64)
+}
+
+fn lightning(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--rate", "--hours"], rest)?;
+    welkin::lightning::probe::flashes_csv(options.number("--rate", 60.0)?, options.number("--hours", 1000.0)?)
+}
+
 fn run() -> Result<String> {
     let mut arguments = std::env::args().skip(1);
     let what = arguments.next().ok_or_else(|| usage("no question"))?;
@@ -95,6 +124,11 @@ fn run() -> Result<String> {
         "rain-speed" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::speed_csv(&read_input()?)),
         "rain" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::rain_csv(&read_input()?)),
         "ice" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::ice_csv(&read_input()?)),
+        "slab" => {
+            Options::parse(&[], arguments).and_then(|_| welkin::clouds::probe::slab_csv(&*device()?, &read_input()?))
+        }
+        "cover" => cover(arguments),
+        "lightning" => lightning(arguments),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }
 }

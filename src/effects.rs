@@ -14,6 +14,7 @@ use std::{
 
 use crate::{
     almanac::sun::Utc,
+    clouds::{CloudsView, HeldClouds},
     error::Result,
     fog::{self, FogUniform, FogView, HeldFog},
     glass::GlassView,
@@ -81,6 +82,7 @@ pub(crate) struct Held {
     pub fog: HeldFog,
     pub ground: HeldGround,
     pub stars: HeldStars,
+    pub clouds: HeldClouds,
 }
 
 /// The same as it was loaded.
@@ -88,6 +90,7 @@ pub(crate) struct LoadedHeld {
     fog: HeldFog,
     ground: LoadedGround,
     stars: HeldStars,
+    clouds: HeldClouds,
 }
 
 impl Held {
@@ -103,17 +106,18 @@ impl Held {
             fog: HeldFog::default(),
             ground: HeldGround::new(desc.ground, desc.seed),
             stars: HeldStars::default(),
+            clouds: HeldClouds::default(),
         })
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 3] {
-        [&mut self.fog, &mut self.ground, &mut self.stars]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 4] {
+        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 3] {
-        [&self.fog, &self.ground, &self.stars]
+    pub fn all(&self) -> [&dyn HeldEffect; 4] {
+        [&self.fog, &self.ground, &self.stars, &self.clouds]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -125,7 +129,8 @@ impl Held {
         let fog = HeldFog::read(state);
         let ground = self.ground.read(world, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
-        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars? })
+        let clouds = HeldClouds::read(state);
+        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds? })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -134,6 +139,7 @@ impl Held {
         world.set.undimmed = self.fog.law.is_some();
         self.ground.take_up(&mut other.ground);
         std::mem::swap(&mut self.stars, &mut other.stars);
+        std::mem::swap(&mut self.clouds, &mut other.clouds);
         world.night = self.stars.night();
     }
 }
@@ -166,12 +172,13 @@ pub(crate) struct Effects {
     pub rain: RainView,
     pub glass: GlassView,
     pub stars: StarsView,
+    pub clouds: CloudsView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
 }
 
 /// How many a view has.
-const COUNT: usize = if cfg!(test) { 7 } else { 6 };
+const COUNT: usize = if cfg!(test) { 8 } else { 7 };
 
 impl Effects {
     /// Those of a view.
@@ -186,6 +193,7 @@ impl Effects {
             rain: RainView::new(device, RainSettings::default()),
             glass: GlassView::new(shared),
             stars: StarsView::default(),
+            clouds: CloudsView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
         })
@@ -200,6 +208,7 @@ impl Effects {
             &mut self.rain,
             &mut self.glass,
             &mut self.stars,
+            &mut self.clouds,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -214,6 +223,7 @@ impl Effects {
             &self.rain,
             &self.glass,
             &self.stars,
+            &self.clouds,
             #[cfg(test)]
             &self.plane,
         ]
@@ -236,6 +246,7 @@ impl Effects {
         self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
         self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
+        self.clouds.gather(now, held.clouds.model)?;
         #[cfg(test)]
         self.plane.gather(now);
         let utc = world.utc_at(now.time_s);

@@ -8,6 +8,8 @@
 pub mod almanac;
 pub mod candidates;
 pub mod capi;
+pub mod chance;
+pub mod clouds;
 pub mod context;
 mod effects;
 pub mod error;
@@ -19,6 +21,7 @@ pub mod glass;
 pub mod gpu;
 pub mod ground;
 pub mod light;
+pub mod lightning;
 mod moment;
 pub mod noise;
 pub mod plan;

@@ -10,6 +10,8 @@ mod brute;
 mod canvas;
 #[path = "../examples/lab/chart.rs"]
 mod chart;
+#[path = "../examples/lab/clouds.rs"]
+mod clouds;
 #[path = "../examples/lab/command.rs"]
 mod command;
 #[path = "../examples/lab/compare.rs"]

@@ -8,6 +8,7 @@
 mod brute;
 mod canvas;
 mod chart;
+mod clouds;
 mod command;
 mod compare;
 mod fog;

@@ -10,21 +10,31 @@ override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
-// What stands behind the sky's own light, in the night floor's place: stars and the glow between them.
-@group(0) @binding(11) var behind: texture_2d<f32>;
+// A layer of the sky. Without clouds what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
+// With clouds these: their light with the exposure on it, and what they let through (clouds/).
+@group(0) @binding(11) var sky_layer: texture_2d<f32>;
 
+override CLOUDS: bool = false;
+// Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
+const CLOUD_STRAIGHT: f32 = 1.8;
 override STARS: bool = false;
 // The discs of sun and moon: the host has their light otherwise where it asks for the sky alone.
 override DISCS: bool = true;
 
-// Its texel, which several samples of a pixel share.
-var<private> behind_pixel: vec2i;
+// The texel of these layers, which several samples of a pixel share, and whether there is one: a cube map and the gauge have none, and
+// see a deck in the clouds' place.
+var<private> layer_pixel: vec2i;
+var<private> in_picture: bool;
+
+fn has_clouds() -> bool {
+    return CLOUDS && in_picture;
+}
 
 fn night_light() -> vec3f {
-    if !STARS || frame.behind.y == 0.0 {
+    if !STARS || CLOUDS || frame.behind.y == 0.0 {
         return frame.night_floor;
     }
-    let light = textureLoad(behind, behind_pixel, 0).rgb * frame.behind.x;
+    let light = textureLoad(sky_layer, layer_pixel, 0).rgb * frame.behind.x;
     return mix(frame.night_floor, light, frame.behind.y * drawn.z);
 }
 
@@ -37,11 +47,12 @@ fn ground_under_deck(path: SkyPath) -> vec3f {
 }
 
 fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
-    if (!CLEAR_SKY || DECK_CLOSED || drawn.z == 0.0) && d.z >= 0.0 {
-        return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), frame.deck_cover);
+    let deck_cover = select(frame.deck_cover, 0.0, has_clouds());
+    if (!CLEAR_SKY || (DECK_CLOSED && !has_clouds()) || drawn.z == 0.0) && d.z >= 0.0 {
+        return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), deck_cover);
     }
     let night = night_light();
-    if DECK_CLOSED {
+    if DECK_CLOSED && !has_clouds() {
         return ground_under_deck(path) + night;
     }
     let spectrum = sky_radiance_on(path, d);
@@ -52,10 +63,26 @@ fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
     // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
     var clear = color_of(spectrum);
     if DISCS {
-        clear += max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * frame.direct_share), vec3f(0.0));
+        let through = select(frame.direct_share, cloud_disc(), has_clouds());
+        clear += max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * through), vec3f(0.0));
     }
     clear = clear * drawn.z + night;
-    return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
+    return mix(clear, frame.deck * overcast_gradation(d.z), deck_cover);
+}
+
+// Share of a disc's light that gets through clouds straight, over what they let through with all that they scatter straight on.
+fn cloud_disc() -> f32 {
+    let left = textureLoad(sky_layer, layer_pixel, 0).a;
+    return pow(left, CLOUD_STRAIGHT - 1.0);
+}
+
+// Clouds before what is behind them.
+fn with_clouds(behind: Veil, sky: bool) -> Veil {
+    if !has_clouds() {
+        return behind;
+    }
+    let layer = textureLoad(sky_layer, layer_pixel, 0);
+    return Veil(behind.light * layer.a + layer.rgb / frame.exposure, behind.transmittance * layer.a);
 }
 
 // Display-linear value of scene luminance.
@@ -76,6 +103,7 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     } else if MEDIUM && !sky {
         veil = air_on(path, ray.direction);
     }
+    veil = with_clouds(veil, sky);
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
     }
@@ -94,7 +122,8 @@ fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
 
 fn compose(host: vec4f, seen: Seen) -> vec4f {
     drawn = frame.drawn;
-    behind_pixel = seen.pixel;
+    layer_pixel = seen.pixel;
+    in_picture = true;
     let ray = view_ray(frame.depth, seen.ndc);
     var veil = weather_over(ray, seen.range, seen.plane);
     veil = on_surface(veil, linear_host(host.rgb), ray, seen);

@@ -84,7 +84,7 @@ fn measured(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
 @fragment
 fn diagnose(in: FullscreenVarying) -> @location(0) vec4f {
     let pixel = vec2i(in.position.xy);
-    behind_pixel = pixel;
+    layer_pixel = pixel;
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
     var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
     if HAS_DEPTH {

@@ -52,7 +52,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
-pub use crate::moment::MAX_EXTINCTION_PER_M;
+pub use crate::{light::Phase, moment::MAX_EXTINCTION_PER_M};
 pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
 pub use probe::{probe, probe_csv};
 pub use queries::{
@@ -100,30 +100,6 @@ pub enum Profile {
         reference_m: f64,
         /// Scale height, m, \[1, 1e5\].
         scale_height_m: f64,
-    },
-}
-
-/// How the layer's particles scatter.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Phase {
-    /// Water droplets of this mean diameter, micrometres, \[5, 50\] (Jendersie and d'Eon 2023); fog has 10 to 25.
-    Droplets {
-        /// Mean diameter, micrometres.
-        diameter_um: f64,
-    },
-    /// Henyey and Greenstein (1941) with asymmetry g, \[-0.95, 0.95\]; haze and dust have 0.6 to 0.75.
-    HenyeyGreenstein {
-        /// Mean cosine of the scattering angle.
-        g: f64,
-    },
-    /// Lobes so far between those of droplets and of Henyey and Greenstein's function: what a change of weather passes through.
-    Between {
-        /// Mean diameter of the droplets, micrometres, \[5, 50\].
-        diameter_um: f64,
-        /// Asymmetry of the other, \[-0.95, 0.95\].
-        g: f64,
-        /// 0 droplets, 1 the other.
-        share: f64,
     },
 }
 

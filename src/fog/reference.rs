@@ -28,7 +28,8 @@ use glam::DVec3;
 use super::laws::DistanceKind;
 use super::light::Solution;
 use super::patterns::{Curtains, PATCH_WAVES, patch_mean};
-use super::phase::{PhaseLobes, fog_phase_after};
+use super::phase::fog_phase_after;
+use crate::light::PhaseLobes;
 use crate::scene::depth::RANGE_SKY_M;
 
 /// What a model does: the shader's switch.

@@ -5,10 +5,9 @@ use glam::DVec3;
 use super::laws::{Curve, DistanceKind};
 use super::light::{Slab, Solution, delta_scaling};
 use super::patterns::{CURTAIN_WAVES, Curtains, PATCH_WAVES};
-use super::phase::PhaseLobes;
 use super::reference::{FORWARD_SPREAD, FogKind, FogModel, Term, layer_depth_above};
 use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
-use crate::error::Result;
+use crate::{error::Result, light::PhaseLobes};
 
 /// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
 const WAVELENGTHS_NM: [f64; 3] = crate::light::EARTH_WAVELENGTHS_NM;

@@ -2,6 +2,7 @@
 //! name none.
 
 mod air;
+mod clouds;
 mod ground;
 mod rain;
 mod sky;

@@ -1,8 +1,10 @@
-//! Light in numbers that every room counts by: luminance, the three wavelengths, exposure and tone curves.
+//! Light in numbers that every room counts by: luminance, the three wavelengths, phase functions, exposure and tone curves.
 
+pub mod phase;
 pub mod spectrum;
 pub mod tone;
 
+pub use phase::{Phase, PhaseLobes};
 pub use tone::{Exposure, ToneCurve};
 
 /// The wavelengths that stand for red, green and blue by default, nm.

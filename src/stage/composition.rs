@@ -65,7 +65,8 @@ pub(crate) enum Texture {
     OnGround = 1,
     /// Heights and classes of the host's terrain.
     Terrain = 2,
-    /// What stands behind the sky's own light: radiance over [`FrameUniform::behind`].
+    /// What stands behind the sky's own light: radiance over [`FrameUniform::behind`]; or what hangs before it: light with the exposure on
+    /// it, and what it lets through.
     Behind = 3,
 }
 

@@ -172,6 +172,9 @@ impl CloudSlab {
             asymmetry: mix(self.asymmetry, to.asymmetry, q),
             convection: mix(self.convection, to.convection, q),
             ice_fraction: mix(self.ice_fraction, to.ice_fraction, q),
+            scale_m: mix(self.scale_m, to.scale_m, q),
+            cellular: mix(self.cellular, to.cellular, q),
+            fibre: mix(self.fibre, to.fibre, q),
         }
     }
 }

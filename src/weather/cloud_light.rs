@@ -5,40 +5,54 @@ use super::conditions::{CloudSlab, Conditions};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
-/// What a kind of cloud is made of, as means over its depth.
+/// What a kind of cloud is made of, as means over its depth, and how it looks.
 struct Substance {
     thickness_m: f64,
     water_g_m3: f64,
     droplet_radius_um: f64,
     convection: f64,
     ice_fraction: f64,
+    /// Distance from cloud to cloud over the thickness, for a layer of that thickness and near it.
+    spacing: f64,
+    cellular: f64,
+    fibre: f64,
 }
 
 /// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
 /// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4); tall clouds are diluted by entrainment, so their mean is below the core's
-/// 2.5 g/m^3; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas).
+/// 2.5 g/m^3; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of stratocumulus are
+/// some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud atlas).
 fn substance(kind: CloudKind) -> Substance {
-    let s = |thickness_m, water_g_m3, droplet_radius_um, convection, ice_fraction| Substance {
+    let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
+             convection,
+             ice_fraction,
+             [spacing, cellular, fibre]: [f64; 3]| Substance {
         thickness_m,
         water_g_m3,
         droplet_radius_um,
         convection,
         ice_fraction,
+        spacing,
+        cellular,
+        fibre,
     };
     match kind {
-        CloudKind::Stratus | CloudKind::Unknown => s(300.0, 0.2, 7.0, 0.0, 0.0),
-        CloudKind::Stratocumulus => s(400.0, 0.3, 8.0, 0.2, 0.0),
-        CloudKind::Cumulus => s(500.0, 0.5, 4.0, 0.5, 0.0),
-        CloudKind::ToweringCumulus => s(3000.0, 1.0, 10.0, 0.8, 0.1),
-        CloudKind::Cumulonimbus => s(9000.0, 0.6, 15.0, 1.0, 0.5),
-        CloudKind::Nimbostratus => s(3000.0, 0.3, 10.0, 0.0, 0.3),
-        CloudKind::Altocumulus => s(400.0, 0.1, 8.0, 0.3, 0.0),
-        CloudKind::Altostratus => s(1500.0, 0.05, 10.0, 0.0, 0.5),
-        CloudKind::Cirrus => s(1000.0, 0.005, 30.0, 0.1, 1.0),
-        CloudKind::Cirrostratus => s(1500.0, 0.01, 30.0, 0.0, 1.0),
-        CloudKind::Cirrocumulus => s(300.0, 0.01, 20.0, 0.3, 1.0),
+        CloudKind::Stratus | CloudKind::Unknown => s([300.0, 0.2, 7.0], 0.0, 0.0, [8.0, 0.0, 0.0]),
+        CloudKind::Stratocumulus => s([400.0, 0.3, 8.0], 0.2, 0.0, [3.5, 0.7, 0.0]),
+        CloudKind::Cumulus => s([500.0, 0.5, 4.0], 0.5, 0.0, [2.0, 0.0, 0.0]),
+        CloudKind::ToweringCumulus => s([3000.0, 1.0, 10.0], 0.8, 0.1, [1.5, 0.0, 0.0]),
+        CloudKind::Cumulonimbus => s([9000.0, 0.6, 15.0], 1.0, 0.5, [1.5, 0.0, 0.0]),
+        CloudKind::Nimbostratus => s([3000.0, 0.3, 10.0], 0.0, 0.3, [3.0, 0.0, 0.0]),
+        CloudKind::Altocumulus => s([400.0, 0.1, 8.0], 0.3, 0.0, [1.8, 1.0, 0.0]),
+        CloudKind::Altostratus => s([1500.0, 0.05, 10.0], 0.0, 0.5, [4.0, 0.0, 0.2]),
+        CloudKind::Cirrus => s([1000.0, 0.005, 30.0], 0.1, 1.0, [5.0, 0.0, 1.0]),
+        CloudKind::Cirrostratus => s([1500.0, 0.01, 30.0], 0.0, 1.0, [10.0, 0.0, 0.4]),
+        CloudKind::Cirrocumulus => s([300.0, 0.01, 20.0], 0.3, 1.0, [1.2, 1.0, 0.2]),
     }
 }
+
+/// How far from its kind's thickness a layer's clouds still grow wider or narrower with it.
+const WIDER: f64 = 3.0;
 
 /// Bases at which low, middle and high clouds divide, m (WMO levels of temperate latitudes).
 const MIDDLE_FROM_M: f64 = 2000.0;
@@ -95,6 +109,9 @@ fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64) -> CloudSla
         asymmetry: 0.85 + (0.77 - 0.85) * s.ice_fraction,
         convection: s.convection,
         ice_fraction: s.ice_fraction,
+        scale_m: s.spacing * thickness.clamp(s.thickness_m / WIDER, s.thickness_m * WIDER),
+        cellular: s.cellular,
+        fibre: s.fibre,
     }
 }
 

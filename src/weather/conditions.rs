@@ -155,6 +155,20 @@ pub struct CloudSlab {
     pub convection: f64,
     /// Part of the water that is ice, 0 to 1.
     pub ice_fraction: f64,
+    /// Distance from cloud to cloud, m.
+    #[serde(default = "common_scale")]
+    pub scale_m: f64,
+    /// How far the layer is broken into cells side by side, 0 to 1: stratocumulus and altocumulus.
+    #[serde(default)]
+    pub cellular: f64,
+    /// How far it is drawn out into fibres, 0 to 1: cirrus.
+    #[serde(default)]
+    pub fibre: f64,
+}
+
+/// Distance from cloud to cloud in states that were saved without one, m.
+fn common_scale() -> f64 {
+    CloudSlab::NONE.scale_m
 }
 
 /// The host's own cloud light. `weight` 0: the slabs decide; 1: these figures do.
@@ -286,6 +300,9 @@ impl CloudSlab {
         asymmetry: 0.85,
         convection: 0.0,
         ice_fraction: 0.0,
+        scale_m: 1500.0,
+        cellular: 0.0,
+        fibre: 0.0,
     };
 
     /// Top above the station, m.

@@ -28,7 +28,7 @@ pub(crate) use held::{HeldEffect, Within};
 pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};
-pub(crate) use scene::{night_share, zenith_depth};
+pub(crate) use scene::{light_above_clouds, night_share, zenith_depth};
 
 use crate::{
     almanac::{

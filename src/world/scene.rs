@@ -98,6 +98,18 @@ fn clear_light(
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
+/// Light above all clouds at a height over a scene's place, lux a channel: direct on what faces the light that is brighter here, and
+/// of the sky on level ground, with the night's floor.
+pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
+    let one = |light: &Light| {
+        let elevation = light.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
+        clear_light((&scene.planet, &scene.color), altitude_m, elevation, light.spectrum)
+    };
+    let ((sun, sun_sky), (moon, moon_sky)) = (one(&scene.sun), one(&scene.moon));
+    let direct = if scene.brighter() == &scene.sun { sun } else { moon };
+    (direct, [0, 1, 2].map(|i| sun_sky[i] + moon_sky[i] + PI * scene.night_floor_cd_m2[i]))
+}
+
 /// What is looked at: grey ground under `total` lux and a share of the sky. With the sun near the horizon the part of
 /// the sky round it is many times brighter than the mean, and it is what pictures then show; above the air it is the
 /// sunlit planet, whatever the sun's height over the place.

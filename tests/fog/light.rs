@@ -1,9 +1,9 @@
 //! Light in the layer against adding and doubling: how wrong the radiance may be.
 
 use glam::DVec3;
-use welkin::fog::phase::{PhaseLobes, fog_phase};
 use welkin::fog::reference::{FogModel, fog_along};
 use welkin::fog::{FogLayer, FogLight, Law, Phase, Profile, Viewpoint};
+use welkin::light::phase::{PhaseLobes, lobes_phase};
 use welkin::scene::depth::RANGE_SKY_M;
 
 use super::slab::{self, Case, N};
@@ -40,7 +40,7 @@ fn droplet_moments(lobes: &PhaseLobes) -> Vec<f64> {
     for i in 0..n {
         let v = (lo + (hi - lo) * (i as f64 + 0.5) / n as f64).exp();
         let c = 1.0 - v;
-        let w = fog_phase(lobes, 1.0, v) * 2.0 * std::f64::consts::PI * v * (hi - lo) / n as f64;
+        let w = lobes_phase(lobes, 1.0, v) * 2.0 * std::f64::consts::PI * v * (hi - lo) / n as f64;
         let (mut p0, mut p1) = (1.0, c);
         out[0] += w;
         for (l, o) in out.iter_mut().enumerate().skip(1) {

@@ -101,8 +101,12 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
             asymmetry,
             convection,
             ice_fraction,
+            scale_m,
+            cellular,
+            fibre,
         } = slab;
         out.extend([cover, base_m, thickness_m, optical_depth, droplet_radius_um, asymmetry, convection, ice_fraction]);
+        out.extend([scale_m, cellular, fibre]);
     }
     let WindProfile {
         east_m_s,

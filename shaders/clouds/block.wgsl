@@ -1,0 +1,44 @@
+// What a frame knows of its clouds: CloudsUniform of src/clouds/uniforms.rs.
+
+const CLOUD_LAYERS: u32 = 16u;
+
+struct CloudLayer {
+    // Altitude of the base, m; 1/thickness, 1/m; 1/distance from cloud to cloud, 1/m; extinction inside, 1/m.
+    size: vec4f,
+    // Threshold of the map, dome, how far edges fray, 1/softness.
+    shape: vec4f,
+    // Where the camera stands on the map's first and second sheet, in their periods.
+    sheets: vec4f,
+    // Where it stands in the solid noise, in its period (up: of the layer's base); share of the cellular pattern.
+    solid: vec4f,
+    // Light of the lamp on what faces it, lux times exposure.
+    sun: vec4f,
+    // Radiance of sky and higher clouds above it, cd/m^2 times exposure.
+    above: vec4f,
+    // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
+    below: vec4f,
+    // Which medium's tables are its own; scaled extinction over extinction.
+    medium: vec4f,
+}
+
+struct CloudMedium {
+    // Phase function: asymmetry of the Henyey-Greenstein lobe and of Draine's, Draine's alpha, weight of Draine's.
+    lobes: vec4f,
+    // Share of scattering counted as straight on; 1/sr above which the phase function is cut off; 1 - asymmetry of the rest; albedo of the rest.
+    rest: vec4f,
+}
+
+struct CloudsUniform {
+    // Unit, towards the lamp that lights them, (east, north, up) at the camera; number of layers.
+    to_sun: vec3f,
+    layer_count: u32,
+    // Altitude of the camera, m; radius of the planet's ground, m; jitter of the first step.
+    altitude: f32,
+    radius: f32,
+    jitter: f32,
+    unused: f32,
+    media: array<CloudMedium, 2>,
+    layers: array<CloudLayer, 16>,
+}
+
+@group(0) @binding(1) var<uniform> clouds: CloudsUniform;

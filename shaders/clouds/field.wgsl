@@ -1,0 +1,70 @@
+// Where there is cloud. Twin of src/clouds/field.rs, where the model is described.
+//!include "clouds/block.wgsl"
+
+@group(0) @binding(2) var cloud_map: texture_2d<f32>;
+@group(0) @binding(3) var cloud_solid: texture_3d<f32>;
+@group(0) @binding(5) var cloud_sampler: sampler;
+
+const MAP_CELLS: f32 = 16.0;
+const SECOND_PERIOD: f32 = 1.618034;
+const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
+const SOLID_CELLS: f32 = 1.5;
+// Its mean, and one over the range of nearly all of it.
+const SOLID_MEAN: f32 = 0.47;
+const SOLID_GAIN: f32 = 2.2;
+// Most that it adds to the excess, over how far it frays.
+const MOST_FRAYED: f32 = 0.8;
+// Slope of the map, a cell: its own, and the steepest.
+const MAP_SLOPE: f32 = 4.0;
+const STEEPEST: f32 = 9.0;
+
+// A place in a layer: metres east and north of the camera, and height, 0 at the base to 1 at the top.
+struct CloudPlace {
+    level: vec2f,
+    height: f32,
+}
+
+// The map's number.
+fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
+    let cell = level * layer.size.z / MAP_CELLS;
+    let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
+    let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0.0);
+    let second = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.zw + turned / SECOND_PERIOD, 0.0);
+    let c = layer.solid.w;
+    let scale = inverseSqrt(2.0 * (c * c + (1.0 - c) * (1.0 - c)));
+    return ((first.x + second.y) * (1.0 - c) + (first.z + second.w) * c) * scale;
+}
+
+// Excess that a place needs at a height: a flat base with round edges, and a dome.
+fn cloud_dome(layer: CloudLayer, height: f32) -> f32 {
+    let edge = max(1.0 - height / 0.08, 0.0);
+    return layer.shape.y * height * height + 0.25 * edge * edge;
+}
+
+// What the solid noise adds to the excess.
+fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
+    let scale = layer.size.z / SOLID_CELLS;
+    let solid = vec3f(at.level * scale, at.height / layer.size.y * scale) + layer.solid.xyz;
+    return layer.shape.z * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, 0.0).r - SOLID_MEAN);
+}
+
+// Extinction, 1/m, of a frayed excess over threshold and dome.
+fn cloud_extinction(layer: CloudLayer, excess: f32) -> f32 {
+    return layer.size.w * clamp(excess * layer.shape.w, 0.0, 1.0);
+}
+
+// Height of full extinction below a height in a column of this excess, of 1.
+fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
+    let d = max(layer.shape.y, 1e-3);
+    let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));
+    let x = clamp(height, ends.x, ends.y);
+    let ramp = (excess - d * vec2f(x * x, ends.x * ends.x) / 3.0) * vec2f(x, ends.x) * layer.shape.w;
+    return min(height, ends.x) + max(ramp.x - ramp.y, 0.0);
+}
+
+// Metres of full extinction above and below a place of this excess over the threshold, and level to the edge of its cloud.
+fn cloud_about(layer: CloudLayer, excess: f32, height: f32) -> vec3f {
+    let below = cloud_filled(layer, excess, height);
+    let above = cloud_filled(layer, excess, 1.0) - below;
+    return vec3f(vec2f(above, below) / layer.size.y, max(excess, 0.0) / (MAP_SLOPE * layer.size.z));
+}

@@ -1,0 +1,139 @@
+// What a place in a cloud scatters towards an eye. Twin of src/clouds/light.rs, where the model is described.
+//!include "clouds/block.wgsl"
+
+// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other.
+@group(0) @binding(4) var cloud_tables: texture_2d<f32>;
+@group(0) @binding(6) var cloud_table_sampler: sampler;
+
+const CLOUD_DEPTHS: f32 = 28.0;
+const CLOUD_LEAKS: f32 = 16.0;
+const CLOUD_THINNEST: f32 = 0.05;
+const CLOUD_PI: f32 = 3.1415927;
+const PART_RATE: f32 = 1.5;
+
+// Scaled depths of cloud about a place.
+struct CloudDepths {
+    above: f32,
+    below: f32,
+    to_sun: f32,
+    near: f32,
+    far: f32,
+    left: f32,
+    right: f32,
+}
+
+// Per unit of the sun's irradiance facing it, of the sky's and of the ground's radiance.
+struct CloudScattered {
+    sun: f32,
+    sky: f32,
+    ground: f32,
+}
+
+fn cloud_depth_place(depth: f32) -> f32 {
+    let x = select(1.0 + 2.0 * log2(max(depth, CLOUD_THINNEST) / CLOUD_THINNEST), depth / CLOUD_THINNEST, depth < CLOUD_THINNEST);
+    return clamp(x, 0.0, CLOUD_DEPTHS - 1.0);
+}
+
+// Place of a leak among those that there are tables for.
+fn cloud_leak_place(leak: f32) -> f32 {
+    return min(4.0 * log(1.0 + sqrt(leak) / 0.03), CLOUD_LEAKS - 1.0);
+}
+
+// Rate at which light leaves a box from side to side along two axes.
+fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
+    let b = CLOUD_PI / (widths + 1.42 / turning);
+    return dot(b, b) / (3.0 * turning);
+}
+
+// A table's source terms.
+fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> vec4f {
+    let size = vec2f(3.0 * CLOUD_DEPTHS, 2.0 * CLOUD_LEAKS * CLOUD_DEPTHS);
+    let place = cloud_leak_place(leak);
+    let first = min(floor(place), CLOUD_LEAKS - 2.0);
+    let x = table * CLOUD_DEPTHS + 0.5 + cloud_depth_place(above);
+    let y = (medium * CLOUD_LEAKS + first) * CLOUD_DEPTHS + 0.5 + cloud_depth_place(below);
+    let a = textureSampleLevel(cloud_tables, cloud_table_sampler, vec2f(x, y) / size, 0.0);
+    let b = textureSampleLevel(cloud_tables, cloud_table_sampler, vec2f(x, y + CLOUD_DEPTHS) / size, 0.0);
+    return mix(a, b, place - first);
+}
+
+fn cloud_legendre(terms: vec4f, x: f32) -> f32 {
+    return dot(terms, vec4f(1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x));
+}
+
+// The cosine that light follows from side to side of a box, of mean 1, and its slope.
+fn cloud_across(near: f32, far: f32, turning: f32) -> vec2f {
+    let width = max(near + far, 1e-3);
+    let b = CLOUD_PI / (width + 1.42 / turning);
+    let half = 0.5 * b * width;
+    let off = 0.5 * b * (near - far);
+    let mean = sin(half) / half;
+    return vec2f(cos(off), -b * sin(off)) / mean;
+}
+
+// The two lobes of a phase function, 1/sr, at the angle whose 1 - cos is `versine`.
+fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
+    let g = medium.lobes.xy;
+    let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
+    let lobe = (1.0 - g * g) / (d * sqrt(d));
+    let alpha = medium.lobes.z;
+    let c = 1.0 - versine;
+    let draine = lobe.y * (1.0 + alpha * c * c) / (1.0 + alpha * (1.0 + 2.0 * g.y * g.y) / 3.0);
+    return mix(lobe.x, draine, medium.lobes.w) / (4.0 * CLOUD_PI);
+}
+
+// Terms of a table with what goes from side to side along two further axes: (cosine and slope, direction along the axis) each.
+fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
+    let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
+    return cloud_legendre(terms, axis) * one.x * other.x - spread * terms.x * leaves;
+}
+
+// `direction` is the way that light goes, through so much more cloud (scaled) to the eye.
+fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye: f32) -> CloudScattered {
+    let medium = clouds.media[u32(medium_index)];
+    let turning = medium.rest.z;
+    let albedo = medium.rest.w;
+    let sun = clouds.to_sun;
+    let sine = length(sun.xy);
+    let cosine = max(abs(sun.z), 0.01);
+    let level = select(vec2f(1.0, 0.0), -sun.xy / max(sine, 1e-6), sine > 1e-6);
+    let along = dot(direction.xy, level);
+    let sideways = dot(direction.xy, vec2f(-level.y, level.x));
+    let day = sun.z >= 0.0;
+    let above = select(at.below, at.above, day);
+    let below = select(at.above, at.below, day);
+    let down = select(direction.z, -direction.z, day);
+
+    let a = vec3f(cloud_across(at.near, at.far, turning), along);
+    let c = vec3f(cloud_across(at.left, at.right, turning), sideways);
+    let u = vec3f(cloud_across(above, below, turning), down);
+    let widths = vec3f(at.near + at.far, at.left + at.right, above + below);
+    let spread = (1.0 - turning) / turning;
+    let leak = cloud_leak(widths.xy, turning);
+    let rate = PART_RATE * turning;
+    let by_top = exp(-rate * above / cosine);
+    let by_side = select(0.0, exp(-rate * at.near / max(sine, 1e-6)), sine > 1e-6);
+    let both = max(by_top + by_side, 1e-12);
+    let share = min(exp(-rate * at.to_sun) / both, 1.0);
+    let top = cloud_through(cloud_table(0.0, medium_index, above, below, leak), down, a, c, spread);
+    let side_terms = cloud_table(1.0, medium_index, at.near, at.far, cloud_leak(widths.zy, turning));
+    let side = select(0.0, cloud_through(side_terms, along, u, c, spread), sine > 1e-6);
+    let momentum = exp(-turning * at.to_sun) - exp(-at.to_sun);
+    let kept = albedo * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum;
+    let level_kept = kept * (by_top * sine * along + by_side * cosine * down) / both;
+    let versine = 1.0 + dot(direction, sun);
+    let phase = cloud_phase(medium, versine);
+    let smooth_phase = min(phase, medium.rest.y) / (1.0 - medium.rest.x);
+    // Light round the sun: of what the beam counts as straight on, the part that is scattered so.
+    let forward = medium.rest.x * (at.to_sun + to_eye) / (1.0 - medium.rest.x);
+    let share_forward = select((1.0 - exp(-forward)) / forward, 1.0 - 0.5 * forward, forward < 1e-3);
+    let peak = max(phase - medium.rest.y, 0.0) / (1.0 - medium.rest.x) * share_forward;
+    let once = albedo * (smooth_phase + peak) * exp(-at.to_sun);
+
+    var out: CloudScattered;
+    let often = share * (max(top, 0.0) + max(side, 0.0));
+    out.sun = once + often + clamp(level_kept, -often, often);
+    out.sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);
+    out.ground = max(cloud_through(cloud_table(2.0, medium_index, at.below, at.above, leak), direction.z, a, c, spread), 0.0);
+    return out;
+}

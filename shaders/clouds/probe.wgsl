@@ -1,0 +1,41 @@
+// Light that leaves a box of even cloud through its sides, by the march of the picture (with about_box.wgsl in about.wgsl's place). Six
+// tiles side by side, one a face (x low, x high, y low, y high, base, top), of one ray a pixel; directions are spread as the cosine.
+//!include "common/fullscreen.wgsl"
+//!include "clouds/march.wgsl"
+//!include "clouds/box.wgsl"
+
+const PROBE_SIDE: u32 = 64u;
+
+// A spread of points over the unit cube (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+fn spread(i: u32) -> vec4f {
+    return fract(vec4f(0.5) + f32(i) * vec4f(0.8566749, 0.7338919, 0.6287067, 0.5385973));
+}
+
+@fragment
+fn box_probe(in: FullscreenVarying) -> @location(0) vec4f {
+    let layer = clouds.layers[0];
+    let pixel = vec2u(in.position.xy);
+    let face = pixel.x / PROBE_SIDE;
+    let p = spread(pixel.y * PROBE_SIDE + pixel.x % PROBE_SIDE);
+    let sides = box_sides(layer);
+    let axis = face / 2u;
+    let sine = sqrt(p.z);
+    let azimuth = 2.0 * CLOUD_PI * p.w;
+    // Out of the face, and along it.
+    let out = vec3f(sine * cos(azimuth), sine * sin(azimuth), sqrt(1.0 - p.z) * select(-1.0, 1.0, face % 2u == 1u));
+    let on = vec3f(p.xy, f32(face % 2u));
+    var away = out;
+    var at = on;
+    if axis == 0u {
+        away = out.zxy;
+        at = on.zxy;
+    } else if axis == 1u {
+        away = out.yzx;
+        at = on.yzx;
+    }
+    box_origin = at * sides;
+    let length = box_exit(clamp(box_origin, 1e-4 * sides, (1.0 - 1e-4) * sides), sides, -away);
+    let none = CloudMarch(vec3f(0.0), 1.0, 0.0);
+    let seen = cloud_layer_along(layer, -away, 0.0, length, none, 0.5);
+    return vec4f(seen.light.rgb, seen.transmittance);
+}

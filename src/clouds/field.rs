@@ -1,0 +1,180 @@
+//! Where there is cloud: the extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`.
+//!
+//! # Model
+//! A map over the plane says how strongly cloud grows at a place, as a number z that is spread normally about 0: two sheets of noise, each
+//! made normal by ranks, whose periods have no common multiple, so that no tile shows. Cloud is where z exceeds a threshold that
+//! follows from the cover ([`super::cover`]); how far it exceeds it says how high the cloud grows there. Solid noise frays its edges.
+//! The two sheets glide against each other, which makes clouds form and dissolve, without end and as a function of time alone.
+//!
+//! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that of the layer times
+//! (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1.
+
+use glam::{DMat2, DVec2, DVec3};
+
+/// Texels of the map along a side.
+pub const MAP_SIZE: usize = 256;
+/// Largest number that the map holds.
+pub const MAP_REACH: f64 = 4.0;
+/// Cells of cloud along the map's side.
+pub const MAP_CELLS: f64 = 16.0;
+/// Period of the second sheet over that of the first, and its turn: no whole numbers of one are a whole number of the other.
+pub(super) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
+pub(super) const SECOND_TURN_RAD: f64 = 0.9;
+pub(super) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
+/// Cells of cloud along the side of the solid noise.
+pub const SOLID_CELLS: f64 = 1.5;
+/// Mean of the solid noise, and one over the range of nearly all of it.
+const SOLID_MEAN: f64 = 0.47;
+const SOLID_GAIN: f64 = 2.2;
+
+/// Most that the solid noise adds to the excess, over how far it frays: nearly all of it.
+const MOST_FRAYED: f64 = 0.8;
+
+/// How the clouds of one layer are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// Base above the sea, m.
+    pub base_m: f64,
+    /// Thickness, m.
+    pub thickness_m: f64,
+    /// Distance from cloud to cloud, m.
+    pub scale_m: f64,
+    /// Extinction inside, 1/m.
+    pub extinction_per_m: f64,
+    /// Of the map, above which there is cloud.
+    pub threshold: f64,
+    /// Excess at which a cloud reaches the layer's top: large for heaps, small for sheets.
+    pub dome: f64,
+    /// How far the solid noise frays the edges.
+    pub rough: f64,
+    /// Excess over which cloud becomes dense.
+    pub soft: f64,
+    /// Share of the map's cellular pattern, 0 to 1.
+    pub cellular: f64,
+    /// How far the wind has carried the layer (east, north), m.
+    pub drift_m: DVec2,
+    /// How far the second sheet has glided against the first, in cells.
+    pub evolution: DVec2,
+}
+
+/// The map's texels: two sheets of even noise, and two of a cellular kind.
+pub struct Map(pub Vec<[f32; 4]>);
+
+/// Solid noise, a byte a texel.
+pub struct Solid {
+    /// Texels along a side.
+    pub size: usize,
+    /// Its texels, east fastest.
+    pub texels: Vec<u8>,
+}
+
+fn wrapped(x: f64, size: usize) -> (usize, usize, f64) {
+    let x = (x * size as f64 - 0.5).rem_euclid(size as f64);
+    let i = (x as usize).min(size - 1);
+    (i, (i + 1) % size, x - i as f64)
+}
+
+impl Map {
+    /// Between its texels; `at` in periods.
+    pub fn at(&self, at: DVec2) -> [f64; 4] {
+        let (i0, i1, x) = wrapped(at.x, MAP_SIZE);
+        let (j0, j1, y) = wrapped(at.y, MAP_SIZE);
+        let texel = |i: usize, j: usize| self.0[j * MAP_SIZE + i];
+        let (a, b, c, d) = (texel(i0, j0), texel(i1, j0), texel(i0, j1), texel(i1, j1));
+        [0, 1, 2, 3].map(|k| {
+            let low = f64::from(a[k]) * (1.0 - x) + f64::from(b[k]) * x;
+            let high = f64::from(c[k]) * (1.0 - x) + f64::from(d[k]) * x;
+            low * (1.0 - y) + high * y
+        })
+    }
+}
+
+impl Solid {
+    /// Between its texels, 0 to 1; `at` in periods.
+    pub fn at(&self, at: DVec3) -> f64 {
+        let [x, y, z] = [at.x, at.y, at.z].map(|v| wrapped(v, self.size));
+        let texel = |i: usize, j: usize, k: usize| f64::from(self.texels[(k * self.size + j) * self.size + i]) / 255.0;
+        let row = |j: usize, k: usize| texel(x.0, j, k) * (1.0 - x.2) + texel(x.1, j, k) * x.2;
+        let sheet = |k: usize| row(y.0, k) * (1.0 - y.2) + row(y.1, k) * y.2;
+        sheet(z.0) * (1.0 - z.2) + sheet(z.1) * z.2
+    }
+}
+
+/// A layer's clouds.
+pub struct Field<'a> {
+    /// How they are made.
+    pub shape: Shape,
+    /// Where they grow.
+    pub map: &'a Map,
+    /// What frays their edges.
+    pub solid: &'a Solid,
+}
+
+/// Excess that a place needs at a height, 0 at the base to 1 at the top: a flat base with round edges, and a dome.
+pub fn dome(shape: &Shape, height: f64) -> f64 {
+    let edge = (1.0 - height / 0.08).max(0.0);
+    shape.dome * height * height + 0.25 * edge * edge
+}
+
+impl Field<'_> {
+    /// The map's number at a place, m east and north of the world's origin.
+    pub fn strength(&self, place_m: DVec2) -> f64 {
+        let s = &self.shape;
+        let cell = (place_m - s.drift_m) / s.scale_m;
+        let first = self.map.at(cell / MAP_CELLS);
+        let turned = DMat2::from_angle(SECOND_TURN_RAD) * (cell - s.evolution);
+        let second = self.map.at(turned / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET);
+        let c = s.cellular;
+        let scale = 1.0 / (2.0 * (c * c + (1.0 - c) * (1.0 - c))).sqrt();
+        ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
+    }
+
+    /// Extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
+    pub fn extinction_per_m(&self, position_m: DVec3) -> f64 {
+        let s = &self.shape;
+        let height = (position_m.z - s.base_m) / s.thickness_m;
+        if !(0.0..=1.0).contains(&height) {
+            return 0.0;
+        }
+        let excess = self.strength(position_m.truncate()) - s.threshold - dome(s, height);
+        if excess < -MOST_FRAYED * s.rough {
+            return 0.0;
+        }
+        let at = (position_m - s.drift_m.extend(s.base_m)) / (s.scale_m * SOLID_CELLS);
+        let frayed = excess + s.rough * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN);
+        s.extinction_per_m * (frayed / s.soft).clamp(0.0, 1.0)
+    }
+}
+
+/// Slope of the map, a cell: so far is a place from its cloud's edge as its excess is over that.
+const MAP_SLOPE: f64 = 4.0;
+
+/// What there is of a cloud above and below a place, and to its sides, in metres of its full extinction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct About {
+    /// Straight up.
+    pub above_m: f64,
+    /// Straight down.
+    pub below_m: f64,
+    /// Level, to the nearer edge.
+    pub edge_m: f64,
+}
+
+/// Height, of 1, of full extinction below a height in a column of this excess.
+fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
+    let d = shape.dome.max(1e-3);
+    let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);
+    let (full, end) = (reach(excess - shape.soft), reach(excess));
+    let ramp = |x: f64| (excess - d * x * x / 3.0) * x / shape.soft;
+    height.min(full) + (ramp(height.clamp(full, end)) - ramp(full)).max(0.0)
+}
+
+/// The cloud about a place of this excess (over the threshold alone) and height, frayed edges left out.
+pub fn about(shape: &Shape, excess: f64, height: f64) -> About {
+    let below = filled_below(shape, excess, height);
+    About {
+        above_m: (filled_below(shape, excess, 1.0) - below) * shape.thickness_m,
+        below_m: below * shape.thickness_m,
+        edge_m: excess.max(0.0) / MAP_SLOPE * shape.scale_m,
+    }
+}

@@ -1,0 +1,137 @@
+//! What a place in a cloud scatters towards an eye. Twin of `shaders/clouds/light.wgsl`.
+//!
+//! # Model
+//! A place knows how much cloud lies about it: above and below, towards the sun and, level, to either side. As far as light is
+//! concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function. Light scattered more often
+//! comes from the tables of [`super::transport`]: one for the beam that falls on the box's top, one for what falls on the side
+//! that faces the sun, one each for sky and ground. Side to side, light goes as the cosine whose leak the tables were made with. Top and
+//! side share the beam: of a place the sun's rays reach through that of the two which they pass through first, so each
+//! counts by exp(-1.5 (1 - g') depth) over the sum of both. What beam and first scatterings keep of their level momentum,
+//! exp(-(1 - g') s) - exp(-s), is added to the first moment (van de Hulst 1980).
+//!
+//! # Error
+//! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident flux of a path tracer's:
+//! `cargo test --lib clouds::light`.
+
+use glam::DVec3;
+
+use super::transport::{Scattering, Table, leak_rate, table_at};
+
+/// How fast the faces' shares of the beam part, over the rate at which light turns. Of 0.05 to 4 the value at which cubes of depth 4 to 64
+/// neither lose nor create light (path tracer, sun at 37 to 78 degrees).
+const PART_RATE: f64 = 1.5;
+
+/// Scaled depths of cloud about a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depths {
+    /// Straight up.
+    pub above: f64,
+    /// Straight down.
+    pub below: f64,
+    /// Along the way to the sun.
+    pub to_sun: f64,
+    /// Level, to the side where the sun stands.
+    pub near: f64,
+    /// Level, the other way.
+    pub far: f64,
+    /// Level, across the sun's direction, to the nearer side.
+    pub left: f64,
+    /// Likewise the other way.
+    pub right: f64,
+}
+
+/// Source terms of one medium under one sun.
+pub struct Sources {
+    /// The medium.
+    pub scattering: Scattering,
+    /// Unit, towards the sun; (east, north, up).
+    pub to_sun: DVec3,
+    /// Under the beam on the top; on the underside where the sun is below the horizon.
+    pub top: Table,
+    /// Under the beam on the side.
+    pub side: Table,
+    /// Under a sky of radiance 1.
+    pub sky: Table,
+}
+
+/// What a place scatters, 1/sr and of 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scattered {
+    /// Of the sun's irradiance on what faces it.
+    pub sun: f64,
+    /// Of the sky's radiance.
+    pub sky: f64,
+    /// Of the ground's radiance.
+    pub ground: f64,
+}
+
+fn legendre_sum(terms: [f64; 4], x: f64) -> f64 {
+    terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3]
+}
+
+/// The cosine that light follows from side to side of a box, of mean 1, and its slope along the axis.
+fn across(near: f64, far: f64, turning: f64) -> (f64, f64) {
+    let width = (near + far).max(1e-3);
+    let b = std::f64::consts::PI / (width + 1.42 / turning);
+    let (half, off) = (0.5 * b * width, 0.5 * b * (near - far));
+    let mean = half.sin() / half;
+    (off.cos() / mean, -b * off.sin() / mean)
+}
+
+impl Sources {
+    /// What a place at these depths scatters into `direction` (the way light goes; (east, north, up)), through the scaled depth `to_eye`
+    /// of more cloud.
+    pub fn scattered(&self, at: &Depths, direction: DVec3, to_eye: f64) -> Scattered {
+        let of = &self.scattering;
+        let turning = of.turning();
+        let (sun, up) = (self.to_sun, direction.z);
+        let (sine, cosine) = (sun.truncate().length(), sun.z.abs().max(0.01));
+        // Light goes away from the sun.
+        let level = if sine > 1e-6 { -sun.truncate() / sine } else { glam::DVec2::X };
+        let along = direction.truncate().dot(level);
+        let sideways = direction.truncate().dot(glam::DVec2::new(-level.y, level.x));
+        let straight = -direction.dot(sun);
+        let (above, below) = if sun.z >= 0.0 { (at.above, at.below) } else { (at.below, at.above) };
+        let down = if sun.z >= 0.0 { -up } else { up };
+
+        // A box of which one axis is upright, one along the sun's level direction, one across.
+        let (shape_a, slope_a) = across(at.near, at.far, turning);
+        let (shape_c, slope_c) = across(at.left, at.right, turning);
+        let (shape_u, slope_u) = across(above, below, turning);
+        let (a, c, u) = (at.near + at.far, at.left + at.right, above + below);
+        let leak = leak_rate([a, c], turning);
+        let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
+        let through = |terms: [f64; 4], axis: f64, sides: [((f64, f64), f64); 2]| {
+            let [((s1, d1), x1), ((s2, d2), x2)] = sides;
+            // The first term is the mean radiance times what of it is scattered.
+            let mean = terms[0] / of.scaled_albedo() * 4.0 * std::f64::consts::PI;
+            legendre_sum(terms, axis) * s1 * s2 - spread * mean * (d1 * s2 * x1 + d2 * s1 * x2)
+        };
+        let (sides_a, sides_c) = (((shape_a, slope_a), along), ((shape_c, slope_c), sideways));
+        let sides_u = ((shape_u, slope_u), down);
+
+        let rate = PART_RATE * turning;
+        let by_top = (-rate * above / cosine).exp();
+        let by_side = if sine > 1e-6 { (-rate * at.near / sine).exp() } else { 0.0 };
+        let both = (by_top + by_side).max(1e-12);
+        let share = ((-rate * at.to_sun).exp() / both).min(1.0);
+        let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);
+        let side_leak = leak_rate([u, c], turning);
+        let side = through(table_at(&self.side, at.near, at.far, side_leak), along, [sides_u, sides_c]);
+        let side = if sine > 1e-6 { side } else { 0.0 };
+        let momentum = (-turning * at.to_sun).exp() - (-at.to_sun).exp();
+        let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * std::f64::consts::PI) * momentum;
+        let level_kept = kept * (by_top * sine * along + by_side * cosine * down) / both;
+        let once = of.scaled_albedo()
+            * (of.smooth_phase(1.0 - straight) + of.peak(1.0 - straight, at.to_sun + to_eye))
+            * (-at.to_sun).exp();
+        let often = share * (top.max(0.0) + side.max(0.0));
+
+        let sky_terms = |one: f64, other: f64| table_at(&self.sky, one, other, leak);
+        Scattered {
+            sun: once + often + level_kept.clamp(-often, often),
+            sky: through(sky_terms(at.above, at.below), -up, [sides_a, sides_c]).max(0.0),
+            ground: through(sky_terms(at.below, at.above), up, [sides_a, sides_c]).max(0.0),
+        }
+    }
+}

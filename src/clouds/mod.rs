@@ -1,0 +1,58 @@
+//! Clouds: layers of a volume that one can fly through, or the grey deck in their place.
+//!
+//! # Model
+//! * Where there is cloud, [`field`]: a map that says how strongly cloud grows, fixed to the air that carries it, and solid noise that
+//!   frays its edges; [`cover`] finds how much of the map is cloud where a cover is asked for.
+//! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box of the depths about
+//!   a place. [`mod@reference`] follows photons.
+//! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
+//!
+//! The deck is drawn by the composition itself (`shaders/frame/composite.wgsl`).
+//!
+//! # Error
+//! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of what falls on the cube
+//! (`cargo test --lib clouds::probe -- --nocapture`). Of the cover that is seen: 3 points (`clouds::cover`).
+//!
+//! # What is not here
+//! No parts for the plan and no candidates for the lab: the volume is not the default before it is cheap enough.
+
+pub mod cover;
+pub mod field;
+mod held;
+pub mod light;
+pub mod map;
+mod passes;
+pub mod probe;
+pub mod reference;
+mod shape;
+pub mod transport;
+mod uniforms;
+mod view;
+
+use serde::{Deserialize, Serialize};
+
+pub(crate) use held::HeldClouds;
+pub(crate) use view::CloudsView;
+
+/// How clouds are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CloudModel {
+    /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The default, and the
+    /// cheapest.
+    #[default]
+    Deck,
+    /// Layers of a volume, marched ray by ray. Stars are not drawn between its clouds, wet ground and the cube map mirror a deck, and what
+    /// stands in them is not yet drawn sharp against them.
+    Volume,
+}
+
+impl CloudModel {
+    /// Its name in saved states.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Deck => "deck",
+            Self::Volume => "volume",
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! Asks the drawn clouds from outside: `probe slab`. The light and the march are those of the picture
+//! (`shaders/clouds/light.wgsl`, `march.wgsl`), only the cloud is a box of even droplets.
+
+use std::f64::consts::PI;
+
+use bytemuck::Zeroable as _;
+
+use super::{
+    cover::seen_over_seeds,
+    passes::{LightTables, sampler},
+    transport::{Scattering, Transport},
+    uniforms::{CloudsUniform, LayerUniform, MediumUniform},
+};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        pass::{self, FullscreenDesc},
+        readback,
+    },
+    light::{Phase, PhaseLobes},
+    weather::CloudKind,
+};
+
+/// Rays a face, along each side of its tile.
+const SIDE: u32 = 64;
+/// Thickness of the box, m.
+const THICKNESS_M: f64 = 10.0;
+/// Width of a slab, so that nothing comes from its sides: in thicknesses.
+const WIDE: f64 = 1e6;
+
+/// A box of even cloud under a sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvenCloud {
+    /// Optical depth from side to side and from top to base; of the sides infinite for a slab.
+    pub depths: [f64; 3],
+    /// Asymmetry of its droplets (Henyey and Greenstein 1941), [0, 0.95].
+    pub asymmetry: f64,
+    /// Their single-scattering albedo, [0, 1].
+    pub albedo: f64,
+    /// Cosine of the sun's zenith angle, [0.01, 1]; the sun stands over the side of low x.
+    pub cosine: f64,
+}
+
+impl EvenCloud {
+    fn check(&self) -> Result<()> {
+        check_range("tau", self.depths[2], 0.0, 1e3, "")?;
+        check_range("g", self.asymmetry, 0.0, 0.95, "")?;
+        check_range("mu0", self.cosine, 0.01, 1.0, "")?;
+        check_range("albedo", self.albedo, 0.0, 1.0, "")
+    }
+
+    fn is_slab(&self) -> bool {
+        self.depths[0].is_infinite()
+    }
+
+    fn uniform(&self, of: &Scattering) -> CloudsUniform {
+        let [x, y, z] = self.depths;
+        let side = |depth: f64| if self.is_slab() { WIDE * THICKNESS_M } else { depth / z * THICKNESS_M };
+        let mut uniform = CloudsUniform::zeroed();
+        uniform.to_sun = [-(1.0 - self.cosine * self.cosine).sqrt() as f32, 0.0, self.cosine as f32];
+        uniform.layer_count = 1;
+        uniform.media = [MediumUniform::new(of); 2];
+        uniform.layers[0] = LayerUniform {
+            size: [0.0, 1.0 / THICKNESS_M as f32, 1.0, (z / THICKNESS_M) as f32],
+            sheets: [side(x) as f32, side(y) as f32, 0.0, 0.0],
+            sun: [1.0; 4],
+            medium: [0.0, of.scale() as f32, 0.0, 0.0],
+            ..LayerUniform::zeroed()
+        };
+        uniform
+    }
+}
+
+/// Share of the light that falls on a box which leaves it through each face: low and high x, low and high y, base and top. What goes
+/// through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
+    cloud.check()?;
+    let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: cloud.asymmetry });
+    let of = Scattering::new(lobes, cloud.albedo);
+    if cloud.depths[2] == 0.0 {
+        return Ok([0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    }
+    let texels = draw(device, cloud, &of)?;
+    let mut sums = [0.0; 6];
+    for (i, texel) in texels.iter().enumerate() {
+        sums[i % (6 * SIDE as usize) / SIDE as usize] += f64::from(texel[0]);
+    }
+    // Mean radiance times pi is the flux through a unit of the face.
+    let mut out = sums.map(|s| s / f64::from(SIDE * SIDE) * PI);
+    let (sine, cosine) = ((1.0 - cloud.cosine * cloud.cosine).sqrt(), cloud.cosine);
+    let sides = cloud.depths;
+    if cloud.is_slab() {
+        out = [0.0, 0.0, 0.0, 0.0, out[4] / cosine + (-sides[2] / cosine).exp(), out[5] / cosine];
+        return Ok(out);
+    }
+    let areas = [sides[1] * sides[2], sides[0] * sides[2], sides[0] * sides[1]];
+    let falls = cosine * areas[2] + sine * areas[0];
+    for (face, flux) in out.iter_mut().enumerate() {
+        *flux *= areas[face / 2] / falls;
+    }
+    let (far, base) = straight(sides, sine, cosine);
+    out[1] += far * sides[1] / falls;
+    out[4] += base * sides[1] / falls;
+    Ok(out)
+}
+
+/// Of a beam on a box, a unit of its depth along y, what leaves straight through the far side and through the base.
+fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
+    let steps = 4096;
+    let (mut far, mut base) = (0.0, 0.0);
+    for i in 0..steps {
+        let at = (f64::from(i) + 0.5) / f64::from(steps);
+        for (falls, across, down) in [(cosine * x, at * x, 0.0), (sine * z, 0.0, at * z)] {
+            let to_base = (z - down) / cosine;
+            let to_far = if sine > 1e-9 { (x - across) / sine } else { f64::INFINITY };
+            let left = falls / f64::from(steps) * (-to_base.min(to_far)).exp();
+            *if to_far < to_base { &mut far } else { &mut base } += left;
+        }
+    }
+    (far, base)
+}
+
+fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32; 4]>> {
+    let gpu = &device.device;
+    let target = gpu.create_texture(&wgpu::TextureDescriptor {
+        label: Some("cloud probe"),
+        size: wgpu::Extent3d { width: 6 * SIDE, height: SIDE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let mut tables = LightTables::new(device, [Transport::new(*of), Transport::new(*of)]);
+    tables.update(device, cloud.cosine);
+    let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
+    device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(of)));
+    let slots = [(1, Slot::Uniform(size_of::<CloudsUniform>())), (4, Slot::Filtered), (6, Slot::Sampler)];
+    let layout = bind::layout(gpu, "cloud probe", wgpu::ShaderStages::FRAGMENT, &slots);
+    let pipeline = pass::fullscreen(
+        device,
+        &FullscreenDesc {
+            shader: "clouds/probe.wgsl:box",
+            entry: "box_probe",
+            layouts: &[&layout],
+            targets: &[wgpu::TextureFormat::Rgba16Float.into()],
+            // Every ray to its end.
+            constants: &[
+                ("CLOUD_STEPS", 1024.0),
+                ("CLOUD_STEP_DEPTH", 0.2),
+                ("CLOUD_LEAST", 1e-4),
+                ("CLOUD_STEP_ANGLE", 0.0),
+            ],
+            samples: 1,
+        },
+    )?;
+    let (view, sampler) = (tables.view(), sampler(device, wgpu::AddressMode::ClampToEdge));
+    let group = gpu.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("cloud probe"),
+        layout: &layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 1, resource: block.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(&view) },
+            wgpu::BindGroupEntry { binding: 6, resource: wgpu::BindingResource::Sampler(&sampler) },
+        ],
+    });
+    let mut encoder = gpu.create_command_encoder(&Default::default());
+    pass::draw(&mut encoder, "cloud probe", &pipeline, &[&group], &target.create_view(&Default::default()));
+    device.submit_and_wait(encoder)?;
+    readback::rgba(device, &target)
+}
+
+/// Answers CSV rows `tau,g,mu0,albedo` with `R,T` appended: the shares of the incident flux that a slab reflects and lets through,
+/// direct and diffuse together.
+///
+/// # Errors
+/// [`Status::Parse`] with line and column; GPU faults.
+pub fn slab_csv(device: &Device, text: &str) -> Result<String> {
+    let mut lines = text.lines();
+    let header = lines.next().unwrap_or_default().trim();
+    if header != "tau,g,mu0,albedo" {
+        return Err(Error::new(Status::Parse, "line 1, column 1: the header must be `tau,g,mu0,albedo`"));
+    }
+    let mut out = String::from("tau,g,mu0,albedo,R,T\n");
+    for (i, line) in lines.enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let at =
+            |column: usize, what: &str| Error::new(Status::Parse, format!("line {}, column {column}: {what}", i + 2));
+        let fields: Vec<&str> = line.split(',').collect();
+        if fields.len() != 4 {
+            return Err(at(1, "four numbers are wanted"));
+        }
+        let mut numbers = [0.0; 4];
+        let mut column = 1;
+        for (to, field) in numbers.iter_mut().zip(&fields) {
+            *to = field.trim().parse().map_err(|_| at(column, &format!("`{field}` is no number")))?;
+            column += field.chars().count() + 1;
+        }
+        let [tau, asymmetry, cosine, albedo] = numbers;
+        let cloud = EvenCloud { depths: [f64::INFINITY, f64::INFINITY, tau], asymmetry, albedo, cosine };
+        let flux = fluxes(device, &cloud).map_err(|e| at(1, &e.to_string()))?;
+        out.push_str(&format!("{},{:.6},{:.6}\n", line.trim(), flux[5], flux[4]));
+    }
+    Ok(out)
+}
+
+/// Places from which a seed's sky is looked at.
+const PLACES: usize = 64;
+
+/// `mean,spread` of the cover that a genus is seen to have over seeds, where `cover` of the sky is asked for.
+///
+/// # Errors
+/// [`Status::Parse`] for a genus that there is not.
+pub fn cover_csv(genus: &str, cover: f64, seeds: u64) -> Result<String> {
+    let kind = CloudKind::ALL.iter().find(|k| **k != CloudKind::Unknown && k.name() == genus);
+    let kind = kind.ok_or_else(|| {
+        let names: Vec<&str> = CloudKind::ALL.iter().filter(|k| **k != CloudKind::Unknown).map(|k| k.name()).collect();
+        Error::new(Status::Parse, format!("`{genus}` is no genus; there are {}", names.join(", ")))
+    })?;
+    let [mean, spread] = seen_over_seeds(*kind, cover, seeds, PLACES)?;
+    Ok(format!("mean,spread\n{mean:.6},{spread:.6}\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::{clouds::reference::tests::even, gpu::DeviceOptions};
+
+    fn slab(device: &Device, tau: f64, albedo: f64, cosine: f64) -> [f64; 2] {
+        let depths = [f64::INFINITY, f64::INFINITY, tau];
+        let flux = fluxes(device, &EvenCloud { depths, asymmetry: 0.85, albedo, cosine }).unwrap();
+        [flux[5], flux[4]]
+    }
+
+    /// Against discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
+    #[test]
+    fn drawn_slabs_reflect_and_let_through_what_discrete_ordinates_say() {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let near = |got: f64, want: f64| (got - want).abs() < (0.05 * want).max(0.01);
+        for (tau, overhead, low) in
+            [(1.0, 0.04232, 0.16488), (4.0, 0.19092, 0.41602), (16.0, 0.55721, 0.69740), (64.0, 0.84628, 0.89497)]
+        {
+            for (cosine, want) in [(1.0, overhead), (0.5, low)] {
+                let [r, t] = slab(&device, tau, 1.0, cosine);
+                println!(
+                    "depth {tau}, cosine {cosine}: R {r:.4} ({want}), T {t:.4} ({:.4}), sum {:.4}",
+                    1.0 - want,
+                    r + t
+                );
+                assert!(near(r, want) && near(t, 1.0 - want), "{tau} {cosine}: {r} {t}");
+                assert!(r + t < 1.01, "{tau} {cosine}: light is made, {}", r + t);
+            }
+        }
+        for (tau, reflected, diffuse) in
+            [(1.0, 0.04079, 0.57960), (4.0, 0.17284, 0.74785), (16.0, 0.41773, 0.30610), (64.0, 0.47197, 0.01134)]
+        {
+            let [r, t] = slab(&device, tau, 0.99, 1.0);
+            let through = diffuse + f64::exp(-tau);
+            println!("depth {tau}, albedo 0.99: R {r:.4} ({reflected}), T {t:.4} ({through:.4})");
+            assert!(near(r, reflected) && near(t, through), "{tau}: {r} {t}");
+        }
+    }
+
+    /// Against photons followed through the same cubes.
+    #[test]
+    fn drawn_cubes_send_through_each_face_what_photons_say() {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        for (depth, cosine) in [(16.0, 1.0), (16.0, 0.5), (4.0, 0.5), (16.0, 0.8), (48.0, 0.5)] {
+            let cloud = EvenCloud { depths: [depth; 3], asymmetry: 0.85, albedo: 1.0, cosine };
+            let got = fluxes(&device, &cloud).unwrap();
+            let want = even(DVec3::splat(depth), 0.85, 1.0, cosine, 100_000);
+            println!(
+                "cube of {depth}, cosine {cosine}: {got:.3?}, photons {want:.3?}, sum {:.3}",
+                got.iter().sum::<f64>()
+            );
+            for (got, want) in got.into_iter().zip(want) {
+                assert!((got - want).abs() < (0.15 * want).max(0.03), "{depth} {cosine}: {got} not {want}");
+            }
+            assert!(got.iter().sum::<f64>() < 1.05, "light is made");
+        }
+    }
+
+    #[test]
+    fn questions_of_the_probe_are_checked() {
+        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let says = |text: &str| slab_csv(&device, text).unwrap_err().to_string();
+        assert!(says("tau,g\n").contains("line 1"));
+        assert!(says("tau,g,mu0,albedo\n1,0.85,1\n").contains("line 2"));
+        assert!(says("tau,g,mu0,albedo\n1,x,1,1\n").contains("line 2, column 3"));
+        assert!(
+            says("tau,g,mu0,albedo\n1,0.99,1,1\n").contains("`g`")
+                || says("tau,g,mu0,albedo\n1,0.99,1,1\n").contains("g ")
+        );
+    }
+}

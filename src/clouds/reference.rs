@@ -1,0 +1,155 @@
+//! Light in clouds by following photons: the truth that tables and shaders are held against.
+//!
+//! Free paths through a cloud of any shape by null collisions (Woodcock et al. 1965): steps of the largest extinction, of which as many
+//! count as the extinction at their end is of it. Nothing is scaled or cut off. The error of a share p of n photons is
+//! sqrt(p (1 - p) / n).
+
+use std::f64::consts::PI;
+
+use glam::{DMat3, DVec3};
+
+use crate::{chance::Chance, light::phase::PhaseLobes};
+
+/// Cosine of a scattering angle of Henyey and Greenstein's function.
+fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
+    let u = chance.even();
+    if g.abs() < 1e-6 {
+        return 2.0 * u - 1.0;
+    }
+    let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
+    ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
+}
+
+/// The way on after a droplet of this phase function; the Draine lobe by rejection from Henyey and Greenstein's of the same g.
+pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> DVec3 {
+    let cosine = if chance.even() < lobes.w_draine {
+        loop {
+            let c = lobe_cosine(lobes.g_draine, chance);
+            if chance.even() * (1.0 + lobes.alpha) < 1.0 + lobes.alpha * c * c {
+                break c;
+            }
+        }
+    } else {
+        lobe_cosine(lobes.g_hg, chance)
+    };
+    let (sine, azimuth) = ((1.0 - cosine * cosine).max(0.0).sqrt(), 2.0 * PI * chance.even());
+    let (a, b) = direction.any_orthonormal_pair();
+    (DMat3::from_cols(a, b, direction) * DVec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine)).normalize()
+}
+
+/// Cloud within a box from the origin to `sides`.
+pub struct Box<'a> {
+    /// Far corner; a side may be infinite.
+    pub sides: DVec3,
+    /// Extinction at a place.
+    pub extinction: &'a dyn Fn(DVec3) -> f64,
+    /// The largest there is.
+    pub most: f64,
+    /// How droplets scatter.
+    pub lobes: PhaseLobes,
+    /// Share that they scatter.
+    pub albedo: f64,
+}
+
+impl Box<'_> {
+    /// Follows a photon from a place on the way to `direction`: the face through which it leaves (low and high x, y, z), if it does.
+    pub fn leaves_by(&self, mut at: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
+        loop {
+            let mut exit = (f64::INFINITY, 0);
+            for axis in 0..3 {
+                let d = direction[axis];
+                let to = if d > 0.0 { (self.sides[axis] - at[axis]) / d } else { -at[axis] / d };
+                if d != 0.0 && to < exit.0 {
+                    exit = (to, 2 * axis + usize::from(d > 0.0));
+                }
+            }
+            let free = -chance.even().ln() / self.most;
+            if free >= exit.0 {
+                return Some(exit.1);
+            }
+            at += direction * free;
+            if chance.even() * self.most >= (self.extinction)(at) {
+                continue;
+            }
+            if chance.even() >= self.albedo {
+                return None;
+            }
+            direction = scattered(&self.lobes, direction, chance);
+        }
+    }
+
+    /// Shares of the sun's light on the box that leave it through each face. The sun stands over the side of low x, `cosine` from the
+    /// zenith; high z is the top.
+    pub fn fluxes(&self, cosine: f64, photons: u32, seed: u64) -> [f64; 6] {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let is_slab = self.sides.x.is_infinite();
+        let top = if is_slab { 1.0 } else { cosine * self.sides.x / (cosine * self.sides.x + sine * self.sides.z) };
+        let (mut chance, mut out) = (Chance::new(seed, 0), [0.0; 6]);
+        for _ in 0..photons {
+            let wide = |side: f64, c: &mut Chance| if side.is_infinite() { 0.0 } else { side * c.even() };
+            let y = wide(self.sides.y, &mut chance);
+            let at = if chance.even() < top {
+                DVec3::new(wide(self.sides.x, &mut chance), y, self.sides.z)
+            } else {
+                DVec3::new(0.0, y, self.sides.z * chance.even())
+            };
+            let way = DVec3::new(sine, 0.0, -cosine);
+            // A slab has no sides to leave by.
+            let at = if is_slab { at.with_x(1e150).with_y(1e150) } else { at };
+            if let Some(face) = self.leaves_by(at, way, &mut chance) {
+                out[face] += 1.0 / f64::from(photons);
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::light::{Phase, phase::lobes_phase};
+
+    pub fn even(sides: DVec3, g: f64, albedo: f64, cosine: f64, photons: u32) -> [f64; 6] {
+        let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g });
+        Box { sides, extinction: &|_| 1.0, most: 1.0, lobes, albedo }.fluxes(cosine, photons, 7)
+    }
+
+    /// Reflectance and transmittance of slabs by discrete ordinates (PythonicDISORT), Henyey-Greenstein g = 0.85.
+    #[test]
+    fn photons_meet_the_published_slabs() {
+        let slab =
+            |tau, albedo, cosine| even(DVec3::new(f64::INFINITY, f64::INFINITY, tau), 0.85, albedo, cosine, 200_000);
+        for (tau, overhead, low) in [(1.0, 0.04232, 0.16488), (4.0, 0.19092, 0.41602), (16.0, 0.55721, 0.69740)] {
+            for (cosine, want) in [(1.0, overhead), (0.5, low)] {
+                let flux = slab(tau, 1.0, cosine);
+                let spread = (want * (1.0 - want) / 200_000.0f64).sqrt();
+                assert!((flux[5] - want).abs() < 4.0 * spread, "{tau} {cosine}: {} not {want}", flux[5]);
+                assert!((flux[4] + flux[5] - 1.0).abs() < 1e-9);
+            }
+        }
+        for (tau, reflected, diffuse) in [(1.0, 0.04079, 0.57960), (16.0, 0.41773, 0.30610)] {
+            let flux = slab(tau, 0.99, 1.0);
+            let through = diffuse + f64::exp(-tau);
+            assert!((flux[5] - reflected).abs() < 0.004 && (flux[4] - through).abs() < 0.004, "{tau}: {flux:?}");
+        }
+    }
+
+    #[test]
+    fn photons_turn_as_the_phase_function_says() {
+        let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 12.0 });
+        let mut chance = Chance::new(3, 0);
+        let (mut mean, mut back) = (0.0, 0.0);
+        let n = 200_000;
+        for _ in 0..n {
+            let c = scattered(&lobes, DVec3::Z, &mut chance).z;
+            mean += c / f64::from(n);
+            back += if c < -0.5 { 1.0 / f64::from(n) } else { 0.0 };
+        }
+        let want: f64 = (0..1000)
+            .map(|i| 1.5 + 0.5 * (f64::from(i) + 0.5) / 1000.0)
+            .map(|versine| lobes_phase(&lobes, 1.0, versine) * 2.0 * PI * 0.0005)
+            .sum();
+        assert!((mean - lobes.moments()[0]).abs() < 2e-3, "{mean}");
+        assert!((back - want).abs() < 0.002, "{back} {want}");
+    }
+}

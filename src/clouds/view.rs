@@ -1,0 +1,243 @@
+//! What a view draws of the clouds: a layer of what they send and let through, which the composition lays between sky and fog.
+
+use std::f64::consts::PI;
+
+use glam::{DMat4, DVec2, DVec3};
+
+use super::{
+    CloudModel,
+    field::Shape,
+    passes::{CloudFrame, CloudPasses},
+    uniforms::{CloudsUniform, LAYERS, LayerLight, LayerUniform, MediumUniform, PictureUniform},
+};
+use crate::{
+    error::Result,
+    moment::{Moment, Scene},
+    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Sampling, Shot, Stages, Texture, yes},
+    weather::CloudSlab,
+    world::light_above_clouds,
+};
+
+/// Side of the squares of pixels of which one is marched a frame.
+const SIDE: u32 = 4;
+/// Their order: each is far from those before it.
+const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
+/// Diameters of droplets for which tables are made, um.
+const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
+
+/// What there is of clouds over a camera.
+struct Overhead {
+    layers: [(Shape, CloudSlab); LAYERS],
+    count: usize,
+    place_m: DVec2,
+    liquid_um: f64,
+}
+
+/// How the last frame was seen.
+#[derive(Clone, Copy)]
+struct Before {
+    frame_id: u64,
+    clip: DMat4,
+    eye: DVec3,
+    drift_m: DVec2,
+    exposure: f64,
+}
+
+/// The clouds of a view.
+#[derive(Default)]
+pub(crate) struct CloudsView {
+    overhead: Option<Overhead>,
+    passes: Option<Box<CloudPasses>>,
+    before: Option<Before>,
+    /// The picture before this call holds the last frame's clouds.
+    kept: bool,
+}
+
+impl CloudsView {
+    /// Takes the clouds of a moment.
+    ///
+    /// # Errors
+    /// As [`Moment::carrying`].
+    pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
+        let scene = &now.scene;
+        self.overhead = None;
+        let slabs = || scene.conditions.cloud_slabs().filter(|s| s.cover > 0.0).take(LAYERS);
+        if model == CloudModel::Deck || slabs().next().is_none() {
+            self.before = None;
+            return Ok(());
+        }
+        let drift = now.carrying()?.displacement_m().truncate();
+        let shape = |slab: &CloudSlab| (Shape::new(&scene.conditions, slab, drift, now.time_s), *slab);
+        let mut overhead = Overhead {
+            layers: [shape(&CloudSlab::NONE); LAYERS],
+            count: 0,
+            place_m: DVec2::from_array(scene.map_m),
+            liquid_um: nearest_diameter(slabs()),
+        };
+        for slab in slabs() {
+            overhead.layers[overhead.count] = shape(slab);
+            overhead.count += 1;
+        }
+        self.overhead = Some(overhead);
+        Ok(())
+    }
+
+    fn is_there(&self, stages: Stages) -> bool {
+        self.overhead.is_some() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM))
+    }
+}
+
+/// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
+fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
+    let add = |(water, sum): (f64, f64), s: &CloudSlab| {
+        let liquid = s.cover * (1.0 - s.ice_fraction);
+        (water + liquid, sum + liquid * s.droplet_radius_um)
+    };
+    let (water, sum) = slabs.fold((0.0, 0.0), add);
+    let diameter = (2.0 * sum / water.max(1e-6)).max(1.0);
+    let off = |um: &f64| (um / diameter).ln().abs();
+    LIQUID_UM.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(diameter)
+}
+
+/// Light on a layer from sun, sky and the layers above it, and from the ground.
+fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
+    let light = scene.brighter();
+    let albedo = scene.planet.ground_albedo;
+    let top_m = shape.base_m + shape.thickness_m;
+    let over = scene.conditions.cloud_light_at(light.direction.z, albedo[1], top_m);
+    let (direct, sky) = light_above_clouds(scene, top_m);
+    let level = light.direction.z.max(0.0);
+    let ground = &scene.ground;
+    let total = |i: usize| {
+        let direct =
+            ground.sun_lux[i] * scene.sun.direction.z.max(0.0) + ground.moon_lux[i] * scene.moon.direction.z.max(0.0);
+        (direct + ground.sky_lux[i]) * albedo[i] / PI * exposure
+    };
+    LayerLight {
+        sun: direct.map(|v| v * over.direct * exposure),
+        above: [0, 1, 2].map(|i| (sky[i] * over.sky + direct[i] * level * over.diffuse) / PI * exposure),
+        below: [0, 1, 2].map(total),
+    }
+}
+
+impl Overhead {
+    fn uniform(&self, shot: &Shot<'_>, passes: &CloudPasses) -> CloudsUniform {
+        let scene = &shot.now.scene;
+        let light = scene.brighter();
+        let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
+        for (to, (shape, slab)) in layers.iter_mut().zip(&self.layers[..self.count]) {
+            let medium = usize::from(slab.ice_fraction > 0.5);
+            let of = (medium, &passes.tables.light.media[medium].scattering);
+            *to = LayerUniform::new(shape, self.place_m, &light_on(scene, shape, shot.exposure), of);
+        }
+        CloudsUniform {
+            to_sun: light.direction.as_vec3().to_array(),
+            layer_count: self.count as u32,
+            altitude: scene.place.altitude_m as f32,
+            radius: shot.now.planet_radius_m.min(1e9) as f32,
+            jitter: 0.5,
+            unused: 0.0,
+            media: [0, 1].map(|i| MediumUniform::new(&passes.tables.light.media[i].scattering)),
+            layers,
+        }
+    }
+}
+
+impl CloudsView {
+    /// How a picture's clouds follow from the last frame's.
+    fn picture(&self, shot: &Shot<'_>) -> (PictureUniform, Before) {
+        let (frame, now) = (shot.frame, shot.now);
+        let drift_m = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.layers[0].0.drift_m);
+        let here =
+            Before { frame_id: frame.frame_id, clip: shot.clip(), eye: now.eye, drift_m, exposure: shot.exposure };
+        let last = self.before.filter(|_| self.kept && !frame.is_pure());
+        let size = shot.color.texture.size();
+        let side = side(frame);
+        let moved = last.map_or(DVec3::ZERO, |b| {
+            (here.drift_m - b.drift_m).extend(0.0) - now.scene.world_to_enu * (here.eye - b.eye)
+        });
+        let uniform = PictureUniform {
+            size: [size.width, size.height],
+            side,
+            place: ORDER[(frame.frame_id % 16) as usize] % (side * side),
+            before: last.map_or(DMat4::IDENTITY, |b| b.clip).as_mat4().to_cols_array_2d(),
+            moved: moved.as_vec3().to_array(),
+            exposed: last.map_or(0.0, |b| (here.exposure / b.exposure) as f32),
+        };
+        (uniform, here)
+    }
+}
+
+/// Side of the squares of a frame: a pure function of view and time has no history to wait for.
+fn side(frame: &Frame<'_>) -> u32 {
+    if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { SIDE }
+}
+
+impl DrawnEffect for CloudsView {
+    fn stages(&self) -> Stages {
+        if self.overhead.is_some() { Stages::BACKGROUND.with(Stages::MEDIUM) } else { Stages(0) }
+    }
+
+    fn prepare(&mut self, at: &crate::stage::Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let Some(overhead) = &self.overhead else { return Ok(()) };
+        let passes = match &mut self.passes {
+            Some(passes) => passes,
+            none => none.insert(Box::new(CloudPasses::new(to.device, at.now.seed)?)),
+        };
+        let cosine = at.now.scene.brighter().direction.z;
+        passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);
+        Ok(())
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let is_there = self.is_there(to.stages) && self.passes.is_some();
+        to.constant("CLOUDS", yes(is_there), yes(is_there));
+        if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
+            let texture = shot.color.texture;
+            let size = (texture.width(), texture.height());
+            // A second draw of the same frame finds the picture as the first one left it.
+            let drawn = self.before.is_some_and(|b| b.frame_id == shot.frame.frame_id);
+            if !drawn {
+                self.kept = passes.hold(shot.device, size, side(shot.frame)) && self.before.is_some();
+            }
+            to.set_texture(Texture::Behind, passes.next());
+        }
+        Ok(())
+    }
+
+    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if !self.is_there(with.composition.stages) {
+            return Ok(());
+        }
+        let (picture, here) = self.picture(shot);
+        let (Some(overhead), Some(passes), Some((layout, group))) =
+            (&self.overhead, &mut self.passes, &with.composition.tables)
+        else {
+            return Ok(());
+        };
+        let of = CloudFrame {
+            clouds: overhead.uniform(shot, passes),
+            picture,
+            frame: with.block,
+            sky: (layout, group),
+            depth: shot.frame.depth_layer(),
+            sampling: Sampling::of(shot.color.texture, shot.frame.depth),
+            depth_kinds: f64::from(shot.rays.depth_kinds()),
+        };
+        passes.draw(to.device, to.encoder, &of)?;
+        to.passes += 2;
+        self.before = Some(here);
+        Ok(())
+    }
+
+    fn bytes(&self) -> u64 {
+        self.passes.as_ref().map_or(0, |p| p.bytes())
+    }
+
+    fn forget_picture(&mut self) {
+        self.before = None;
+        if let Some(passes) = &mut self.passes {
+            passes.forget();
+        }
+    }
+}

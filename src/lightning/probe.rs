@@ -1,0 +1,22 @@
+//! Asks the schedule from a script: `probe lightning`.
+
+use glam::DVec2;
+
+use super::schedule::Storm;
+use crate::error::{Result, check_range};
+
+/// A storm's flashes over some hours from time 0, a line each.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub fn flashes_csv(per_minute: f64, hours: f64) -> Result<String> {
+    check_range("hours", hours, 0.0, 1000.0, "h")?;
+    let storm = Storm { seed: 0, per_minute, middle_m: DVec2::ZERO, radius_m: 3000.0 };
+    storm.validate()?;
+    let mut out = String::from("time_s,kind,strokes,east_m,north_m,peak_ka\n");
+    for f in storm.flashes(0.0, 3600.0 * hours) {
+        let (kind, strokes, place) = (f.kind.name(), f.strokes().len(), f.place_m);
+        out.push_str(&format!("{:.3},{kind},{strokes},{:.1},{:.1},{:.2}\n", f.time_s, place.x, place.y, f.peak_ka()));
+    }
+    Ok(out)
+}

@@ -1,0 +1,5 @@
+//! Clouds as a volume, drawn.
+
+mod drawn;
+#[path = "../support/textures.rs"]
+mod textures;
