@@ -77,7 +77,7 @@ fn cloud_disc() -> f32 {
 }
 
 // Clouds before what is behind them.
-fn with_clouds(behind: Veil, sky: bool) -> Veil {
+fn with_clouds(behind: Veil) -> Veil {
     if !has_clouds() {
         return behind;
     }
@@ -103,7 +103,7 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     } else if MEDIUM && !sky {
         veil = air_on(path, ray.direction);
     }
-    veil = with_clouds(veil, sky);
+    veil = with_clouds(veil);
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
     }
