@@ -17,7 +17,7 @@ struct CloudLayer {
     above: vec4f,
     // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
     below: vec4f,
-    // Which medium's tables are its own; scaled extinction over extinction.
+    // Index of the medium that it is made of; scaled extinction over extinction.
     medium: vec4f,
 }
 

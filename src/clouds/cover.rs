@@ -8,11 +8,9 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::{
-    field::{Field, Map, Shape, Solid},
-    map::normal_quantile,
-};
+use super::field::{Field, Map, Shape, Solid};
 use crate::{
+    chance::normal_quantile,
     error::Result,
     noise::{NoiseImage, NoiseKind, NoiseSettings},
     weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive},

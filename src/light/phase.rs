@@ -18,7 +18,7 @@ pub enum Phase {
         /// Mean cosine of the scattering angle.
         g: f64,
     },
-    /// Lobes so far between those of droplets and of Henyey and Greenstein's function: what a change of weather passes through.
+    /// Part of the way from droplets to Henyey and Greenstein's function: a change of weather passes through it.
     Between {
         /// Mean diameter of the droplets, micrometres, \[5, 50\].
         diameter_um: f64,

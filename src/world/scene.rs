@@ -98,8 +98,8 @@ fn clear_light(
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
-/// Light above all clouds at a height over a scene's place, lux a channel: direct on what faces the light that is brighter here, and
-/// of the sky on level ground, with the night's floor.
+/// Light above all clouds at a height over a scene's place, lux a channel: direct light on what faces sun or moon (whichever is brighter
+/// there), and the sky's light on level ground, with the night's floor.
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
         let elevation = light.direction.z.clamp(-1.0, 1.0).asin().to_degrees();

@@ -88,7 +88,7 @@ pub fn read(bytes: &[u8]) -> Result<NoiseImage> {
     Ok(NoiseImage::of_levels(size, levels))
 }
 
-/// Checks that a texel is one byte. With the longer header: whether that says volume.
+/// Whether the longer header calls the texture a volume; none where there is no longer header. Refuses texels other than one byte.
 fn is_volume_of_dx10(bytes: &[u8]) -> Result<Option<bool>> {
     let flags = word(bytes, AT_PIXEL_FLAGS)?;
     if flags & FOUR_CC == 0 {
