@@ -4,10 +4,10 @@
 
 use std::{fs, sync::Arc};
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
-    frame::{Frame, Shared, Stages, View},
+    frame::{Frame, FrameFlags, Shared, Stages, View},
     gpu::{
         Device, DeviceOptions,
         pass::{FullscreenDesc, draw, fullscreen},
@@ -21,11 +21,11 @@ use crate::textures;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+pub const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 /// Copies in one submission, so that a submission's own work is next to nothing beside them.
 const COPIES: u32 = 16;
 /// Rounds of all scenes; the median of each counts.
-const ROUNDS: usize = 9;
+pub const ROUNDS: usize = 9;
 /// Frames without work on tables after which there is none.
 const SETTLED: u32 = 12;
 
@@ -41,20 +41,20 @@ fn processor_ns() -> Fallible<u64> {
 }
 
 /// The median of numbers.
-fn median(of: &mut [f64]) -> f64 {
+pub fn median(of: &mut [f64]) -> f64 {
     of.sort_by(f64::total_cmp);
     of[of.len() / 2]
 }
 
 /// The clock: a pass that loads a texel and writes it.
-struct Copying {
+pub struct Copying {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     target: wgpu::TextureView,
 }
 
 impl Copying {
-    fn new(device: &Device) -> Fallible<Self> {
+    pub fn new(device: &Device) -> Fallible<Self> {
         let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -99,30 +99,80 @@ impl Copying {
     }
 }
 
-fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+pub fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (SIZE.width, SIZE.height), format, 1)
 }
 
 /// One weather over a picture, and the calls in which its frames are drawn.
-struct Scene {
-    name: &'static str,
-    context: Arc<Context>,
-    view: View,
-    camera: Camera,
-    calls: Vec<Stages>,
-    has_depth: bool,
-    frame_id: u64,
-    copies: Vec<f64>,
+pub struct Scene {
+    pub name: &'static str,
+    pub context: Arc<Context>,
+    pub view: View,
+    pub camera: Camera,
+    /// How far the camera turns from frame to frame, about the vertical.
+    pub turn_rad: f64,
+    pub flags: FrameFlags,
+    pub calls: Vec<Stages>,
+    pub has_depth: bool,
+    pub frame_id: u64,
+    pub copies: Vec<f64>,
 }
 
 impl Scene {
+    /// All that is drawn before tone, with depth, by a camera at rest 2 m above the ground that looks north and `pitch_rad` up.
+    pub fn new(name: &'static str, context: &Arc<Context>, pitch_rad: f64) -> Fallible<Self> {
+        let (eye, ahead) = (DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, pitch_rad.cos(), pitch_rad.sin()));
+        Ok(Self {
+            name,
+            context: context.clone(),
+            view: View::new(context)?,
+            camera: Camera::look_to(eye, ahead, DVec3::Z, 0.9, 16.0 / 9.0, 0.1),
+            turn_rad: 0.0,
+            flags: FrameFlags::default(),
+            calls: vec![Stages::ALL.without(Stages::TONE)],
+            has_depth: true,
+            frame_id: 0,
+            copies: Vec::new(),
+        })
+    }
+
+    /// Draws frames until the tables of the sky, which come in parts, stand.
+    pub fn settle(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<()> {
+        let (mut since, mut frames) = (0, 0);
+        while since < SETTLED && frames < 1000 {
+            self.ns(device, color, depth)?;
+            since = if self.view.report().tables_rebuilt > 0 { 0 } else { since + 1 };
+            frames += 1;
+        }
+        Ok(())
+    }
+
+    /// Measures one frame between two copies.
+    pub fn measure(
+        &mut self,
+        device: &Device,
+        copying: &Copying,
+        color: &wgpu::Texture,
+        depth: &wgpu::Texture,
+    ) -> Fallible<()> {
+        let before = copying.ns(device)?;
+        let frame = self.ns(device, color, depth)?;
+        let copy = 0.5 * (before + copying.ns(device)?);
+        self.copies.push(frame / copy);
+        Ok(())
+    }
+
     /// Nanoseconds of a frame.
     fn ns(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<f64> {
         let depth = self.has_depth.then_some(depth);
         self.frame_id += 1;
+        if self.turn_rad != 0.0 {
+            self.camera.view *= DMat4::from_rotation_z(self.turn_rad);
+        }
         let before = processor_ns()?;
         for stages in &self.calls {
-            self.view.record(&self.context, &Frame::new(self.frame_id, self.camera, color, depth), *stages)?;
+            let frame = Frame { flags: self.flags, ..Frame::new(self.frame_id, self.camera, color, depth) };
+            self.view.record(&self.context, &frame, *stages)?;
         }
         device.wait()?;
         Ok((processor_ns()? - before) as f64)
@@ -130,7 +180,7 @@ impl Scene {
 }
 
 /// A world under a high sun.
-fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather) -> Fallible<Arc<Context>> {
+pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather) -> Fallible<Arc<Context>> {
     let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
     context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: 60.0 }))?;
     context.set_default_surface_class(SurfaceClass::Paved);
@@ -165,13 +215,20 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
         ("rain without drops", 3, &[all.without(Stages::PARTICLES)], true),
         ("wet road", 4, &[all], true),
     ] {
-        let context = worlds[world].clone();
-        let view = View::new(&context)?;
-        let camera = Camera::look_to(DVec3::new(0.0, 0.0, 2.0), DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
-        let calls = calls.to_vec();
-        made.push(Scene { name, context, view, camera, calls, has_depth, frame_id: 0, copies: Vec::new() });
+        made.push(Scene { calls: calls.to_vec(), has_depth, ..Scene::new(name, &worlds[world], 0.0)? });
     }
     Ok(made)
+}
+
+/// Writes the depth of level ground 2 m below an eye that looks `pitch_rad` up.
+pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
+    let row = |y: u32| {
+        let ahead = (179.5 - f64::from(y)) / 180.0 * 0.45f64.tan();
+        0.1 * (-pitch_rad.sin() - ahead * pitch_rad.cos()).max(0.0) / 2.0
+    };
+    let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width) as f32).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.width * 4), rows_per_image: None };
+    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, SIZE);
 }
 
 /// Prints the copies of each scene.
@@ -179,28 +236,15 @@ pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let (color, depth) =
         (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
-    // Level ground 2 m below the eye, from the picture's middle down.
-    let row = |y: u32| 0.1 * (y as f32 - 179.5).max(0.0) / 180.0 * 0.45f32.tan() / 2.0;
-    let texels: Vec<f32> = (0..SIZE.width * SIZE.height).map(|i| row(i / SIZE.width)).collect();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.width * 4), rows_per_image: None };
-    device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, SIZE);
+    level_ground(&device, &depth, 0.0);
     let copying = Copying::new(&device)?;
     let mut scenes = scenes(&device)?;
-    // The tables of a sky come in parts.
     for scene in &mut scenes {
-        let (mut since, mut frames) = (0, 0);
-        while since < SETTLED && frames < 1000 {
-            scene.ns(&device, &color, &depth)?;
-            since = if scene.view.report().tables_rebuilt > 0 { 0 } else { since + 1 };
-            frames += 1;
-        }
+        scene.settle(&device, &color, &depth)?;
     }
     for _ in 0..ROUNDS {
         for scene in &mut scenes {
-            let before = copying.ns(&device)?;
-            let frame = scene.ns(&device, &color, &depth)?;
-            let copy = 0.5 * (before + copying.ns(&device)?);
-            scene.copies.push(frame / copy);
+            scene.measure(&device, &copying, &color, &depth)?;
         }
     }
     println!("frames of {} x {} in copies, {}:", SIZE.width, SIZE.height, device.caps().adapter_name);

@@ -1,6 +1,7 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky).
+//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky).
 
+mod clouds;
 mod copies;
 #[path = "../../tests/support/depth_texture.rs"]
 mod depth_texture;
@@ -23,6 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wanted = |name: &str| named.is_empty() || named.iter().any(|n| n == name);
     if wanted("copies") {
         copies::run()?;
+    }
+    if wanted("clouds") {
+        clouds::run()?;
     }
     if wanted("record") {
         record::run()?;

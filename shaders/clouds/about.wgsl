@@ -2,34 +2,43 @@
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
-// Steps towards the sun.
-override CLOUD_SUN_STEPS: u32 = 5u;
+// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are frayed.
+const SUN_STEPS: u32 = 5u;
+const SUN_FRAYED: u32 = 3u;
+const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
+// Slope of the map and of the solid noise by which rays skip, a distance from cloud to cloud: steeper places are too small to be missed.
+const MAP_SKIP: f32 = 6.0;
+const SOLID_SKIP: f32 = 8.0;
 
 // A cloud at a place.
 struct CloudHere {
-    // How far the excess is from where there may be any cloud; below 0 there may be.
+    // How much strength is wanting for cloud, rounded base and frays left out.
     gap: f32,
     // Excess over the threshold, frayed.
     excess: f32,
     // 1/m.
     extinction: f32,
+    // As `gap`, frayed.
+    frayed_gap: f32,
 }
 
 fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
     let over = cloud_strength(layer, at.level) - layer.shape.x;
-    let excess = over - cloud_dome(layer, at.height);
-    let gap = -MOST_FRAYED * layer.shape.z - excess;
-    if gap > 0.0 {
-        return CloudHere(gap, over, 0.0);
-    }
     let frays = cloud_frays(layer, at);
-    return CloudHere(gap, over + frays, cloud_extinction(layer, excess + frays));
+    let excess = over - cloud_dome(layer, at.height);
+    // Rounded bases only take away.
+    let gap = layer.shape.y * at.height * at.height - over;
+    return CloudHere(gap, over + frays, cloud_extinction(layer, excess + frays), gap - frays);
 }
 
-// Distance to a gap that wide in excess, m: it changes along a ray no faster than the map and the dome do.
-fn cloud_skip(layer: CloudLayer, gap: f32, direction: vec3f) -> f32 {
-    let steepest = STEEPEST * layer.size.z * length(direction.xy) + 2.0 * layer.shape.y * layer.size.y * abs(direction.z);
-    return gap / (steepest + 1e-6);
+// Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than map, noise and dome
+// do, and noise adds no more than it can.
+fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
+    let level = layer.size.z * length(direction.xy);
+    let dome = 2.0 * layer.shape.y * height * layer.size.y * max(-direction.z, 0.0);
+    let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (MAP_SKIP * level + dome + 1e-6);
+    let by_noise = here.frayed_gap / (MAP_SKIP * level + dome + SOLID_SKIP * layer.shape.z * layer.size.z);
+    return max(by_map, by_noise);
 }
 
 // Altitude at a distance along a ray.
@@ -46,34 +55,52 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 
-// Scaled depth from a place towards the sun.
-fn cloud_sun_depth(layer: CloudLayer, at: CloudPlace, scaled: f32) -> f32 {
-    let sun = vec3f(clouds.to_sun.xy, max(clouds.to_sun.z, 0.02));
-    var step = 0.06 / layer.size.z;
+// Metres of full extinction in a column of this excess over a stretch of a ray that rises `rise` (of the thickness) a metre.
+fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length: f32) -> f32 {
+    let to = height + rise * length;
+    let low = clamp(min(height, to), 0.0, 1.0);
+    let high = clamp(max(height, to), 0.0, 1.0);
+    // A level stretch has next to no height: that of a slab about it counts.
+    let top = max(high, min(low + 0.02, 1.0));
+    let bottom = min(low, top - 0.02);
+    let filled = cloud_filled(layer, excess, top) - cloud_filled(layer, excess, bottom);
+    return length * filled / (top - bottom);
+}
+
+// Metres of full extinction towards the sun. What frays a cloud is looked up on the nearer part of the way; beyond it columns of even
+// strength stand for the cloud.
+fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
+    let rise = select(min(clouds.to_sun.z, -1e-3), max(clouds.to_sun.z, 1e-3), clouds.to_sun.z >= 0.0) * layer.size.y;
+    let way = select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise);
     var gone = 0.0;
     var depth = 0.0;
-    for (var i = 0u; i < CLOUD_SUN_STEPS; i++) {
-        let t = gone + 0.5 * step;
-        let p = CloudPlace(at.level + sun.xy * t, at.height + sun.z * t * layer.size.y);
-        let inside = p.height >= 0.0 && p.height <= 1.0;
-        var excess = cloud_strength(layer, p.level) - layer.shape.x - cloud_dome(layer, p.height);
-        excess += cloud_frays(layer, p);
-        depth += select(0.0, cloud_extinction(layer, excess), inside) * step;
-        gone += step;
-        step *= 1.7;
+    for (var i = 0u; i < SUN_FRAYED && gone < way; i++) {
+        let end = min(SUN_WAY[i] / layer.size.z, way);
+        let t = 0.5 * (gone + end);
+        let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
+        let excess = cloud_strength(layer, p.level) - layer.shape.x - cloud_dome(layer, p.height) + cloud_frays(layer, p);
+        depth += clamp(excess * layer.shape.w, 0.0, 1.0) * (end - gone);
+        gone = end;
     }
-    return depth * scaled;
+    for (var i = SUN_FRAYED; i < SUN_STEPS && gone < way; i++) {
+        let end = min(SUN_WAY[i] / layer.size.z, way);
+        let over = cloud_strength(layer, at.level + clouds.to_sun.xy * 0.5 * (gone + end)) - layer.shape.x;
+        depth += cloud_stretch(layer, over, at.height + rise * gone, rise, end - gone);
+        gone = end;
+    }
+    return depth;
 }
 
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let scaled = layer.size.w * layer.medium.y;
     let about = cloud_about(layer, excess, at.height) * scaled;
-    let to_sun = cloud_sun_depth(layer, at, layer.medium.y);
+    let to_sun = cloud_sun_way(layer, at) * scaled;
     let sine = length(clouds.to_sun.xy);
     let edge = max(about.z, 0.02);
     let other = max(layer.below.w - edge, edge);
-    // The sun's rays come in at a side where they have less cloud before them than straight up.
-    let by_side = to_sun < about.x / max(clouds.to_sun.z, 0.02);
-    let near = select(max(edge, to_sun * sine), max(to_sun * sine, 0.02), by_side);
+    // Where the sun's rays have less cloud before them than straight up through the top, they come in at a side.
+    let by_side = clamp(4.0 - 4.0 * to_sun * max(clouds.to_sun.z, 0.02) / max(about.x, 1e-3), 0.0, 1.0);
+    let sideways = max(to_sun * sine, 0.02);
+    let near = mix(max(edge, sideways), sideways, by_side);
     return CloudDepths(about.x, about.y, to_sun, near, other, edge, other);
 }

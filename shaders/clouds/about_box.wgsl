@@ -9,16 +9,15 @@ struct CloudPlace {
 }
 
 struct CloudHere {
-    gap: f32,
     excess: f32,
     extinction: f32,
 }
 
 fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
-    return CloudHere(-1.0, 0.0, layer.size.w);
+    return CloudHere(0.0, layer.size.w);
 }
 
-fn cloud_skip(layer: CloudLayer, gap: f32, direction: vec3f) -> f32 {
+fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     return 0.0;
 }
 

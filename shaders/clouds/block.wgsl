@@ -17,7 +17,7 @@ struct CloudLayer {
     above: vec4f,
     // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
     below: vec4f,
-    // Index of the medium that it is made of; scaled extinction over extinction.
+    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a volume.
     medium: vec4f,
 }
 

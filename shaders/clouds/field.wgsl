@@ -14,9 +14,8 @@ const SOLID_MEAN: f32 = 0.47;
 const SOLID_GAIN: f32 = 2.2;
 // Most that it adds to the excess, over how far it frays.
 const MOST_FRAYED: f32 = 0.8;
-// Slope of the map, a cell: its own, and the steepest.
+// Slope of the map, a cell.
 const MAP_SLOPE: f32 = 4.0;
-const STEEPEST: f32 = 9.0;
 
 // A place in a layer: metres east and north of the camera, and height, 0 at the base to 1 at the top.
 struct CloudPlace {

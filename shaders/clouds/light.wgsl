@@ -61,14 +61,21 @@ fn cloud_legendre(terms: vec4f, x: f32) -> f32 {
     return dot(terms, vec4f(1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x));
 }
 
-// The cosine that light follows from side to side of a box, of mean 1, and its slope.
-fn cloud_across(near: f32, far: f32, turning: f32) -> vec2f {
-    let width = max(near + far, 1e-3);
-    let b = CLOUD_PI / (width + 1.42 / turning);
-    let half = 0.5 * b * width;
+// Extent of a box from side to side as diffusing light has it.
+fn cloud_reach(near: f32, far: f32, turning: f32) -> f32 {
+    return max(near + far, 1e-3) + 1.42 / turning;
+}
+
+// What light follows from side to side of a box, of mean 1, and its slope.
+fn cloud_across(near: f32, far: f32, turning: f32, height: f32) -> vec2f {
+    let extent = cloud_reach(near, far, turning);
+    let b = CLOUD_PI / extent;
+    let half = 0.5 * b * max(near + far, 1e-3);
     let off = 0.5 * b * (near - far);
     let mean = sin(half) / half;
-    return vec2f(cos(off), -b * sin(off)) / mean;
+    let sideways = height * height / (extent * extent);
+    let share = min(2.0 * sideways / (1.0 + sideways), 1.0);
+    return vec2f(1.0 + share * (cos(off) / mean - 1.0), -b * sin(off) / mean);
 }
 
 // The two lobes of a phase function, 1/sr, at the angle whose 1 - cos is `versine`.
@@ -104,9 +111,12 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let below = select(at.above, at.below, day);
     let down = select(direction.z, -direction.z, day);
 
-    let a = vec3f(cloud_across(at.near, at.far, turning), along);
-    let c = vec3f(cloud_across(at.left, at.right, turning), sideways);
-    let u = vec3f(cloud_across(above, below, turning), down);
+    let height = cloud_reach(above, below, turning);
+    let depth = cloud_reach(at.near, at.far, turning);
+    let a = vec3f(cloud_across(at.near, at.far, turning, height), along);
+    let c = vec3f(cloud_across(at.left, at.right, turning, height), sideways);
+    let u = vec3f(cloud_across(above, below, turning, depth), down);
+    let across = vec3f(cloud_across(at.left, at.right, turning, depth), sideways);
     let widths = vec3f(at.near + at.far, at.left + at.right, above + below);
     let spread = (1.0 - turning) / turning;
     let leak = cloud_leak(widths.xy, turning);
@@ -117,7 +127,7 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let share = min(exp(-rate * at.to_sun) / both, 1.0);
     let top = cloud_through(cloud_table(0.0, medium_index, above, below, leak), down, a, c, spread);
     let side_terms = cloud_table(1.0, medium_index, at.near, at.far, cloud_leak(widths.zy, turning));
-    let side = select(0.0, cloud_through(side_terms, along, u, c, spread), sine > 1e-6);
+    let side = select(0.0, cloud_through(side_terms, along, u, across, spread), sine > 1e-6);
     let momentum = exp(-turning * at.to_sun) - exp(-at.to_sun);
     let kept = albedo * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum;
     let level_kept = kept * (by_top * sine * along + by_side * cosine * down) / both;

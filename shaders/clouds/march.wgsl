@@ -13,8 +13,8 @@ struct CloudSeen {
     // cd/m^2 over exposure; of what is behind, with what clouds scatter straight on.
     light: vec3f,
     transmittance: f32,
-    // Mean distance of what is seen of them, m.
-    distance: f32,
+    // Distances between which what is seen of them stands as good as evenly, m.
+    reach: vec2f,
 }
 
 // Distances at which a ray from the camera crosses a sphere `height` above the planet's ground, in order; both the same where it does not.
@@ -37,7 +37,8 @@ fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
 struct CloudMarch {
     light: vec3f,
     transmittance: f32,
-    distance: f32,
+    // Distance, m, and its square, km^2, by how much is seen there.
+    distance: vec2f,
 }
 
 // One layer between two distances along a ray.
@@ -47,34 +48,49 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     let scaled = layer.medium.y;
     let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * scaled), thickness / 64.0, thickness / 12.0);
     var gone = first;
-    for (var i = 0u; i < CLOUD_STEPS && gone < last && out.transmittance > CLOUD_LEAST; i++) {
-        let step = min(max(fine, CLOUD_STEP_ANGLE * gone), last - gone);
-        let t = gone + jitter * step;
-        let at = cloud_place(layer, direction, t);
-        let here = cloud_here(layer, at);
-        if here.gap > 0.0 {
-            gone += max(step, cloud_skip(layer, here.gap, direction));
-            continue;
+    var tried = 0u;
+    while out.transmittance > CLOUD_LEAST {
+        // To the next step with cloud in it: light is looked up for those alone, all rays of a wave together.
+        var step = 0.0;
+        var t = 0.0;
+        var at: CloudPlace;
+        var here: CloudHere;
+        here.extinction = 0.0;
+        while here.extinction <= 0.0 && tried < CLOUD_STEPS && gone < last {
+            step = min(max(fine, CLOUD_STEP_ANGLE * gone), last - gone);
+            t = gone + jitter * step;
+            at = cloud_place(layer, direction, t);
+            here = cloud_here(layer, at);
+            gone += select(max(step, cloud_skip(layer, here, at.height, direction)), step, here.extinction > 0.0);
+            tried++;
         }
-        let extinction = here.extinction * scaled;
-        if extinction > 0.0 {
-            let depths = cloud_depths(layer, at, here.excess);
-            let s = cloud_scattered(layer.medium.x, depths, -direction, -log(out.transmittance));
-            let light = layer.sun.rgb * s.sun + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
-            let left = exp(-extinction * step);
-            let share = out.transmittance * (1.0 - left);
-            out.light += light * share;
-            out.distance += t * share;
-            out.transmittance *= left;
+        if here.extinction <= 0.0 {
+            break;
         }
-        gone += step;
+        let depths = cloud_depths(layer, at, here.excess);
+        let s = cloud_scattered(layer.medium.x, depths, -direction, -log(out.transmittance));
+        let light = layer.sun.rgb * s.sun + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
+        let left = exp(-here.extinction * scaled * step);
+        let share = out.transmittance * (1.0 - left);
+        out.light += light * share;
+        out.distance += vec2f(t, t * t * 1e-6) * share;
+        out.transmittance *= left;
     }
     return out;
 }
 
+// A layer of which only a part is drawn here: the rest of it is drawn as a deck.
+fn cloud_part(before: CloudMarch, after: CloudMarch, share: f32) -> CloudMarch {
+    return CloudMarch(
+        mix(before.light, after.light, share),
+        mix(before.transmittance, after.transmittance, share),
+        mix(before.distance, after.distance, share),
+    );
+}
+
 // All layers up to `range`.
 fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
-    var seen = CloudMarch(vec3f(0.0), 1.0, 0.0);
+    var seen = CloudMarch(vec3f(0.0), 1.0, vec2f(0.0));
     let lowest = -(clouds.radius + clouds.altitude) * direction.z;
     let ground = cloud_crossings(direction, 0.0);
     let end = select(range, min(range, ground.x), direction.z < 0.0 && ground.y > ground.x && ground.x > 0.0);
@@ -95,19 +111,22 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
             if last <= first || seen.transmittance < CLOUD_LEAST {
                 continue;
             }
-            seen = cloud_layer_along(layer, direction, first, min(last, first + 60.0e3), seen, jitter);
+            let behind = cloud_layer_along(layer, direction, first, min(last, first + 60.0e3), seen, jitter);
+            seen = cloud_part(seen, behind, layer.medium.z);
         }
     }
-    let cover = 1.0 - seen.transmittance;
-    let distance = select(1e6, seen.distance / max(cover, 1e-6), cover > 1e-4);
-    return CloudSeen(seen.light, seen.transmittance, distance);
+    let cover = max(1.0 - seen.transmittance, 1e-6);
+    let middle = seen.distance.x / cover;
+    // An even stretch is sqrt(3) standard deviations long to either side.
+    let half = 1e3 * sqrt(3.0 * max(seen.distance.y / cover - middle * middle * 1e-6, 0.0));
+    return CloudSeen(seen.light, seen.transmittance, max(middle + vec2f(-half, half), vec2f(1.0)));
 }
 
 // With the air before them.
 fn clouds_seen(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     var seen = clouds_along(direction, range, jitter);
     if seen.transmittance < 1.0 {
-        let air = air_between(direction, seen.distance);
+        let air = air_between(direction, 0.5 * (seen.reach.x + seen.reach.y));
         seen.light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
     }
     return seen;

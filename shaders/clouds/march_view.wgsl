@@ -1,29 +1,23 @@
-// Clouds along the rays of some pixels of a picture; where the host's depth has several samples a pixel, the first stands for them.
-//!include "common/host.wgsl"
+// Clouds along the rays of some pixels of a picture. They are marched whether the host's things hide them or not: what stands before a cloud
+// and what stands in it is told apart by the composition, for every pixel and sample, and leaves no trail where it moves.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/picture.wgsl"
+//!include "common/frame.wgsl"
 
-@group(0) @binding(7) var host_depth: HostDepth;
-@group(0) @binding(8) var<uniform> picture: CloudsPicture;
-
-override HAS_DEPTH: bool = true;
+@group(0) @binding(7) var<uniform> picture: CloudsPicture;
 
 struct MarchedPixel {
     @location(0) seen: vec4f,
-    // log2 of the distance, m.
-    @location(1) distance: vec4f,
+    // log2 of the reach, m, times 1 - transmittance, so that a mean of texels is that of what is seen.
+    @location(1) reach: vec4f,
 }
 
 @fragment
 fn march(in: FullscreenVarying) -> MarchedPixel {
     drawn = frame.drawn;
-    let pixel = marched_pixel(picture, vec2u(in.position.xy));
-    let ndc = pixel_ndc(picture, pixel, frame.y_sign);
-    var range = RANGE_SKY;
-    if HAS_DEPTH {
-        range = view_range(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
-    }
-    let seen = clouds_seen(view_ray(frame.depth, ndc).direction, range, clouds.jitter);
-    return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(max(seen.distance, 1.0))));
+    let ndc = pixel_ndc(picture, marched_pixel(picture, vec2u(in.position.xy)), frame.y_sign);
+    let seen = clouds_seen(view_ray(frame.depth, ndc).direction, RANGE_SKY, clouds.jitter);
+    let cover = 1.0 - seen.transmittance;
+    return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
 }

@@ -10,11 +10,14 @@ override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
-// A layer of the sky. Without clouds what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
-// With clouds these: their light with the exposure on it, and what they let through (clouds/).
-@group(0) @binding(11) var sky_layer: texture_2d<f32>;
+// Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
+// With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
+// between which they stand, m.
+@group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
+// A closed layer above them all is drawn as a deck.
+override DECK_BEHIND: bool = false;
 // Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
 const CLOUD_STRAIGHT: f32 = 1.8;
 override STARS: bool = false;
@@ -30,11 +33,21 @@ fn has_clouds() -> bool {
     return CLOUDS && in_picture;
 }
 
+// How far the sky is a deck.
+fn deck_share() -> f32 {
+    return select(frame.deck_cover, select(0.0, 1.0, DECK_BEHIND), has_clouds());
+}
+
+// A deck hides all that is behind it.
+fn deck_hides_all() -> bool {
+    return DECK_CLOSED && (DECK_BEHIND || !has_clouds());
+}
+
 fn night_light() -> vec3f {
-    if !STARS || CLOUDS || frame.behind.y == 0.0 {
+    if !STARS || frame.behind.y == 0.0 {
         return frame.night_floor;
     }
-    let light = textureLoad(sky_layer, layer_pixel, 0).rgb * frame.behind.x;
+    let light = textureLoad(sky_layers, layer_pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
     return mix(frame.night_floor, light, frame.behind.y * drawn.z);
 }
 
@@ -46,13 +59,22 @@ fn ground_under_deck(path: SkyPath) -> vec3f {
     return frame.deck * mix(vec3f(overcast_gradation(0.0)), ground, transmittance);
 }
 
+// The discs of sun and moon behind clouds. A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
+fn disc_light(path: SkyPath, d: vec3f) -> vec3f {
+    if !DISCS {
+        return vec3f(0.0);
+    }
+    let through = select(frame.direct_share, cloud_disc(), has_clouds());
+    return max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * through), vec3f(0.0));
+}
+
 fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
-    let deck_cover = select(frame.deck_cover, 0.0, has_clouds());
-    if (!CLEAR_SKY || (DECK_CLOSED && !has_clouds()) || drawn.z == 0.0) && d.z >= 0.0 {
+    let deck_cover = deck_share();
+    if (!CLEAR_SKY || deck_hides_all() || drawn.z == 0.0) && d.z >= 0.0 {
         return mix(frame.night_floor, frame.deck * overcast_gradation(d.z), deck_cover);
     }
     let night = night_light();
-    if DECK_CLOSED && !has_clouds() {
+    if deck_hides_all() {
         return ground_under_deck(path) + night;
     }
     let spectrum = sky_radiance_on(path, d);
@@ -60,28 +82,27 @@ fn sky_behind(path: SkyPath, d: vec3f) -> vec3f {
         let clear = color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share;
         return mix(clear, ground_under_deck(path), frame.deck_cover) + night;
     }
-    // A disc takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-    var clear = color_of(spectrum);
-    if DISCS {
-        let through = select(frame.direct_share, cloud_disc(), has_clouds());
-        clear += max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * through), vec3f(0.0));
-    }
-    clear = clear * drawn.z + night;
+    let clear = (color_of(spectrum) + disc_light(path, d)) * drawn.z + night;
     return mix(clear, frame.deck * overcast_gradation(d.z), deck_cover);
 }
 
 // Share of a disc's light that gets through clouds straight, over what they let through with all that they scatter straight on.
 fn cloud_disc() -> f32 {
-    let left = textureLoad(sky_layer, layer_pixel, 0).a;
+    let left = textureLoad(sky_layers, layer_pixel, 0, 0).a;
     return pow(left, CLOUD_STRAIGHT - 1.0);
 }
 
-// Clouds before what is behind them.
-fn with_clouds(behind: Veil) -> Veil {
+// Clouds before what is behind them; as many of them as stand before something at this range.
+fn with_clouds(behind: Veil, range: f32) -> Veil {
     if !has_clouds() {
         return behind;
     }
-    let layer = textureLoad(sky_layer, layer_pixel, 0);
+    var layer = textureLoad(sky_layers, layer_pixel, 0, 0);
+    if range < RANGE_SKY {
+        let reach = exp2(textureLoad(sky_layers, layer_pixel, 1, 0).rg);
+        let share = clamp((range - reach.x) / max(reach.y - reach.x, 1.0), 0.0, 1.0);
+        layer = mix(vec4f(0.0, 0.0, 0.0, 1.0), layer, share);
+    }
     return Veil(behind.light * layer.a + layer.rgb / frame.exposure, behind.transmittance * layer.a);
 }
 
@@ -103,7 +124,7 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
     } else if MEDIUM && !sky {
         veil = air_on(path, ray.direction);
     }
-    veil = with_clouds(veil);
+    veil = with_clouds(veil, range);
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
     }

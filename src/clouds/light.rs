@@ -69,13 +69,21 @@ fn legendre_sum(terms: [f64; 4], x: f64) -> f64 {
     terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3]
 }
 
-/// The cosine that light follows from side to side of a box, of mean 1, and its slope along the axis.
-fn across(near: f64, far: f64, turning: f64) -> (f64, f64) {
-    let width = (near + far).max(1e-3);
-    let b = std::f64::consts::PI / (width + 1.42 / turning);
-    let (half, off) = (0.5 * b * width, 0.5 * b * (near - far));
+/// Extent of a box from side to side as diffusing light has it: to where it would be dark.
+fn reach(near: f64, far: f64, turning: f64) -> f64 {
+    (near + far).max(1e-3) + 1.42 / turning
+}
+
+/// What light follows from side to side of a box, of mean 1, and its slope along the axis. In a box no wider than it is high, a cosine; the
+/// wider the box, the more of its light leaves through top and base before it comes to a side, and the more even it is between them.
+fn across(near: f64, far: f64, turning: f64, height: f64) -> (f64, f64) {
+    let extent = reach(near, far, turning);
+    let b = std::f64::consts::PI / extent;
+    let (half, off) = (0.5 * b * (near + far).max(1e-3), 0.5 * b * (near - far));
     let mean = half.sin() / half;
-    (off.cos() / mean, -b * off.sin() / mean)
+    let sideways = (height / extent).powi(2);
+    let share = (2.0 * sideways / (1.0 + sideways)).min(1.0);
+    (1.0 + share * (off.cos() / mean - 1.0), -b * off.sin() / mean)
 }
 
 impl Sources {
@@ -95,9 +103,11 @@ impl Sources {
         let down = if sun.z >= 0.0 { -up } else { up };
 
         // A box of which one axis is upright, one along the sun's level direction, one across.
-        let (shape_a, slope_a) = across(at.near, at.far, turning);
-        let (shape_c, slope_c) = across(at.left, at.right, turning);
-        let (shape_u, slope_u) = across(above, below, turning);
+        let (height, depth) = (reach(above, below, turning), reach(at.near, at.far, turning));
+        let [sides_a, sides_c] = [(at.near, at.far, along), (at.left, at.right, sideways)]
+            .map(|(near, far, x)| (across(near, far, turning, height), x));
+        let sides_u = (across(above, below, turning, depth), down);
+        let sides_across = (across(at.left, at.right, turning, depth), sideways);
         let (a, c, u) = (at.near + at.far, at.left + at.right, above + below);
         let leak = leak_rate([a, c], turning);
         let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
@@ -107,8 +117,6 @@ impl Sources {
             let mean = terms[0] / of.scaled_albedo() * 4.0 * std::f64::consts::PI;
             legendre_sum(terms, axis) * s1 * s2 - spread * mean * (d1 * s2 * x1 + d2 * s1 * x2)
         };
-        let (sides_a, sides_c) = (((shape_a, slope_a), along), ((shape_c, slope_c), sideways));
-        let sides_u = ((shape_u, slope_u), down);
 
         let rate = PART_RATE * turning;
         let by_top = (-rate * above / cosine).exp();
@@ -117,7 +125,7 @@ impl Sources {
         let share = ((-rate * at.to_sun).exp() / both).min(1.0);
         let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);
         let side_leak = leak_rate([u, c], turning);
-        let side = through(table_at(&self.side, at.near, at.far, side_leak), along, [sides_u, sides_c]);
+        let side = through(table_at(&self.side, at.near, at.far, side_leak), along, [sides_u, sides_across]);
         let side = if sine > 1e-6 { side } else { 0.0 };
         let momentum = (-turning * at.to_sun).exp() - (-at.to_sun).exp();
         let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * std::f64::consts::PI) * momentum;
@@ -133,5 +141,44 @@ impl Sources {
             sky: through(sky_terms(at.above, at.below), -up, [sides_a, sides_c]).max(0.0),
             ground: through(sky_terms(at.below, at.above), up, [sides_a, sides_c]).max(0.0),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        clouds::transport::Transport,
+        light::{Phase, PhaseLobes},
+    };
+
+    /// The light in the middle of a box as wide as `width` heights.
+    fn in_the_middle(width: f64) -> Scattered {
+        let transport = Transport::new(Scattering::new(PhaseLobes::new(&Phase::HenyeyGreenstein { g: 0.85 }), 1.0));
+        let (sine, cosine) = (0.5, 0.75f64.sqrt());
+        let sources = Sources {
+            scattering: transport.scattering,
+            to_sun: DVec3::new(-sine, 0.0, cosine),
+            top: transport.under_beam(cosine),
+            side: transport.under_beam(sine),
+            sky: transport.under_sky(),
+        };
+        let (half, side) = (4.0, 4.0 * width);
+        let at =
+            Depths { above: half, below: half, to_sun: half / cosine, near: side, far: side, left: side, right: side };
+        sources.scattered(&at, DVec3::NEG_Z, 2.0)
+    }
+
+    #[test]
+    fn a_wide_box_is_lit_as_a_layer_without_sides() {
+        let (wide, endless) = (in_the_middle(16.0), in_the_middle(1e5));
+        for (name, one, other) in
+            [("sun", wide.sun, endless.sun), ("sky", wide.sky, endless.sky), ("ground", wide.ground, endless.ground)]
+        {
+            println!("{name}: {one:.4} and {other:.4}");
+            assert!((one / other - 1.0).abs() < 0.03, "{name}: {one} in a wide box, {other} without sides");
+        }
+        // Between a sky and a ground of the same light a cloud that takes nothing is as bright as they are.
+        assert!((endless.sky + endless.ground - 1.0).abs() < 0.03, "{} {}", endless.sky, endless.ground);
     }
 }

@@ -7,7 +7,7 @@ use bytemuck::Zeroable as _;
 
 use super::{
     cover::seen_over_seeds,
-    passes::{LightTables, sampler},
+    tables::{LightTables, sampler},
     transport::{Scattering, Transport},
     uniforms::{CloudsUniform, LayerUniform, MediumUniform},
 };

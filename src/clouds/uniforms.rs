@@ -82,7 +82,8 @@ pub(super) struct LayerLight {
 
 impl LayerUniform {
     /// Of a layer over which the camera stands at `place_m` (east and north of the world's origin).
-    pub fn new(s: &Shape, place_m: DVec2, light: &LayerLight, medium: (usize, &Scattering)) -> Self {
+    /// `share` of it is drawn as a volume, the rest as a deck.
+    pub fn new(s: &Shape, share: f64, place_m: DVec2, light: &LayerLight, medium: (usize, &Scattering)) -> Self {
         // Positions in periods, reduced in f64: metres of a far origin have no digits left in f32.
         let cell = (place_m - s.drift_m) / s.scale_m;
         let first = cell / MAP_CELLS;
@@ -100,7 +101,7 @@ impl LayerUniform {
             sun: padded(light.sun, 0.0),
             above: padded(light.above, 0.0),
             below: padded(light.below, width),
-            medium: [medium.0 as f32, scaled as f32, 0.0, 0.0],
+            medium: [medium.0 as f32, scaled as f32, share as f32, 0.0],
         }
     }
 }

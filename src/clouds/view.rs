@@ -13,8 +13,8 @@ use super::{
 use crate::{
     error::Result,
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Sampling, Shot, Stages, Texture, yes},
-    weather::CloudSlab,
+    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Shot, Stages, Texture, yes},
+    weather::{CloudSlab, smoothstep},
     world::light_above_clouds,
 };
 
@@ -25,9 +25,24 @@ const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
 /// Diameters of droplets for which tables are made, um.
 const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 
+/// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
+const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
+/// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck shows none.
+const DISC_PALES: [f64; 2] = [12.0, 14.0];
+
+/// A layer of cloud, and how much of it is drawn as a volume: the rest is drawn as a deck.
+#[derive(Clone, Copy)]
+struct Layer {
+    shape: Shape,
+    slab: CloudSlab,
+    share: f64,
+}
+
 /// What there is of clouds over a camera.
 struct Overhead {
-    layers: [(Shape, CloudSlab); LAYERS],
+    layers: [Layer; LAYERS],
+    /// Some of what is above the camera is drawn as a deck.
+    has_deck: bool,
     count: usize,
     place_m: DVec2,
     liquid_um: f64,
@@ -51,6 +66,8 @@ pub(crate) struct CloudsView {
     before: Option<Before>,
     /// The picture before this call holds the last frame's clouds.
     kept: bool,
+    /// The layer of stars that shine between them.
+    behind: Option<wgpu::Texture>,
 }
 
 impl CloudsView {
@@ -67,24 +84,48 @@ impl CloudsView {
             return Ok(());
         }
         let drift = now.carrying()?.displacement_m().truncate();
-        let shape = |slab: &CloudSlab| (Shape::new(&scene.conditions, slab, drift, now.time_s), *slab);
+        let (station_m, above_m) = (scene.conditions.air.station_altitude_m, scene.place.altitude_m);
+        let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
+        // What is above a deck is hidden by it.
+        let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
+        let layer = |slab: &CloudSlab| Layer {
+            shape: Shape::new(&scene.conditions, slab, drift, now.time_s),
+            slab: *slab,
+            share: if is_above(slab) { share } else { 1.0 },
+        };
         let mut overhead = Overhead {
-            layers: [shape(&CloudSlab::NONE); LAYERS],
+            layers: [layer(&CloudSlab::NONE); LAYERS],
+            has_deck: share < 1.0,
             count: 0,
             place_m: DVec2::from_array(scene.map_m),
             liquid_um: nearest_diameter(slabs()),
         };
-        for slab in slabs() {
-            overhead.layers[overhead.count] = shape(slab);
+        for layer in slabs().map(layer).filter(|l| l.share > 0.0) {
+            overhead.layers[overhead.count] = layer;
             overhead.count += 1;
         }
-        self.overhead = Some(overhead);
+        self.overhead = (overhead.count > 0).then_some(overhead);
+        if self.overhead.is_none() {
+            self.before = None;
+        }
         Ok(())
     }
 
     fn is_there(&self, stages: Stages) -> bool {
         self.overhead.is_some() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM))
     }
+}
+
+/// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from further below, is a deck
+/// in the same light: nothing else is seen of it.
+fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
+    if lowest.cover < 1.0 || scene.deck_cover < 1.0 {
+        return 1.0;
+    }
+    let over_m = scene.conditions.air.station_altitude_m + lowest.base_m - scene.place.altitude_m;
+    let near = 1.0 - smoothstep(DECK_FROM_M[0], DECK_FROM_M[1], over_m);
+    let depth = lowest.optical_depth / scene.brighter().direction.z.max(0.01);
+    near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
 }
 
 /// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
@@ -125,10 +166,10 @@ impl Overhead {
         let scene = &shot.now.scene;
         let light = scene.brighter();
         let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
-        for (to, (shape, slab)) in layers.iter_mut().zip(&self.layers[..self.count]) {
+        for (to, Layer { shape, slab, share }) in layers.iter_mut().zip(&self.layers[..self.count]) {
             let medium = usize::from(slab.ice_fraction > 0.5);
             let of = (medium, &passes.tables.light.media[medium].scattering);
-            *to = LayerUniform::new(shape, self.place_m, &light_on(scene, shape, shot.exposure), of);
+            *to = LayerUniform::new(shape, *share, self.place_m, &light_on(scene, shape, shot.exposure), of);
         }
         CloudsUniform {
             to_sun: light.direction.as_vec3().to_array(),
@@ -147,7 +188,7 @@ impl CloudsView {
     /// How a picture's clouds follow from the last frame's.
     fn picture(&self, shot: &Shot<'_>) -> (PictureUniform, Before) {
         let (frame, now) = (shot.frame, shot.now);
-        let drift_m = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.layers[0].0.drift_m);
+        let drift_m = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.layers[0].shape.drift_m);
         let here =
             Before { frame_id: frame.frame_id, clip: shot.clip(), eye: now.eye, drift_m, exposure: shot.exposure };
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
@@ -192,6 +233,8 @@ impl DrawnEffect for CloudsView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let is_there = self.is_there(to.stages) && self.passes.is_some();
         to.constant("CLOUDS", yes(is_there), yes(is_there));
+        let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
+        to.constant("DECK_BEHIND", deck, deck);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
             let texture = shot.color.texture;
             let size = (texture.width(), texture.height());
@@ -200,6 +243,8 @@ impl DrawnEffect for CloudsView {
             if !drawn {
                 self.kept = passes.hold(shot.device, size, side(shot.frame)) && self.before.is_some();
             }
+            let stars = to.textures[Texture::Behind as usize].take();
+            self.behind = stars.filter(|_| to.block.behind[1] > 0.0).map(|view| view.texture().clone());
             to.set_texture(Texture::Behind, passes.next());
         }
         Ok(())
@@ -220,12 +265,9 @@ impl DrawnEffect for CloudsView {
             picture,
             frame: with.block,
             sky: (layout, group),
-            depth: shot.frame.depth_layer(),
-            sampling: Sampling::of(shot.color.texture, shot.frame.depth),
-            depth_kinds: f64::from(shot.rays.depth_kinds()),
+            behind: self.behind.as_ref(),
         };
-        passes.draw(to.device, to.encoder, &of)?;
-        to.passes += 2;
+        to.passes += passes.draw(to.device, to.encoder, &of)?;
         self.before = Some(here);
         Ok(())
     }

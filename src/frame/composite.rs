@@ -113,6 +113,8 @@ pub(super) struct Composite {
     pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
     kinds: Recent<Kinds, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
+    /// The same as a texture of layers.
+    no_layers: wgpu::TextureView,
     reads_samples: bool,
 }
 
@@ -130,7 +132,7 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
         (8, Slot::Texels),
         (9, Slot::Texels),
         (10, Slot::Texels),
-        (11, Slot::Texels),
+        (11, Slot::TexelsArray),
     ];
     bind::layout(device, "frame", wgpu::ShaderStages::FRAGMENT, &slots)
 }
@@ -139,13 +141,15 @@ impl Composite {
     pub fn new(device: &Device) -> Self {
         let multi =
             device.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::MULTISAMPLED_SHADING);
+        let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
             layouts: Sampling::ALL.map(|sampling| layout(&device.device, sampling)),
             layout_tables: tables_layout(device),
             layout_around: around_layout(&device.device),
             pipelines: Recent::new(),
             kinds: Recent::new(),
-            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::as_layers(none.texture()),
+            none,
             reads_samples: multi,
         }
     }
@@ -196,7 +200,7 @@ impl Composite {
                 entry(8, terrain.unwrap_or(&self.none)),
                 entry(9, classes.as_ref().unwrap_or(&self.none)),
                 entry(10, normals.as_ref().unwrap_or(&self.none)),
-                entry(11, behind.unwrap_or(&self.none)),
+                entry(11, behind.unwrap_or(&self.no_layers)),
             ],
         }))
     }

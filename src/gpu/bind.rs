@@ -13,7 +13,9 @@ pub(crate) enum Slot {
     StorageRead(u64),
     /// A texture of floats, read texel by texel.
     Texels,
-    /// The same with several samples a pixel.
+    /// Layers of them.
+    TexelsArray,
+    /// A texture with several samples a pixel.
     Samples,
     /// A texture of whole numbers.
     Words,
@@ -54,6 +56,7 @@ impl Slot {
             Self::Storage(bytes) => buffer(B::Storage { read_only: false }, false, bytes),
             Self::StorageRead(bytes) => buffer(B::Storage { read_only: true }, false, bytes),
             Self::Texels => texture(float(false), D::D2, false),
+            Self::TexelsArray => texture(float(false), D::D2Array, false),
             Self::Samples => texture(float(false), D::D2, true),
             Self::Words => texture(T::Uint, D::D2, false),
             Self::Filtered => texture(float(true), D::D2, false),
@@ -105,4 +108,12 @@ pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgp
         view_formats: &[],
     });
     texture.create_view(&Default::default())
+}
+
+/// All layers of a texture, also of one that has a single layer.
+pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
 }

@@ -65,8 +65,8 @@ pub(crate) enum Texture {
     OnGround = 1,
     /// Heights and classes of the host's terrain.
     Terrain = 2,
-    /// What stands behind the sky's own light: radiance over [`FrameUniform::behind`]; or what hangs before it: light with the exposure on
-    /// it, and what it lets through.
+    /// Layers of the sky. The last is what stands behind the sky's own light: radiance over [`FrameUniform::behind`]. Before it may be
+    /// two of what hangs before the sky: light with the exposure on it and what it lets through, and how far away it is.
     Behind = 3,
 }
 

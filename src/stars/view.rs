@@ -12,7 +12,7 @@ use super::{
 use crate::{
     almanac::Utc,
     error::Result,
-    gpu::Device,
+    gpu::{Device, bind},
     light::luminance,
     moment::{Moment, Scene},
     plan::{
@@ -61,7 +61,7 @@ pub(crate) struct StarsView {
     settings: StarSettings,
     tonight: Option<Tonight>,
     passes: Option<Box<(StarPass, GlowPass)>>,
-    layer: Option<(wgpu::Texture, wgpu::TextureView)>,
+    layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
 }
 
 impl StarsView {
@@ -97,7 +97,7 @@ impl StarsView {
 
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
-        if self.layer.as_ref().is_some_and(|(texture, _)| texture.size() != size) {
+        if self.layer.as_ref().is_some_and(|(texture, ..)| texture.size() != size) {
             self.layer = None;
         }
         let made = self.layer.get_or_insert_with(|| {
@@ -108,13 +108,16 @@ impl StarsView {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             });
             let view = texture.create_view(&Default::default());
-            (texture, view)
+            let layers = bind::as_layers(&texture);
+            (texture, view, layers)
         });
-        &made.1
+        &made.2
     }
 }
 
@@ -209,7 +212,7 @@ impl DrawnEffect for StarsView {
         if !self.is_there(with.composition.stages) || block.behind[1] == 0.0 {
             return Ok(());
         }
-        let (Some(tonight), Some((_, target))) = (&self.tonight, &self.layer) else { return Ok(()) };
+        let (Some(tonight), Some((_, target, _))) = (&self.tonight, &self.layer) else { return Ok(()) };
         let passes = match &mut self.passes {
             Some(passes) => passes,
             none => none.insert(Box::new((StarPass::new(to.device), GlowPass::new(to.device, FORMAT)?))),
@@ -240,7 +243,7 @@ impl DrawnEffect for StarsView {
     }
 
     fn bytes(&self) -> u64 {
-        let layer = self.layer.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
+        let layer = self.layer.as_ref().map_or(0, |(t, ..)| 8 * u64::from(t.width()) * u64::from(t.height()));
         layer + self.passes.as_ref().map_or(0, |passes| passes.0.bytes() + passes.1.bytes())
     }
 

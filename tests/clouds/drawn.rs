@@ -38,11 +38,22 @@ impl Sky {
 
     /// The picture of a frame, cd/m^2 a channel.
     fn take(&mut self, yaw_deg: f64, height_m: f64, flags: FrameFlags) -> Vec<[f64; 3]> {
-        self.frame_id += 1;
         let yaw = yaw_deg.to_radians();
         let forward = DVec3::new(yaw.sin(), yaw.cos(), if height_m > 1e3 { -0.2 } else { 0.35 });
-        let camera = Camera::look_to(DVec3::Z * height_m, forward, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
-        let mut frame = Frame::new(self.frame_id, camera, &self.color, None);
+        self.look(forward, height_m, None, flags)
+    }
+
+    /// The same along a direction, with a host's depth.
+    fn look(
+        &mut self,
+        forward: DVec3,
+        height_m: f64,
+        depth: Option<&wgpu::Texture>,
+        flags: FrameFlags,
+    ) -> Vec<[f64; 3]> {
+        self.frame_id += 1;
+        let camera = Camera::look_to(DVec3::Z * height_m, forward, DVec3::new(0.1, 0.0, 1.0), 1.0, 16.0 / 9.0, 0.1);
+        let mut frame = Frame::new(self.frame_id, camera, &self.color, depth);
         frame.flags = flags;
         self.view.record(&self.context, &frame, Stages::BACKGROUND.with(Stages::MEDIUM)).unwrap();
         let texels = readback::rgba(&self.device, &self.color).unwrap();
@@ -115,7 +126,7 @@ fn a_turning_camera_leaves_no_trail() {
 
 #[test]
 fn a_closed_layer_hides_the_sky_from_below_and_the_ground_from_above() {
-    let mut sky = Sky::new("LOWI 121150Z 00000KT 9999 OVC030 18/12 Q1015", CloudModel::Volume);
+    let mut sky = Sky::new(CLOSED, CloudModel::Volume);
     let mut clear = Sky::new("LOWI 121150Z 00000KT CAVOK 18/12 Q1015", CloudModel::Deck);
     let pure = FrameFlags::NO_HISTORY;
     let spread = |p: &[[f64; 3]]| p.iter().map(|c| c[2] / c[0].max(1e-9)).sum::<f64>() / p.len() as f64;
@@ -124,9 +135,72 @@ fn a_closed_layer_hides_the_sky_from_below_and_the_ground_from_above() {
     println!("blue over red: under {:.2}, above {:.2}, clear {:.2}", spread(&below), spread(&above), spread(&open));
     assert!(spread(&below) < 1.3 && spread(&open) > 1.6);
     // The last rows look down on the tops.
-    let mean = |p: &[[f64; 3]]| p.iter().map(luminance).sum::<f64>() / p.len() as f64;
     let (tops, bases) = (mean(&above[above.len() * 3 / 4..]), mean(&below));
     println!("tops {tops:.0}, bases {bases:.0} cd/m^2");
     assert!(tops > 2.0 * bases, "{tops} {bases}");
     assert!(below.iter().chain(&above).flatten().all(|v| v.is_finite() && *v >= 0.0));
+}
+
+const CLOSED: &str = "LOWI 121150Z 00000KT 9999 OVC030 18/12 Q1015";
+
+fn mean(picture: &[[f64; 3]]) -> f64 {
+    picture.iter().map(luminance).sum::<f64>() / picture.len() as f64
+}
+
+/// A closed layer is a deck from far below, and a volume where the camera comes near its base at 914 m.
+#[test]
+fn a_deck_becomes_a_volume_without_a_jump() {
+    let mut sky = Sky::new(CLOSED, CloudModel::Volume);
+    let mut deck = Sky::new(CLOSED, CloudModel::Deck);
+    let up = DVec3::new(0.0, 0.3, 1.0);
+    let pure = FrameFlags::NO_HISTORY;
+    assert_eq!(sky.look(up, 2.0, None, pure), deck.look(up, 2.0, None, pure), "from far below it is the deck");
+    let seen: Vec<f64> = (0..17).map(|i| mean(&sky.look(up, 450.0 + 25.0 * f64::from(i), None, pure))).collect();
+    println!("from 450 m to 850 m: {seen:.0?} cd/m^2");
+    for pair in seen.windows(2) {
+        assert!((pair[1] / pair[0] - 1.0).abs() < 0.04, "{seen:?}");
+    }
+    assert!((seen[16] / seen[0] - 1.0).abs() < 0.15, "{seen:?}");
+}
+
+/// The light under a closed layer is the same in both models: their laws have nothing in common but the layer.
+#[test]
+fn volume_and_deck_are_as_bright_as_one_another() {
+    let mut sky = Sky::new(CLOSED, CloudModel::Volume);
+    let mut deck = Sky::new(CLOSED, CloudModel::Deck);
+    let up = DVec3::new(0.0, 0.3, 1.0);
+    let (volume, deck) = (
+        mean(&sky.look(up, 714.0, None, FrameFlags::NO_HISTORY)),
+        mean(&deck.look(up, 714.0, None, FrameFlags::NO_HISTORY)),
+    );
+    println!("volume {volume:.0}, deck {deck:.0} cd/m^2");
+    assert!((volume / deck - 1.0).abs() < 0.1, "{volume} and {deck}");
+}
+
+/// A wall 30 m ahead stands before the clouds, one 40 km ahead behind them, and no pixel of either shows what the other hides.
+#[test]
+fn things_stand_before_and_behind_clouds() {
+    let mut sky = Sky::new(BROKEN, CloudModel::Volume);
+    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let mut seen = |range_m: Option<f32>| {
+        let texels = vec![range_m.map_or(0.0, |r| 0.1 / r); (SIZE.0 * SIZE.1) as usize];
+        let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
+        sky.device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
+        sky.look(DVec3::new(0.0, 1.0, 0.35), 2.0, Some(&depth), FrameFlags::NO_HISTORY)
+    };
+    let (near, far, open) = (seen(Some(30.0)), seen(Some(40e3)), seen(None));
+    // The host drew black: what is seen before it is air, and cloud.
+    let brightest = |p: &[[f64; 3]]| p.iter().map(luminance).fold(0.0, f64::max);
+    println!(
+        "before a wall at 30 m {:.1}, at 40 km {:.0}, the sky {:.0}",
+        brightest(&near),
+        brightest(&far),
+        brightest(&open)
+    );
+    assert!(brightest(&near) < 0.01 * brightest(&open));
+    let rows = |p: &[[f64; 3]]| p[..(SIZE.0 * SIZE.1 / 3) as usize].to_vec();
+    let (far, open) = (rows(&far), rows(&open));
+    // Clouds of the upper third are within 40 km: their bright tops are as bright before the wall.
+    assert!((brightest(&far) / brightest(&open) - 1.0).abs() < 0.02);
 }

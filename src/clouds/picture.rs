@@ -1,0 +1,95 @@
+//! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them and of the last.
+
+use crate::gpu::{Device, bind};
+
+/// Of what is seen of clouds.
+pub(super) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Of two numbers of a place in the picture.
+pub(super) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's own light.
+pub(super) const LAYERS: u32 = 3;
+/// The last of them.
+pub(super) const BEHIND: u32 = 2;
+
+fn texture(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat, layers: u32) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("clouds"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// The whole picture as one frame left it.
+pub(super) struct Whole {
+    pub texture: wgpu::Texture,
+    /// All layers, as the composition reads them.
+    pub layers: wgpu::TextureView,
+    /// What is seen, and the reach.
+    pub written: [wgpu::TextureView; 2],
+}
+
+impl Whole {
+    fn new(device: &Device, size: (u32, u32)) -> Self {
+        let texture = texture(device, size, SEEN, LAYERS);
+        let layers = bind::as_layers(&texture);
+        let layer = |base_array_layer| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let written = [layer(0), layer(1)];
+        Self { texture, layers, written }
+    }
+}
+
+/// A picture's textures.
+pub(super) struct Picture {
+    /// Pixels, and the side of the squares of which one is marched a frame.
+    pub of: ((u32, u32), u32),
+    /// What this frame's pixels see of clouds, and how far these reach.
+    pub marched: [wgpu::TextureView; 2],
+    /// Of each square the least and the most that is seen about it, and where it was in the last frame.
+    pub followed: [wgpu::TextureView; 3],
+    pub whole: [Whole; 2],
+    /// Which of the two was written last.
+    pub newest: usize,
+    /// What the passes after the march are bound to.
+    pub groups: Option<[wgpu::BindGroup; 3]>,
+}
+
+impl Picture {
+    pub fn new(device: &Device, size: (u32, u32), side: u32) -> Self {
+        let low = (size.0.div_ceil(side), size.1.div_ceil(side));
+        let one = |format| texture(device, low, format, 1).create_view(&Default::default());
+        Self {
+            of: (size, side),
+            marched: [one(SEEN), one(PAIR)],
+            followed: [one(SEEN), one(SEEN), one(PAIR)],
+            whole: [Whole::new(device, size), Whole::new(device, size)],
+            newest: 0,
+            groups: None,
+        }
+    }
+
+    /// The one that this frame makes.
+    pub fn next(&self) -> &Whole {
+        &self.whole[1 - self.newest]
+    }
+
+    /// Bytes of GPU memory.
+    pub fn bytes(&self) -> u64 {
+        let ((width, height), side) = self.of;
+        let low = u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));
+        2 * 8 * u64::from(LAYERS) * u64::from(width) * u64::from(height) + (3 * 8 + 2 * 4) * low
+    }
+}

@@ -1,0 +1,154 @@
+//! What shaders look clouds up in: the map, the solid noise, and light that is scattered more than once.
+
+use std::sync::Arc;
+
+use half::f16;
+
+use super::{
+    cover::{SOLID_SIZE, solid_settings},
+    field::{MAP_SIZE, Map},
+    transport::{DEPTHS, LEAKS, Scattering, Table, Transport},
+};
+use crate::{
+    error::Result,
+    gpu::Device,
+    light::{Phase, PhaseLobes},
+    noise::NoiseTexture,
+};
+
+/// Format of the map and of the tables of light.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Change of the sun's cosine after which the tables under its beam are made anew.
+const SUN_MOVED: f64 = 2e-3;
+/// Asymmetry of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
+const ICE_ASYMMETRY: f64 = 0.77;
+
+fn texture(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+fn write_halves(device: &Device, texture: &wgpu::Texture, origin: (u32, u32), width: u32, texels: &[[f32; 4]]) {
+    let halves: Vec<u16> = texels.iter().flatten().map(|v| f16::from_f32(*v).to_bits()).collect();
+    device.queue.write_texture(
+        wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x: origin.0, y: origin.1, z: 0 },
+            ..texture.as_image_copy()
+        },
+        bytemuck::cast_slice(&halves),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * width), rows_per_image: None },
+        wgpu::Extent3d { width, height: texels.len() as u32 / width, depth_or_array_layers: 1 },
+    );
+}
+
+pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Sampler {
+    device.device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// Tables of light scattered more than once in two media, as shaders look them up.
+pub(super) struct LightTables {
+    texture: wgpu::Texture,
+    pub media: [Transport; 2],
+    /// Cosine of the sun under which they stand.
+    under: Option<f64>,
+}
+
+impl LightTables {
+    pub fn new(device: &Device, media: [Transport; 2]) -> Self {
+        let size = (3 * DEPTHS as u32, (2 * LEAKS * DEPTHS) as u32);
+        Self { texture: texture(device, "light in clouds", size), media, under: None }
+    }
+
+    pub fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&Default::default())
+    }
+
+    /// Exchanges a medium: all tables are made anew.
+    fn replace(&mut self, which: usize, medium: Transport) {
+        self.media[which] = medium;
+        self.under = None;
+    }
+
+    /// Brings them up to a sun.
+    pub fn update(&mut self, device: &Device, cosine: f64) {
+        let cosine = cosine.clamp(-1.0, 1.0);
+        if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
+            return;
+        }
+        let (across, rows) = (DEPTHS as u32, (LEAKS * DEPTHS) as u32);
+        for (i, medium) in self.media.iter().enumerate() {
+            let put = |column: u32, table: Table| {
+                write_halves(device, &self.texture, (column * across, i as u32 * rows), across, &table);
+            };
+            put(0, medium.under_beam(cosine.abs()));
+            put(1, medium.under_beam((1.0 - cosine * cosine).sqrt()));
+            if self.under.is_none() {
+                put(2, medium.under_sky());
+            }
+        }
+        self.under = Some(cosine);
+    }
+}
+
+/// What shaders look up: map, solid noise, and light.
+pub(super) struct CloudTables {
+    pub map: wgpu::TextureView,
+    pub solid: NoiseTexture,
+    pub light: LightTables,
+    pub repeating: wgpu::Sampler,
+    pub clamping: wgpu::Sampler,
+    liquid_um: f64,
+}
+
+fn medium(phase: Phase) -> Transport {
+    Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0))
+}
+
+impl CloudTables {
+    pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
+        let side = MAP_SIZE as u32;
+        let map = texture(device, "cloud map", (side, side));
+        write_halves(device, &map, (0, 0), side, &Map::new(seed).0);
+        let liquid_um = 20.0;
+        let media =
+            [Phase::Droplets { diameter_um: liquid_um }, Phase::HenyeyGreenstein { g: ICE_ASYMMETRY }].map(medium);
+        Ok(Self {
+            map: map.create_view(&Default::default()),
+            solid: NoiseTexture::new(device, [SOLID_SIZE; 3], &[solid_settings(seed)])?,
+            repeating: sampler(device, wgpu::AddressMode::Repeat),
+            clamping: sampler(device, wgpu::AddressMode::ClampToEdge),
+            liquid_um,
+            light: LightTables::new(device, media),
+        })
+    }
+
+    /// Draws what is not drawn yet, and brings the tables up to the sun and to droplets of this diameter.
+    pub fn update(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, cosine: f64, liquid_um: f64) {
+        // At once: clouds that fray later would jump.
+        self.solid.step(encoder, u32::MAX);
+        if liquid_um != self.liquid_um {
+            self.liquid_um = liquid_um;
+            self.light.replace(0, medium(Phase::Droplets { diameter_um: liquid_um }));
+        }
+        self.light.update(device, cosine);
+    }
+
+    /// Bytes of GPU memory.
+    pub const BYTES: u64 =
+        (8 * MAP_SIZE * MAP_SIZE + 8 * 6 * LEAKS * DEPTHS * DEPTHS) as u64 + (SOLID_SIZE as u64).pow(3);
+}
