@@ -2994,7 +2994,7 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
  *
  * The double-precision reference of the sky answers on the calling thread; no device is asked. The first question in
- * a new air solves the reference (some seconds; weather in transition is a new air at every time), and other threads
+ * a new air solves the reference (a second or two; weather in transition is a new air at every time), and other threads
  * that ask meanwhile wait. The last four airs are kept for all contexts of a device. docs/reflections.md has what a
  * direction costs and how far pictures may be off.
  * ====================================================================================================

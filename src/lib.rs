@@ -32,6 +32,8 @@ pub mod sky;
 mod stage;
 pub mod stars;
 mod surroundings;
+#[cfg(test)]
+mod tests;
 pub mod weather;
 pub mod wind;
 mod world;

@@ -22,7 +22,7 @@ fn processor_s() -> f64 {
 }
 
 #[test]
-fn a_picture_of_nothing_but_a_starry_sky_costs_at_most_a_quarter_more() {
+fn a_picture_of_nothing_but_a_starry_sky_costs_a_tenth_more() {
     let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     let shared = Arc::new(Shared::new(&device).unwrap());
     let sky = SkySettings {
@@ -63,7 +63,7 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_at_most_a_quarter_more() {
     let mut views = [view(0), view(1)];
     let toward = direction(165.0, 15.0);
     let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), toward, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
-    let mut spent = [0.0; 2];
+    let mut spent = [Vec::new(), Vec::new()];
     for i in 0..120u64 {
         let which = (i % 2) as usize;
         let before = processor_s();
@@ -71,14 +71,15 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_at_most_a_quarter_more() {
         device.wait().unwrap();
         // The first ones build tables and pipelines.
         if i >= 40 {
-            spent[which] += processor_s() - before;
+            spent[which].push(processor_s() - before);
         }
     }
-    let ratio = spent[0] / spent[1];
-    println!(
-        "a night with stars: {:.2} ms of processor time, without: {:.2} ms, ratio {ratio:.3}",
-        spent[0] * 25.0,
-        spent[1] * 25.0
-    );
-    assert!(ratio < 1.25, "{ratio}");
+    let [with, without] = spent.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        1e3 * times[times.len() / 2]
+    });
+    let ratio = with / without;
+    println!("a night with stars: {with:.2} ms of processor time, without: {without:.2} ms, ratio {ratio:.3}");
+    // A tenth is the aim; machines with other work to do measure a hundredth or two beside it.
+    assert!(ratio < 1.13, "{ratio}");
 }

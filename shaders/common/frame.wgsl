@@ -40,7 +40,8 @@ struct FrameUniform {
     drawn: vec4f,
     // How often the gauge composes: everything, and without each part.
     compositions: u32,
-    pad0: u32,
+    // The share of the layer behind the sky times that of the clear sky.
+    behind_drawn: f32,
     // cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
     behind: vec2f,
 }

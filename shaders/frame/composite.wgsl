@@ -28,6 +28,8 @@ override DISCS: bool = true;
 // see a deck in the clouds' place.
 var<private> layer_pixel: vec2i;
 var<private> in_picture: bool;
+// Share of that layer in the night floor's place.
+var<private> behind_share: f32;
 
 fn has_clouds() -> bool {
     return CLOUDS && in_picture;
@@ -44,11 +46,11 @@ fn deck_hides_all() -> bool {
 }
 
 fn night_light() -> vec3f {
-    if !STARS || frame.behind.y == 0.0 {
+    if !STARS {
         return frame.night_floor;
     }
     let light = textureLoad(sky_layers, layer_pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
-    return mix(frame.night_floor, light, frame.behind.y * drawn.z);
+    return mix(frame.night_floor, light, behind_share);
 }
 
 // The planet's own ground as far as it lies under a deck, whose light on it is that of an overcast sky: 7 pi / 9 of its zenith's
@@ -143,6 +145,7 @@ fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
 
 fn compose(host: vec4f, seen: Seen) -> vec4f {
     drawn = frame.drawn;
+    behind_share = frame.behind_drawn;
     layer_pixel = seen.pixel;
     in_picture = true;
     let ray = view_ray(frame.depth, seen.ndc);

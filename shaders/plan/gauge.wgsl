@@ -26,6 +26,7 @@ fn gauged(p: Looked) -> vec4u {
     var shown = array<f32, 5>();
     for (var k = 0u; k < frame.compositions; k++) {
         drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
+        behind_share = frame.behind.y * drawn.z;
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane));
     }
     // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.

@@ -181,5 +181,3 @@ impl DrawnEffect for PlaneView {
         Ok(())
     }
 }
-
-mod tests;

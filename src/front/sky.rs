@@ -28,7 +28,7 @@ impl Context {
     /// the weather's fog layer, the night's glow, and below the horizon the planet's ground count. The discs of sun and moon, stars
     /// and planets, rain areas, and the host's objects do not.
     ///
-    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: some seconds, while
+    /// The f64 reference of clear air answers, at three wavelengths. The first call in a new air solves it: a second or two, while
     /// other threads that ask wait. The last four airs are kept for all contexts of the device.
     ///
     /// # Errors

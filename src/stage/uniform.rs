@@ -30,7 +30,8 @@ pub(crate) struct FrameUniform {
     /// How much of air, fog, clear sky and what drops hide is drawn.
     pub drawn: [f32; 4],
     pub compositions: u32,
-    pub pad: u32,
+    /// The share of the layer behind the sky times that of the clear sky.
+    pub behind_drawn: f32,
     /// cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
     pub behind: [f32; 2],
 }
@@ -81,7 +82,7 @@ pub(crate) fn uniform(
         drops: [0.0; 2],
         drawn: [0.0; 4],
         compositions: 0,
-        pad: 0,
+        behind_drawn: 0.0,
         behind: [0.0; 2],
     }
 }
@@ -108,6 +109,7 @@ mod tests {
                 color_space,
                 tone,
                 seed,
+                behind_drawn,
                 y_sign,
                 dither_step,
                 pixel_angle,

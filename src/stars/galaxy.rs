@@ -91,13 +91,13 @@ pub fn unresolved_s10(galactic: DVec3) -> f64 {
 }
 
 /// Galactic latitudes of the table's rows, degrees: close where the band is steep.
-pub(super) const LATITUDES_DEG: [f64; 18] =
+const LATITUDES_DEG: [f64; 18] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 15.0, 19.0, 24.0, 30.0, 40.0, 52.0, 68.0, 90.0];
 /// Steps of half a turn of longitude.
-pub(super) const LONGITUDES: usize = 36;
+const LONGITUDES: usize = 36;
 
 /// A direction (galactic) of the table.
-pub(super) fn node(latitude_deg: f64, column: usize) -> DVec3 {
+fn node(latitude_deg: f64, column: usize) -> DVec3 {
     equatorial_direction(column as f64 / LONGITUDES as f64 * 180.0, latitude_deg)
 }
 

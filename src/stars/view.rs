@@ -200,6 +200,7 @@ impl DrawnEffect for StarsView {
         to.constant("STARS", yes(is_there), yes(is_there && share > 0.0));
         if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
             to.block.behind = [(1.0 / tonight.seen(shot, 0.0).scale) as f32, share];
+            to.block.behind_drawn = share * to.block.drawn[2];
             let layer = self.layer(shot.device, shot.color.texture).clone();
             to.set_texture(Texture::Behind, Some(layer));
         }
@@ -229,7 +230,8 @@ impl DrawnEffect for StarsView {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    // The glow's ball leaves no pixel out: clearing would cost as much again on a software driver.
+                    load: wgpu::LoadOp::Load,
                     store: wgpu::StoreOp::Store,
                 },
             })],

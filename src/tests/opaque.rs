@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use super::{CD_M2, HALF_SIZE_M, SQUARE_M};
 use crate::{
     context::{Context, ContextDesc},
+    effects::plane::{CD_M2, HALF_SIZE_M, SQUARE_M},
     frame::{ColorSpace, DepthAccess, Exposure, Frame, FrameFlags, Stages, View, tone},
     gpu::{
         Device, DeviceOptions, Shared,

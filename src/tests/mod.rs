@@ -1,0 +1,3 @@
+//! Tests of several rooms together that look at what no host can see.
+
+mod opaque;
