@@ -21,6 +21,7 @@ use crate::{
     gpu::{Device, Shared},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
+    lightning::HeldLightning,
     moment::{Moment, Scene},
     plan::{self, StepWork, parts::Part},
     planet::Planet,
@@ -83,6 +84,7 @@ pub(crate) struct Held {
     pub ground: HeldGround,
     pub stars: HeldStars,
     pub clouds: HeldClouds,
+    pub lightning: HeldLightning,
 }
 
 /// The same as it was loaded.
@@ -91,6 +93,7 @@ pub(crate) struct LoadedHeld {
     ground: LoadedGround,
     stars: HeldStars,
     clouds: HeldClouds,
+    lightning: HeldLightning,
 }
 
 impl Held {
@@ -107,17 +110,18 @@ impl Held {
             ground: HeldGround::new(desc.ground, desc.seed),
             stars: HeldStars::default(),
             clouds: HeldClouds::default(),
+            lightning: HeldLightning::default(),
         })
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 4] {
-        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 5] {
+        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds, &mut self.lightning]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 4] {
-        [&self.fog, &self.ground, &self.stars, &self.clouds]
+    pub fn all(&self) -> [&dyn HeldEffect; 5] {
+        [&self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -130,7 +134,8 @@ impl Held {
         let ground = self.ground.read(world, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
         let clouds = HeldClouds::read(state);
-        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds? })
+        let lightning = self.lightning.read(state);
+        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds?, lightning: lightning? })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -140,6 +145,7 @@ impl Held {
         self.ground.take_up(&mut other.ground);
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
+        std::mem::swap(&mut self.lightning, &mut other.lightning);
         world.night = self.stars.night();
     }
 }
