@@ -21,7 +21,7 @@ use crate::{
     gpu::{Device, Shared},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
-    lightning::HeldLightning,
+    lightning::{HeldLightning, LightningView},
     moment::{Moment, Scene},
     plan::{self, StepWork, parts::Part},
     planet::Planet,
@@ -179,12 +179,13 @@ pub(crate) struct Effects {
     pub glass: GlassView,
     pub stars: StarsView,
     pub clouds: CloudsView,
+    pub lightning: LightningView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
 }
 
 /// How many a view has.
-const COUNT: usize = if cfg!(test) { 8 } else { 7 };
+const COUNT: usize = if cfg!(test) { 9 } else { 8 };
 
 impl Effects {
     /// Those of a view.
@@ -200,6 +201,7 @@ impl Effects {
             glass: GlassView::new(shared),
             stars: StarsView::default(),
             clouds: CloudsView::default(),
+            lightning: LightningView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
         })
@@ -215,6 +217,7 @@ impl Effects {
             &mut self.glass,
             &mut self.stars,
             &mut self.clouds,
+            &mut self.lightning,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -230,6 +233,7 @@ impl Effects {
             &self.glass,
             &self.stars,
             &self.clouds,
+            &self.lightning,
             #[cfg(test)]
             &self.plane,
         ]
@@ -246,6 +250,8 @@ impl Effects {
         frame: &Frame<'_>,
         stages: Stages,
     ) -> Result<()> {
+        // What it lights asks for its light.
+        self.lightning.gather(now, world, &held.lightning, frame)?;
         self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;

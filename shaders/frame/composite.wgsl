@@ -4,6 +4,7 @@
 //!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
 //!include "frame/on_surfaces.wgsl"
+//!include "lightning/glow.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
@@ -85,6 +86,14 @@ fn with_clouds(behind: Veil) -> Veil {
     return Veil(behind.light * layer.a + layer.rgb / frame.exposure, behind.transmittance * layer.a);
 }
 
+// Share of what is behind that clouds hide.
+fn cover_along() -> f32 {
+    if has_clouds() {
+        return 1.0 - textureLoad(sky_layer, layer_pixel, 0).a;
+    }
+    return frame.flash_cover;
+}
+
 // Display-linear value of scene luminance.
 fn display(luminance: vec3f) -> vec3f {
     // Saturated spectra lie outside of Rec. 709 and have negative parts there.
@@ -104,8 +113,14 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
         veil = air_on(path, ray.direction);
     }
     veil = with_clouds(veil);
+    if FLASH && BACKGROUND && sky {
+        veil.light += flash_on_clouds(ray.direction) * cover_along();
+    }
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
+    }
+    if FLASH && MEDIUM {
+        veil.light += flash_in_air(ray, range);
     }
     return veil;
 }

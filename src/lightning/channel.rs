@@ -3,8 +3,8 @@
 //! # Model
 //! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share of the stretch's
 //! length. Of all shares that give a dimension near what photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested).
-//! From the way of a ground flash 6 to 14 branches leave, more of them above than below, each by 20 to 50 degrees from the way and 0.1 to
-//! 0.4 of what remains of it long; a third of them branch again. They point down, and none reaches the ground.
+//! From the way of a ground flash 8 to 17 branches leave, each by 20 to 50 degrees from the way and 0.15 to 0.6 of what remains of it
+//! long; a third of them branch again. They point down, and none reaches the ground.
 //!
 //! What stands high draws a ground flash: from a leader of peak current I the last leap is 10 I^0.65 m (Love 1973), and the leader
 //! comes down until it is so near to the ground or to something tall; that which it meets first is struck (Armstrong and Whitehead
@@ -171,11 +171,11 @@ fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowe
 }
 
 /// Branches of the first order, the fewest and how many more there may be.
-const BRANCHES: (f64, f64) = (6.0, 9.0);
+const BRANCHES: (f64, f64) = (8.0, 10.0);
 /// Their angles with the way that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
 /// Their lengths over what remains of the way.
-const LENGTHS: (f64, f64) = (0.1, 0.4);
+const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;
 /// Light of a branch over that of what it leaves: photographs show branches of first strokes some two to four times fainter.
@@ -188,8 +188,7 @@ fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
     let count = (BRANCHES.0 + BRANCHES.1 * chance.even()) as usize;
     let mut out = Vec::with_capacity(2 * count);
     for _ in 0..count {
-        // More of them above than below: stepped leaders branch most where they begin.
-        let leaves_at = 0.05 + 0.85 * chance.even() * chance.even().max(0.3);
+        let leaves_at = 0.1 + 0.8 * chance.even();
         let from = (leaves_at * (main.len() - 1) as f64) as usize;
         let remains = (end - main[from]).length();
         let points_m = branch(chance, (main[from], end - main[from]), remains, end.z + CLEAR_M, HALVINGS - 2);
@@ -240,7 +239,7 @@ mod tests {
     fn branches_lead_down_and_end_above_the_ground() {
         for flash in &ground_flashes(2000.0, 1.0)[..20] {
             let channel = Channel::new(flash, 5000.0, struck(flash, &[], 300.0));
-            assert!((6..=30).contains(&channel.branches.len()), "{}", channel.branches.len());
+            assert!((8..=34).contains(&channel.branches.len()), "{}", channel.branches.len());
             for b in &channel.branches {
                 let (first, last) = (b.points_m[0], b.points_m[b.points_m.len() - 1]);
                 assert!(last.z < first.z && b.points_m.iter().all(|p| p.z >= 300.0 && p.is_finite()));

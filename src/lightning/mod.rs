@@ -31,9 +31,11 @@
 //! a single flash differs from the mean by a factor of 2 or so. The glow has no structure of the cloud in it.
 
 pub mod channel;
+mod glow;
 mod held;
 pub mod light;
 pub mod limit;
+mod passes;
 pub mod probe;
 mod query;
 pub mod schedule;
@@ -41,9 +43,12 @@ pub mod settings;
 mod sources;
 mod storms;
 mod strike;
+mod uniforms;
+mod view;
 
 pub(crate) use held::HeldLightning;
 pub use query::{FlashEvent, LightningLight, MOST_DISTANCE_M, MOST_EXPOSURE_S, MOST_SPAN_S};
 pub(crate) use query::{events, light_at};
 pub use schedule::FlashKind;
 pub use settings::{FlashTrigger, LightningSettings, MAX_CELLS, MAX_MASTS, MAX_TRIGGERED, StormCell};
+pub(crate) use view::LightningView;

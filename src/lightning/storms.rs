@@ -34,7 +34,7 @@ impl Storms<'_> {
         let by_weather = set.cells.is_empty() && set.flashes_per_minute.is_none();
         let timeline = &self.world.timeline;
         let thunders = || timeline.changes_between(from_s, until_s) || timeline.at(until_s).precipitation.thunder > 0.0;
-        !by_host && !(by_weather && thunders())
+        !(by_host || by_weather && thunders())
     }
 
     /// Shows `to` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in no order, and what
