@@ -8,7 +8,7 @@
 //! * [`schedule`]: flashes of a storm come by chance, evenly in time (Poisson). Of a fixed stream of candidates, sixty a minute, each has a
 //!   number of its own from 0 to 1; those below the rate over sixty a minute strike. So a rate that changes adds and takes flashes, and
 //!   moves none. A flash stays in the cloud or goes to ground, has strokes with pauses between, each with a peak current.
-//! * Storm cells: one in each square of 12 km where the weather has thunder, or the host's ([`LightningSettings`]). A host may trigger a
+//! * Storm cells: one in each square of 20 km where the weather has thunder, or the host's ([`LightningSettings`]). A host may trigger a
 //!   flash of its own ([`FlashTrigger`]).
 //! * [`channel`]: the way of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or through the cloud, with
 //!   branches; what stands high draws it, and what stands in its way ends it. Thunder comes from its nearest point.

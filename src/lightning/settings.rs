@@ -30,7 +30,7 @@ pub struct StormCell {
 pub struct LightningSettings {
     /// Flashes a minute of each storm cell, \[0, 60\], in place of those that the weather has (3 in a thunderstorm, else none).
     pub flashes_per_minute: Option<f64>,
-    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 12 km. Default none.
+    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 20 km. Default none.
     pub cells: Vec<StormCell>,
     /// Tips of tall things in the host's world, at most [`MAX_MASTS`]: they draw ground flashes. Default none.
     pub masts: Vec<DVec3>,

@@ -12,7 +12,7 @@ use crate::world::World;
 
 /// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes of single cells
 /// (Byers and Braham 1949).
-pub(crate) const SQUARE_M: f64 = 12_000.0;
+pub(crate) const SQUARE_M: f64 = 20_000.0;
 const RADIUS_M: f64 = 2500.0;
 /// Flashes a minute of a cell where the weather says no more than that there is thunder: 1 to 5 are common (Rakov and Uman 2003, chapter 2).
 const PER_MINUTE: f64 = 3.0;

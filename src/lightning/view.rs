@@ -1,5 +1,7 @@
 //! What a view draws of flashes: lines of light in the layer before the picture, and what they make glow in the composition.
 
+use std::f64::consts::PI;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -28,8 +30,9 @@ use crate::{
 const FRAME_S: f64 = 1.0 / 60.0;
 /// Longest time between two frames whose light the second one has: after a longer one the host has jumped, s.
 const LONGEST_FRAME_S: f64 = 0.5;
-/// Illuminance at the eye below which a flash is not drawn, lux.
+/// Illuminance at the eye below which a flash is not drawn: lux, and over that of the ground by all other light.
 const FAINTEST_LUX: f64 = 1e-7;
+const FAINTEST_SHARE: f64 = 1e-5;
 
 /// The time whose light a frame has.
 #[derive(Clone, Copy)]
@@ -136,10 +139,13 @@ impl LightningView {
     /// Finds the places that the light comes from, the brightest first, and makes lamps of them.
     fn light(&mut self, now: &Moment<'_>, span: Span, course: Course) {
         self.found.clear();
+        let taken_per_m = TAKES * now.scene.conditions.extinction_per_m;
+        let faintest_lux = FAINTEST_LUX.max(FAINTEST_SHARE * now.scene.ground.total_lux);
         for shining in &self.shining {
             for source in shining.strike.sources(&span, course).iter() {
-                let lux = source.flux_lm / (now.eye - source.position).length_squared().max(1.0);
-                if lux > FAINTEST_LUX {
+                let way_m = (now.eye - source.position).length().max(1.0);
+                let lux = source.flux_lm / (4.0 * PI * way_m * way_m) * (-taken_per_m * way_m).exp();
+                if lux > faintest_lux {
                     self.found.push((lux, *source));
                 }
             }
@@ -200,7 +206,7 @@ impl LightningView {
         let relative = |p: DVec3| (to_enu * (p - lit.eye)).as_vec3().to_array();
         for shining in &self.shining {
             shining.strike.each_part(&lit.span, lit.course, |part| {
-                let intensity = part.flux_lm * part.open / (4.0 * std::f64::consts::PI) * shot.exposure;
+                let intensity = part.flux_lm * part.open / (4.0 * PI) * shot.exposure;
                 if part.open > 1e-3 && self.parts.len() < MOST_PARTS {
                     let [from, to] = part.ends.map(relative);
                     self.parts.push(PartInstance { from, intensity: intensity as f32, to, pad: 0.0 });

@@ -36,9 +36,10 @@ fn hour(context: &Context) -> Vec<FlashEvent> {
 fn channels_agree_and_time_may_run_back() {
     let (mut one, other) = (stormy(), stormy());
     let all = hour(&one);
-    // 3 a minute in each square of 12 km: about 1570 within 20 km.
-    let expected = 180.0 * std::f64::consts::PI * 20.0 * 20.0 / 144.0;
-    assert!((all.len() as f64 / expected - 1.0).abs() < 0.15, "{} of {expected}", all.len());
+    // 3 a minute in each square of 20 km: about 3534 within 50 km.
+    let wide = one.flashes_near(HERE, (0.0, 3600.0), 50_000.0).unwrap().len() as f64;
+    let expected = 180.0 * std::f64::consts::PI * 50.0 * 50.0 / 400.0;
+    assert!((wide / expected - 1.0).abs() < 0.12, "{wide} of {expected}");
     assert_eq!(all, hour(&other));
     let back: Vec<FlashEvent> = (0..36)
         .rev()
