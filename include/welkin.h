@@ -4950,7 +4950,7 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  * ====================================================================================================
  * Lightning
  *
- * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 12 km, or
+ * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
  * as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
  * cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of clouds and
  * air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to light its own
@@ -4997,7 +4997,7 @@ typedef struct wk_lightning {
     /** Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
-     * With WK_LIGHTNING_RATE: flashes a minute of each square of 12 km, whatever the weather. Range [0, 60], default 0.
+     * With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default 0.
      */
     double flashes_per_minute;
     /** Storm cells in `cells`, at most 16, in place of the weather's. Default 0. */

@@ -2,7 +2,7 @@
 //!
 //! # Model
 //! A channel wanders about a straight way by halving: the middle of each stretch is moved aside by chance, by a share of the stretch's
-//! length. Of all shares that give a dimension near what photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested).
+//! length, and less in the first two halvings. Of all shares that give a dimension near what photographs show (1.1 to 1.4; Tsonis 1991), the one taken gives 1.15 (tested).
 //! From the way of a ground flash 8 to 17 branches leave, each by 20 to 50 degrees from the way and 0.15 to 0.6 of what remains of it
 //! long; a third of them branch again. They point down, and none reaches the ground.
 //!
@@ -17,8 +17,11 @@ use crate::chance::Chance;
 
 /// Sideways move of a stretch's middle over the stretch's length, one spread.
 const WANDERING: f64 = 0.25;
-/// Halvings of a channel: 2^7 stretches.
-const HALVINGS: u32 = 7;
+/// The same of the first halvings: a channel wanders less in the large than in the small, for the field that draws it down is even there.
+const WANDERING_FIRST: f64 = 0.12;
+const FIRST: u32 = 2;
+/// Halvings of a channel: 2^9 stretches of some 10 m.
+const HALVINGS: u32 = 9;
 /// Points of a channel.
 pub const POINTS: usize = (1 << HALVINGS) + 1;
 
@@ -79,7 +82,7 @@ impl Channel {
     /// Of a flash that starts `top_m` high, and ends at `end_m` (ground flashes) or as far away in the cloud.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
         let mut chance = Chance::new(flash.id, 0xc4a1);
-        let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.2 * (top_m - end_m.z);
+        let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
         let end = match flash.kind {
             FlashKind::ToGround => end_m,
             FlashKind::InCloud => {
@@ -161,8 +164,11 @@ fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowe
         for from in (0..last).step_by(stretch) {
             let (a, b) = (points_m[from], points_m[from + stretch]);
             let away = aside(chance, b - a);
-            let mut middle = 0.5 * (a + b) + away * (WANDERING * (b - a).length() * chance.normal());
-            middle.z = middle.z.max(lowest_m);
+            let share = if stretch > last >> FIRST { WANDERING_FIRST } else { WANDERING };
+            let mut middle = 0.5 * (a + b) + away * (share * (b - a).length() * chance.normal());
+            if middle.z < lowest_m {
+                middle.z = 0.5 * (a.z + b.z);
+            }
             points_m[from + stretch / 2] = middle;
         }
         stretch /= 2;
@@ -191,11 +197,11 @@ fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
         let leaves_at = 0.1 + 0.8 * chance.even();
         let from = (leaves_at * (main.len() - 1) as f64) as usize;
         let remains = (end - main[from]).length();
-        let points_m = branch(chance, (main[from], end - main[from]), remains, end.z + CLEAR_M, HALVINGS - 2);
+        let points_m = branch(chance, (main[from], end - main[from]), remains, end.z + CLEAR_M, HALVINGS - 3);
         let again = (chance.even() < AGAIN).then(|| {
             let at = (points_m.len() - 1) / 3 + (chance.even() * (points_m.len() / 3) as f64) as usize;
             let way = points_m[points_m.len() - 1] - points_m[0];
-            let points_m = branch(chance, (points_m[at], way), way.length(), end.z + CLEAR_M, HALVINGS - 3);
+            let points_m = branch(chance, (points_m[at], way), way.length(), end.z + CLEAR_M, HALVINGS - 4);
             Branch { points_m, leaves_at, strength: FAINTER * FAINTER }
         });
         out.push(Branch { points_m, leaves_at, strength: FAINTER });
@@ -272,9 +278,9 @@ mod tests {
         let channel = Channel::new(flash, 5000.0, struck(flash, &[], 300.0));
         let place = DVec3::new(4000.0, -1000.0, 302.0);
         let mut nearest = f64::INFINITY;
-        for ends in channel.points_m.windows(2) {
-            for i in 0..=4000 {
-                nearest = nearest.min((ends[0].lerp(ends[1], f64::from(i) / 4000.0) - place).length());
+        for ends in channel.ways().flat_map(|way| way.windows(2)) {
+            for i in 0..=1000 {
+                nearest = nearest.min((ends[0].lerp(ends[1], f64::from(i) / 1000.0) - place).length());
             }
         }
         for t in [-10.0, 20.0] {

@@ -24,10 +24,10 @@
 //!
 //! # Cost
 //! None without a storm: no pass, and the composition has no term for it. In a storm some 20 us on the CPU a frame to find
-//! that there is no flash. A flash costs a pass of some 400 narrow quads and, a pixel, up to 8 sources with 4 samples each.
+//! that there is no flash. A flash costs a pass of some 1500 narrow quads and, a pixel, up to 8 sources with 4 samples each.
 //!
 //! # Error
-//! Frames of any rate add up to the same light within 1e-9 of it; drawn ones within 2 % (tests). Figures of light are those of [`light`];
+//! Frames of any rate add up to the same light within 1e-5 of it; drawn ones within 2 % (tests). Figures of light are those of [`light`];
 //! a single flash differs from the mean by a factor of 2 or so. The glow has no structure of the cloud in it.
 
 pub mod channel;

@@ -17,7 +17,7 @@ use crate::{
 
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Most parts that are drawn: those of two or three flashes at once.
-pub(super) const MOST_PARTS: usize = 2048;
+pub(super) const MOST_PARTS: usize = 4096;
 /// Pipelines held for a view: those of some weathers that change.
 const MOST_PIPELINES: usize = 4;
 
