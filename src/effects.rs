@@ -251,7 +251,7 @@ impl Effects {
         stages: Stages,
     ) -> Result<()> {
         // What it lights asks for its light.
-        self.lightning.gather(now, world, &held.lightning, frame)?;
+        self.lightning.gather(now, world, &held.lightning, frame);
         self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 #[cfg(test)]
 use super::query::TAKES;
 use super::sources::Source;
-use crate::light::luminance;
 
 /// Reflectance of the clouds' base for a flash below it.
 const BASE_REFLECTS: f64 = 0.8;
@@ -46,11 +45,6 @@ fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32)
         2.0 * t * phase(-u.sin()) * (-TAKES * scattering_per_m * (along + h * u.tan() + h / u.cos())).exp()
     };
     (0..steps).map(one).sum::<f64>() * whole / f64::from(steps) / h * scattering_per_m
-}
-
-/// Luminance of a colour of luminance 1: what is counted in cd is that of each channel over the colour's.
-pub(super) fn unit_of(color: [f64; 3]) -> f64 {
-    luminance(&color)
 }
 
 #[cfg(test)]

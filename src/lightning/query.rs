@@ -13,7 +13,6 @@ use super::{
 };
 use crate::{
     error::{Result, check_range},
-    light::luminance,
     world::World,
 };
 
@@ -125,7 +124,6 @@ pub(crate) fn light_at(
             (sum, level, towards) = (sum + lux, level + lux * to.z.max(0.0), towards + to * lux);
         }
     });
-    debug_assert!((luminance(&COLOR) - 1.0).abs() < 0.01);
     Ok(LightningLight {
         facing_lux: COLOR.map(|c| c * sum),
         level_lux: level,

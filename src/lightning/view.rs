@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::{
-    glow::{from_clouds_cd, unit_of},
+    glow::from_clouds_cd,
     held::HeldLightning,
     light::{COLOR, Course, Span},
     limit,
@@ -93,10 +93,7 @@ fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: boo
 
 impl LightningView {
     /// Finds the flashes that shine in a frame, and says so to what they light ([`Moment::flash_lamps`]): before the other effects look.
-    ///
-    /// # Errors
-    /// None.
-    pub fn gather(&mut self, now: &Moment<'_>, world: &World, held: &HeldLightning, frame: &Frame<'_>) -> Result<()> {
+    pub fn gather(&mut self, now: &Moment<'_>, world: &World, held: &HeldLightning, frame: &Frame<'_>) {
         let time = frame_time(self.frame, frame.frame_id, now.time_s, frame.is_pure());
         self.frame = Some(time);
         (self.lit, self.target) = (None, None);
@@ -105,12 +102,11 @@ impl LightningView {
         self.storms = !storms.is_quiet(from_s, until_s);
         if !self.storms {
             self.shining.clear();
-            return Ok(());
+            return;
         }
         let course = if held.settings.limits_flicker { Course::Smooth } else { Course::Natural };
         self.find(&storms, now, &time.span, course);
         self.light(now, time.span, course);
-        Ok(())
     }
 
     /// Keeps those that shine in a span.
@@ -248,7 +244,7 @@ impl Lit {
         // From below the base is seen, from above the tops; inside, whichever is nearer.
         let from_below = clouds.is_none_or(|s| self.eye_m < 0.5 * (s.base_m + s.top_m));
         let face_m = clouds.map_or(0.0, |s| if from_below { s.base_m } else { s.top_m });
-        block.flash_color = COLOR.map(|v| (v / unit_of(COLOR)) as f32);
+        block.flash_color = COLOR.map(|v| v as f32);
         block.flash_count = self.count as u32;
         block.flash_plane = (face_m - self.eye_m) as f32;
         let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
