@@ -269,6 +269,12 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_PART_WISH 61
 /** wk_stars */
 #define WK_STRUCT_TYPE_STARS 62
+/** wk_lightning */
+#define WK_STRUCT_TYPE_LIGHTNING 65
+/** wk_flash_trigger */
+#define WK_STRUCT_TYPE_FLASH_TRIGGER 66
+/** wk_flash_light */
+#define WK_STRUCT_TYPE_FLASH_LIGHT 67
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
 
@@ -4939,6 +4945,256 @@ wk_status wk_context_set_stars(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Lightning
+ *
+ * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
+ * as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
+ * cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of clouds and
+ * air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to light its own
+ * scene:
+ *
+ * wk_flash flashes[16];
+ * uint32_t count = 0;
+ * wk_context_get_flashes(context, ear, last_s, now_s, 20e3, flashes, 16, sizeof flashes[0], &count);
+ * for (uint32_t i = 0; i < count; i++)
+ *     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
+ *
+ * A frame has the light from the view's frame before it to its own time: a flash is neither missed nor doubled,
+ * however many frames a second there are.
+ * ====================================================================================================
+ */
+
+/** What a wk_lightning sets. */
+typedef uint32_t wk_lightning_flags;
+
+/** flashes_per_minute: the host's rate in place of the weather's. */
+#define WK_LIGHTNING_RATE 1
+
+/** How flashes flicker in a picture. */
+typedef uint32_t wk_flicker;
+
+/** As in nature: many changes of luminance a second. */
+#define WK_FLICKER_AS_IN_NATURE 0
+/**
+ * At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
+ * fades, and the next one comes a second later at the earliest. Events and light that are asked for stay.
+ */
+#define WK_FLICKER_LIMITED 1
+
+/** How often it flashes, where, and how views draw it. */
+typedef struct wk_lightning {
+    /** sizeof(wk_lightning) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_LIGHTNING. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default 0: the weather's rate. */
+    wk_lightning_flags flags;
+    /** Default WK_FLICKER_AS_IN_NATURE. */
+    wk_flicker flicker;
+    /**
+     * With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default 0.
+     */
+    double flashes_per_minute;
+    /** Storm cells in `cells`, at most 16, in place of the weather's. Default 0. */
+    uint32_t cell_count;
+    /** Tall things in `masts`, at most 64. Default 0. */
+    uint32_t mast_count;
+    /**
+     * Five numbers a cell: its middle in the host's world, m (the height does not matter); the distance from it within
+     * which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+     */
+    const double *cells;
+    /**
+     * Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters. Copied.
+     * Default NULL.
+     */
+    const double *masts;
+} wk_lightning;
+
+/** Every field of `wk_lightning` at its default. */
+#define WK_LIGHTNING_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_lightning), \
+    /* struct_type */ WK_STRUCT_TYPE_LIGHTNING, \
+    /* next */ NULL, \
+    /* flags */ 0, \
+    /* flicker */ WK_FLICKER_AS_IN_NATURE, \
+    /* flashes_per_minute */ 0.0, \
+    /* cell_count */ 0, \
+    /* mast_count */ 0, \
+    /* cells */ NULL, \
+    /* masts */ NULL \
+}
+
+/** Where a flash goes. */
+typedef uint32_t wk_flash_kind;
+
+/** To the ground. */
+#define WK_FLASH_KIND_TO_GROUND 0
+/** Within the cloud. */
+#define WK_FLASH_KIND_IN_CLOUD 1
+
+/** A flash that the host triggers. */
+typedef struct wk_flash_trigger {
+    /** sizeof(wk_flash_trigger) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FLASH_TRIGGER. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** When its first stroke comes, s of simulation time, not before the present. Range [-1e10, 1e10], default 0. */
+    double time_s;
+    /**
+     * Where it strikes in the host's world, m; one within the cloud passes over it. A shelter in its way ends it.
+     * Default 0, 0, 0.
+     */
+    double position_m[3];
+    /** Largest peak current of its strokes, kA. Range [0, 500], default 0: by chance. At least 1 otherwise. */
+    double peak_ka;
+    /** Default WK_FLASH_KIND_TO_GROUND. */
+    wk_flash_kind kind;
+    /** Strokes. Range [0, 26], default 0: by chance. */
+    uint32_t strokes;
+} wk_flash_trigger;
+
+/** Every field of `wk_flash_trigger` at its default. */
+#define WK_FLASH_TRIGGER_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_flash_trigger), \
+    /* struct_type */ WK_STRUCT_TYPE_FLASH_TRIGGER, \
+    /* next */ NULL, \
+    /* time_s */ 0.0, \
+    /* position_m */ { 0.0, 0.0, 0.0 }, \
+    /* peak_ka */ 0.0, \
+    /* kind */ WK_FLASH_KIND_TO_GROUND, \
+    /* strokes */ 0 \
+}
+
+/** A flash as a place has it; plain values of a list. */
+typedef struct wk_flash {
+    /** Number of its own among the flashes of the context. */
+    uint64_t id;
+    /** When its first stroke comes, s of simulation time. */
+    double time_s;
+    /** Where it goes. */
+    wk_flash_kind kind;
+    /** Strokes, or steps of the light of one within the cloud. */
+    uint32_t strokes;
+    /** Largest peak current of its strokes, kA. */
+    double peak_ka;
+    /** What it struck, or the middle of its way in the cloud, in the host's world, m. */
+    double position_m[3];
+    /** Distance of the nearest point of its channel, m. */
+    double distance_m;
+    /** Direction to position_m. */
+    double direction[3];
+    /**
+     * Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606 m/s
+     * for each degree Celsius.
+     */
+    double thunder_delay_s;
+} wk_flash;
+
+/** Light of flashes at a place. */
+typedef struct wk_flash_light {
+    /** sizeof(wk_flash_light) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_FLASH_LIGHT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Illuminance on surfaces that face the sources, all together, lux a channel. */
+    double facing_lux[3];
+    /** Illuminance on level ground, lux. */
+    double level_lux;
+    /** Direction to the middle of the light; straight up where there is none. */
+    double direction[3];
+} wk_flash_light;
+
+/** Every field of `wk_flash_light` at its default. */
+#define WK_FLASH_LIGHT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_flash_light), \
+    /* struct_type */ WK_STRUCT_TYPE_FLASH_LIGHT, \
+    /* next */ NULL, \
+    /* facing_lux */ { 0.0, 0.0, 0.0 }, \
+    /* level_lux */ 0.0, \
+    /* direction */ { 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * Sets how often it flashes, where, and how views draw it; NULL returns to the default. Part of the saved state.
+ * Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightning *lightning);
+
+/**
+ * Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time. Unchanged
+ * after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the present.
+ */
+WK_API
+wk_status wk_context_trigger_flash(wk_context *context,
+                                   const wk_flash_trigger *flash);
+
+/**
+ * Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of the
+ * host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number even if
+ * `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `flash_size` is
+ * sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first that it knows counts.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ */
+WK_API
+wk_status wk_context_get_flashes(const wk_context *context,
+                                 const double (*position_m)[3],
+                                 double from_s,
+                                 double until_s,
+                                 double most_distance_m,
+                                 wk_flash *flashes,
+                                 uint32_t capacity,
+                                 uint32_t flash_size,
+                                 uint32_t *out_count);
+
+/**
+ * Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with 0
+ * that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ */
+WK_API
+wk_status wk_context_get_flash_light(const wk_context *context,
+                                     const double (*position_m)[3],
+                                     double time_s,
+                                     double exposure_s,
+                                     wk_flash_light *out_light);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_LIGHTNING_INIT`. `struct_size` is `sizeof(wk_lightning)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_lightning_init(wk_lightning *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FLASH_TRIGGER_INIT`. `struct_size` is `sizeof(wk_flash_trigger)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_flash_trigger_init(wk_flash_trigger *out,
+                                uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_FLASH_LIGHT_INIT`. `struct_size` is `sizeof(wk_flash_light)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_flash_light_init(wk_flash_light *out,
+                              uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -21,6 +21,7 @@ use crate::{
     gpu::{Device, Shared},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
     light::{Exposure, ToneCurve},
+    lightning::{HeldLightning, LightningView},
     moment::{Moment, Scene},
     plan::{self, StepWork, parts::Part},
     planet::Planet,
@@ -83,6 +84,7 @@ pub(crate) struct Held {
     pub ground: HeldGround,
     pub stars: HeldStars,
     pub clouds: HeldClouds,
+    pub lightning: HeldLightning,
 }
 
 /// The same as it was loaded.
@@ -91,6 +93,7 @@ pub(crate) struct LoadedHeld {
     ground: LoadedGround,
     stars: HeldStars,
     clouds: HeldClouds,
+    lightning: HeldLightning,
 }
 
 impl Held {
@@ -107,17 +110,18 @@ impl Held {
             ground: HeldGround::new(desc.ground, desc.seed),
             stars: HeldStars::default(),
             clouds: HeldClouds::default(),
+            lightning: HeldLightning::default(),
         })
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 4] {
-        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 5] {
+        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds, &mut self.lightning]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 4] {
-        [&self.fog, &self.ground, &self.stars, &self.clouds]
+    pub fn all(&self) -> [&dyn HeldEffect; 5] {
+        [&self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -130,7 +134,8 @@ impl Held {
         let ground = self.ground.read(world, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
         let clouds = HeldClouds::read(state);
-        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds? })
+        let lightning = self.lightning.read(state);
+        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds?, lightning: lightning? })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -140,6 +145,7 @@ impl Held {
         self.ground.take_up(&mut other.ground);
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
+        std::mem::swap(&mut self.lightning, &mut other.lightning);
         world.night = self.stars.night();
     }
 }
@@ -173,12 +179,13 @@ pub(crate) struct Effects {
     pub glass: GlassView,
     pub stars: StarsView,
     pub clouds: CloudsView,
+    pub lightning: LightningView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
 }
 
 /// How many a view has.
-const COUNT: usize = if cfg!(test) { 8 } else { 7 };
+const COUNT: usize = if cfg!(test) { 9 } else { 8 };
 
 impl Effects {
     /// Those of a view.
@@ -194,6 +201,7 @@ impl Effects {
             glass: GlassView::new(shared),
             stars: StarsView::default(),
             clouds: CloudsView::default(),
+            lightning: LightningView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
         })
@@ -209,6 +217,7 @@ impl Effects {
             &mut self.glass,
             &mut self.stars,
             &mut self.clouds,
+            &mut self.lightning,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -224,6 +233,7 @@ impl Effects {
             &self.glass,
             &self.stars,
             &self.clouds,
+            &self.lightning,
             #[cfg(test)]
             &self.plane,
         ]
@@ -240,6 +250,8 @@ impl Effects {
         frame: &Frame<'_>,
         stages: Stages,
     ) -> Result<()> {
+        // What it lights asks for its light.
+        self.lightning.gather(now, world, &held.lightning, frame);
         self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;

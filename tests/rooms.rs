@@ -157,7 +157,7 @@ fn folders_of_shaders_use_what_their_rows_name_and_form_no_circle() {
 
 #[test]
 fn effects_do_not_use_each_other() {
-    const EFFECTS: [&str; 6] = ["sky", "stars", "fog", "rain", "ground", "glass"];
+    const EFFECTS: [&str; 7] = ["sky", "stars", "lightning", "fog", "rain", "ground", "glass"];
     for (room, used) in rust_arrows().iter().filter(|(room, _)| EFFECTS.contains(&room.as_str())) {
         let others: Vec<_> = used.iter().filter(|u| EFFECTS.contains(&u.as_str())).collect();
         assert!(others.is_empty(), "{room} uses {others:?}");

@@ -74,6 +74,24 @@ static bool twelve_km(demo *d) { return clear_with_sun(d, 60, 25); }
 static bool space(demo *d) { return clear_with_sun(d, 30, 5); }
 static bool shadow(demo *d) { return clear_with_sun(d, 10, -9); }
 
+/* A thunderstorm at night, some milliseconds after a stroke 2.4 km away. */
+static bool lightning(demo *d)
+{
+    wk_weather w = weather_here(9000, 0.9);
+    wk_cloud_layer thundercloud = overcast(WK_CLOUD_CUMULONIMBUS, 1300.0);
+    wk_flash_trigger flash = WK_FLASH_TRIGGER_INIT;
+    vec3 at = add(d->still->position, scale(d->still->ahead, 2400.0));
+    fall(&w, WK_PRECIPITATION_RAIN, 6.0, 4.0, 220.0);
+    w.precipitation_flags |= WK_PRECIPITATION_THUNDERSTORM;
+    flash.position_m[0] = at.x, flash.position_m[1] = at.y, flash.position_m[2] = 0.0;
+    flash.peak_ka = 30.0;
+    flash.strokes = 3;
+    d->time_s = 0.014;
+    return weather_clock(&d->weather, HOURS[4].utc_s) && set(d, &w, &thundercloud) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_EV100, 9.0)) &&
+           weather_check(wk_context_trigger_flash(d->weather.context, &flash));
+}
+
 static bool haze(demo *d)
 {
     wk_weather w = weather_here(5000, 0.5);
@@ -289,6 +307,7 @@ const shot SHOTS[] = {
     {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
     {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
     {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
+    {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL},
     {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
     {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},
     {"fog", "Fog, visibility 150 m", HILLSIDE, fog, WORLD, NULL},

@@ -60,6 +60,9 @@ bool weather_clock(weather_link *w, double utc_s)
     return weather_check(wk_context_set_clock(w->context, utc_s, w->time_s));
 }
 
+/* Of light that a host of 60 frames a second has in one. */
+#define FLASH_EXPOSURE_S (1.0 / 60.0)
+
 bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
 {
     const double at[3] = {c->position.x, c->position.y, c->position.z};
@@ -82,8 +85,17 @@ bool weather_light(weather_link *w, const camera *c, double time_s, light *l)
         for (int k = 0; k < 9; k++)
             l->ambient[k][channel] = (float)sky.sh9[3 * k + channel];
     }
+    /* A flash of lightning outshines both, for the time of a frame. */
+    wk_flash_light flash = WK_FLASH_LIGHT_INIT;
+    if (!weather_check(wk_context_get_flash_light(w->context, &at, time_s, FLASH_EXPOSURE_S, &flash)))
+        return false;
+    if (flash.facing_lux[1] > lux[1]) {
+        l->sun_direction = vec(flash.direction[0], flash.direction[1], flash.direction[2]);
+        for (int channel = 0; channel < 3; channel++)
+            l->illuminance[channel] = (float)flash.facing_lux[channel];
+    }
     /* A white card on the ground has the value 1, by day and by night. */
-    l->cd_m2_per_unit = fmax(arriving.total_lux, 1e-4) / PI;
+    l->cd_m2_per_unit = fmax(fmax(arriving.total_lux, flash.level_lux), 1e-4) / PI;
     return true;
 }
 

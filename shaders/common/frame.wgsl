@@ -1,6 +1,23 @@
 // What a frame knows: the camera's rays, the light that no lamp of the sky sends, and how the host's numbers are read.
 //!include "common/depth.wgsl"
 
+const MAX_FLASHES: u32 = 8u;
+
+// A place that the light of a flash of lightning comes from.
+struct FlashSource {
+    // Camera-relative, m.
+    position: vec3f,
+    // What the face of the clouds sends of it, cd (lightning/glow.wgsl).
+    clouds: f32,
+    // Luminous intensity in the air, cd; 0 of what shines inside a cloud.
+    air: f32,
+    // How far the light reaches about the position, m.
+    radius: f32,
+    // Distance from the face of the clouds, m.
+    height: f32,
+    pad: f32,
+}
+
 struct FrameUniform {
     // Axes: camera-local east-north-up.
     depth: DepthUniform,
@@ -44,6 +61,16 @@ struct FrameUniform {
     behind_drawn: f32,
     // cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
     behind: vec2f,
+    // Colour of the light of flashes of lightning, of luminance 1, and how many places it comes from.
+    flash_color: vec3f,
+    flash_count: u32,
+    // Height of the clouds' face over the camera, m, their cover, what the haze before them takes, 1/m, and what scatters in the
+    // air, 1/m.
+    flash_plane: f32,
+    flash_cover: f32,
+    flash_haze: f32,
+    flash_scattering: f32,
+    flashes: array<FlashSource, MAX_FLASHES>,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

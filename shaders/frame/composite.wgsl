@@ -4,6 +4,7 @@
 //!include "between/veil.wgsl"
 //!include "sky/disc.wgsl"
 //!include "frame/on_surfaces.wgsl"
+//!include "lightning/glow.wgsl"
 
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
@@ -108,6 +109,14 @@ fn with_clouds(behind: Veil, range: f32) -> Veil {
     return Veil(behind.light * layer.a + layer.rgb / frame.exposure, behind.transmittance * layer.a);
 }
 
+// Share of what is behind that clouds hide.
+fn cover_along() -> f32 {
+    if has_clouds() {
+        return 1.0 - textureLoad(sky_layers, layer_pixel, 0, 0).a * (1.0 - deck_share());
+    }
+    return frame.flash_cover;
+}
+
 // Display-linear value of scene luminance.
 fn display(luminance: vec3f) -> vec3f {
     // Saturated spectra lie outside of Rec. 709 and have negative parts there.
@@ -127,8 +136,14 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32) -> Veil {
         veil = air_on(path, ray.direction);
     }
     veil = with_clouds(veil, range);
+    if FLASH && BACKGROUND && sky {
+        veil.light += flash_on_clouds(ray.direction) * cover_along();
+    }
     if MEDIUM {
         veil = with_fog(ray, range, plane, veil);
+    }
+    if FLASH && MEDIUM {
+        veil.light += flash_in_air(ray, range);
     }
     return veil;
 }

@@ -65,6 +65,8 @@ pub mod light;
 
 pub mod stars;
 
+pub mod lightning;
+
 pub mod windscreen;
 
 pub mod ground;

@@ -149,6 +149,12 @@ pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
 /// wk_stars
 pub const WK_STRUCT_TYPE_STARS: wk_struct_type = 62;
+/// wk_lightning
+pub const WK_STRUCT_TYPE_LIGHTNING: wk_struct_type = 65;
+/// wk_flash_trigger
+pub const WK_STRUCT_TYPE_FLASH_TRIGGER: wk_struct_type = 66;
+/// wk_flash_light
+pub const WK_STRUCT_TYPE_FLASH_LIGHT: wk_struct_type = 67;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 

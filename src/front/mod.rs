@@ -4,6 +4,7 @@
 mod air;
 mod clouds;
 mod ground;
+mod lightning;
 mod rain;
 mod sky;
 mod stars;

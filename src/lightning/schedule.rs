@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
+use super::settings::FlashTrigger;
 use crate::{
     chance::Chance,
     error::{Result, check_range},
@@ -20,14 +21,14 @@ const TO_GROUND: f64 = 0.25;
 const SINGLE: f64 = 0.2;
 const ANOTHER: f64 = 0.68;
 /// Most strokes: more have hardly been seen (26; Rakov and Uman 2003).
-const MOST_STROKES: usize = 26;
+pub const MOST_STROKES: usize = 26;
 /// Pause between strokes: geometric mean, s, and spread of its logarithm (Rakov and Uman 2003, table 1.1).
 const PAUSE_S: (f64, f64) = (0.06, 0.55);
 /// Peak current of first and of later strokes: median, kA, and spread of the logarithm (Berger et al. 1975).
 const FIRST_KA: (f64, f64) = (30.0, 0.61);
 const LATER_KA: (f64, f64) = (12.0, 0.61);
 
-/// A storm that flashes.
+/// A storm that flashes at one rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storm {
     /// Chooses its flashes.
@@ -71,7 +72,7 @@ pub struct Stroke {
 /// A flash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flash {
-    /// Its number among the candidates of its storm; seed of what chance decides of it.
+    /// Number of its own; seed of what chance decides of it.
     pub id: u64,
     /// When its first stroke comes, s of simulation time.
     pub time_s: f64,
@@ -87,6 +88,11 @@ impl Flash {
     /// Its strokes in order; those of a flash in the cloud are the steps of its light.
     pub fn strokes(&self) -> &[Stroke] {
         &self.strokes[..self.count]
+    }
+
+    /// When the last stroke comes, s of simulation time.
+    pub fn last_s(&self) -> f64 {
+        self.time_s + self.strokes().last().map_or(0.0, |s| s.after_s)
     }
 
     /// Largest of its strokes' peak currents, kA.
@@ -108,42 +114,63 @@ impl Storm {
     /// Its flashes from `from_s` on until `until_s`, in order.
     pub fn flashes(&self, from_s: f64, until_s: f64) -> Vec<Flash> {
         let mut out = Vec::new();
-        let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
-        for window in first..last {
-            let mut chance = Chance::new(self.seed, window as u64);
-            for k in 0..candidates(&mut chance) {
-                let id = (window as u64).wrapping_mul(4096).wrapping_add(k);
-                let time_s = (window as f64 + chance.even()) * WINDOW_S;
-                let number = chance.even();
-                if number < self.per_minute / MOST_PER_MINUTE && time_s >= from_s && time_s < until_s {
-                    out.push(self.flash(id, time_s));
-                }
-            }
-        }
+        self.visit(from_s, until_s, |_| self.per_minute, |flash| out.push(*flash));
         out.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         out
     }
 
-    fn flash(&self, id: u64, time_s: f64) -> Flash {
-        let mut chance = Chance::new(self.seed ^ 0x5bd1_e995, id);
+    /// Shows `to` its flashes from `from_s` on until `until_s` at a rate that depends on time, flashes a minute: in the order of their
+    /// windows. No memory is asked for.
+    pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut to: impl FnMut(&Flash)) {
+        let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
+        for window in first..last {
+            let mut chance = Chance::new(self.seed, window as u64);
+            for k in 0..candidates(&mut chance) {
+                let time_s = (window as f64 + chance.even()) * WINDOW_S;
+                let number = chance.even();
+                if time_s >= from_s && time_s < until_s && number < rate(time_s) / MOST_PER_MINUTE {
+                    to(&self.flash((window as u64).wrapping_mul(4096).wrapping_add(k), time_s));
+                }
+            }
+        }
+    }
+
+    /// The flash of a host that says when, where and what; what it leaves open is decided by chance.
+    pub fn triggered(seed: u64, trigger: &FlashTrigger, place_m: DVec2) -> Flash {
+        let storm = Self { seed: seed ^ 0x7219_6765, per_minute: 0.0, middle_m: place_m, radius_m: 0.0 };
+        let at = trigger.time_s.to_bits() ^ place_m.x.to_bits().rotate_left(21) ^ place_m.y.to_bits().rotate_left(42);
+        let mut flash = storm.flash(at, trigger.time_s);
+        flash.kind = trigger.kind;
+        if let Some(count) = trigger.strokes {
+            flash.count = (count as usize).clamp(1, MOST_STROKES);
+        }
+        if let Some(peak_ka) = trigger.peak_ka {
+            let scale = peak_ka / flash.peak_ka().max(1e-9);
+            flash.strokes.iter_mut().for_each(|s| s.peak_ka *= scale);
+        }
+        flash
+    }
+
+    fn flash(&self, number: u64, time_s: f64) -> Flash {
+        let mut chance = Chance::new(self.seed ^ 0x5bd1_e995, number);
         let kind = if chance.even() < TO_GROUND { FlashKind::ToGround } else { FlashKind::InCloud };
         let (distance, azimuth) = (self.radius_m * chance.normal(), PI * chance.even());
         let mut flash = Flash {
-            id,
+            // Of two storms no two flashes look alike.
+            id: number ^ self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
             time_s,
             kind,
-            place_m: self.middle_m + DVec2::from_angle(azimuth) * distance,
+            place_m: self.middle_m + DVec2::new(libm::cos(azimuth), libm::sin(azimuth)) * distance,
             strokes: [Stroke::default(); MOST_STROKES],
-            count: 0,
+            count: strokes(&mut chance),
         };
-        let count = strokes(&mut chance);
+        // A host may ask for more strokes than chance gives: all are there.
         let mut after_s = 0.0;
-        for i in 0..count {
+        for i in 0..MOST_STROKES {
             let (median, spread) = if i == 0 { FIRST_KA } else { LATER_KA };
             flash.strokes[i] = Stroke { after_s, peak_ka: median * libm::exp(spread * chance.normal()) };
             after_s += PAUSE_S.0 * libm::exp(PAUSE_S.1 * chance.normal());
         }
-        flash.count = count;
         flash
     }
 }

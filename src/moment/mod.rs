@@ -14,7 +14,7 @@ use crate::{
     error::Result,
     light::{Exposure, ToneCurve},
     planet::Planet,
-    scene::{HostLight, Place},
+    scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS, Place},
     surroundings::{HostSurroundings, OccluderMaps, Shelter},
     weather::Conditions,
     wind::{Carrying, WindGrid},
@@ -53,6 +53,15 @@ pub(crate) struct Moment<'a> {
     /// The host's wind that varies in space.
     pub wind_grid: Option<&'a Arc<WindGrid>>,
     pub carried: OnceCell<Carrying<'a>>,
+    /// Light of flashes of lightning in this frame, once it is known.
+    pub flash: OnceCell<FlashLight>,
+}
+
+/// Light of flashes of lightning: the places that it comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FlashLight {
+    pub lamps: [FlashLamp; MAX_FLASH_LAMPS],
+    pub count: usize,
 }
 
 impl<'a> Moment<'a> {
@@ -66,6 +75,16 @@ impl<'a> Moment<'a> {
         }
         let carrying = self.weather.carrying_until(self.time_s)?;
         Ok(self.carried.get_or_init(|| carrying))
+    }
+
+    /// Light of flashes in this frame, as lamps: position relative to the camera, luminous flux, and whether it shines inside a cloud.
+    pub fn flash_lamps(&self) -> &[FlashLamp] {
+        self.flash.get().map_or(&[], |flash| &flash.lamps[..flash.count])
+    }
+
+    /// Whether any lamp shines, of the host's or of a flash.
+    pub fn has_lamps(&self) -> bool {
+        !(self.lamps.is_empty() && self.flash_lamps().is_empty())
     }
 
     /// Whether any map of the host's shows anything.
@@ -83,6 +102,7 @@ impl<'a> Moment<'a> {
             shelters: self.shelters,
             maps: self.maps,
             lights: self.lamps,
+            flash: self.flash_lamps(),
             eye: self.eye,
             to_enu: self.scene.world_to_enu,
             time_s: self.time_s,

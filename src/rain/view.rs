@@ -190,7 +190,7 @@ impl RainView {
     fn has_cones(&self, now: &Moment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
-            RainModel::Drops | RainModel::Integrated => !now.lamps.is_empty(),
+            RainModel::Drops | RainModel::Integrated => now.has_lamps(),
             RainModel::Veil => false,
         }
     }
@@ -345,7 +345,7 @@ impl RainView {
             (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
         };
         let light = (DropLight::of(&now.scene).exposed(shot.exposure), tone);
-        Some(Streaks::new((&classes, wind), &self.camera(shot), light, !now.lamps.is_empty()))
+        Some(Streaks::new((&classes, wind), &self.camera(shot), light, now.has_lamps()))
     }
 
     /// Draws the drops round the camera into the layer, in which something lies already if `over`; answers what of them.

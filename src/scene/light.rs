@@ -37,6 +37,42 @@ pub(crate) struct LightUniform {
     pub pad: f32,
 }
 
+/// Light of a flash of lightning as a frame has it: what lies near the camera is lit by it as by a lamp.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FlashLamp {
+    /// Camera-relative, east-north-up, m.
+    pub position: DVec3,
+    /// Luminous flux, lm a channel of linear Rec. 709, on the mean of the frame's time.
+    pub flux_lm: [f64; 3],
+    /// Of a source inside a cloud the share of its light that leaves by the cloud's base; none of one that is open to all sides.
+    pub down_share: Option<f64>,
+}
+
+/// Most of them.
+pub(crate) const MAX_FLASH_LAMPS: usize = 8;
+
+impl FlashLamp {
+    /// Luminous intensity, cd a channel: to all sides, or straight down from a cloud's base, which shines by Lambert's law.
+    pub fn intensity_cd(&self) -> [f64; 3] {
+        let share = self.down_share.map_or(0.25, |share| share) / std::f64::consts::PI;
+        self.flux_lm.map(|lm| lm * share)
+    }
+
+    /// With the picture's `exposure` on it.
+    pub(crate) fn uniform(&self, exposure: f64) -> LightUniform {
+        let hidden = self.down_share.is_some();
+        LightUniform {
+            position: self.position.as_vec3().to_array(),
+            // A smooth step from the horizon to straight down stands for the cosine.
+            end: if hidden { 0.0 } else { -2.0 },
+            direction: [0.0, 0.0, -1.0],
+            steepness: 1.0,
+            intensity: self.intensity_cd().map(|c| (c * exposure).min(1e30) as f32),
+            pad: 0.0,
+        }
+    }
+}
+
 impl HostLight {
     /// Refuses what is no lamp, by name.
     ///

@@ -10,6 +10,6 @@ mod world;
 
 pub use camera::Camera;
 pub use depth::{ClipSpace, DepthKind, DepthMapping, DepthUniform, ViewRays};
-pub(crate) use light::LightUniform;
+pub(crate) use light::{FlashLamp, LightUniform, MAX_FLASH_LAMPS};
 pub use light::{HostLight, MAX_LIGHTS};
 pub use world::{Axes, LocalFrame, Place, WorldFrame, WorldKind};

@@ -180,6 +180,17 @@ impl WorldFrame {
         }
     }
 
+    /// Where a place on the planet lies in a tangent or Earth-centred host's world; the inverse of [`WorldFrame::frame_at`].
+    pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
+        match self.kind {
+            WorldKind::Ecef => place.to_ecef(),
+            _ => {
+                let from_origin = self.origin.ecef_to_enu() * (place.to_ecef() - self.origin.to_ecef());
+                self.axes_to_enu().transpose() * from_origin
+            }
+        }
+    }
+
     /// Host axes to (east, north, up), grid bearing included.
     fn axes_to_enu(&self) -> DMat3 {
         let axes = match self.axes {

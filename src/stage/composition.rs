@@ -97,6 +97,8 @@ impl Pipeline {
 pub(crate) struct Composition {
     /// Stages that are drawn; an effect takes out its own where there turns out to be nothing.
     pub stages: Stages,
+    /// Stages of the call: where another effect finds nothing to draw, one may put a stage back that was asked for.
+    pub asked: Stages,
     /// The frame's block.
     pub block: FrameUniform,
     /// Constants of a pipeline that can draw every part.
@@ -118,6 +120,7 @@ impl Composition {
     pub fn new(stages: Stages, block: FrameUniform) -> Self {
         Self {
             stages,
+            asked: stages,
             block,
             whole: Pipeline::NONE,
             least: Pipeline::NONE,

@@ -3,8 +3,20 @@
 use super::{ColorSpace, Frame};
 use crate::{
     moment::Moment,
-    scene::{DepthUniform, ViewRays},
+    scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
 };
+
+/// A place that the light of a flash of lightning comes from, as shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct FlashUniform {
+    pub position: [f32; 3],
+    pub clouds: f32,
+    pub air: f32,
+    pub radius: f32,
+    pub height: f32,
+    pub pad: f32,
+}
 
 /// Everything a pixel of the composition needs beside the sky's and the fog's own blocks.
 #[repr(C)]
@@ -34,6 +46,16 @@ pub(crate) struct FrameUniform {
     pub behind_drawn: f32,
     /// cd/m^2 per unit of the layer behind the sky, and the share of it that stands in the night floor's place.
     pub behind: [f32; 2],
+    /// Colour of the light of flashes, of luminance 1, and how many places it comes from.
+    pub flash_color: [f32; 3],
+    pub flash_count: u32,
+    /// Height of the face of the clouds that they light over the camera, m, their cover, what the haze before them takes, 1/m, and what
+    /// scatters in the air, 1/m.
+    pub flash_plane: f32,
+    pub flash_cover: f32,
+    pub flash_haze: f32,
+    pub flash_scattering: f32,
+    pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -84,6 +106,13 @@ pub(crate) fn uniform(
         compositions: 0,
         behind_drawn: 0.0,
         behind: [0.0; 2],
+        flash_color: [0.0; 3],
+        flash_count: 0,
+        flash_plane: 0.0,
+        flash_cover: 0.0,
+        flash_haze: 0.0,
+        flash_scattering: 0.0,
+        flashes: [FlashUniform::default(); MAX_FLASH_LAMPS],
     }
 }
 
@@ -119,8 +148,21 @@ mod tests {
                 drops,
                 drawn,
                 compositions,
-                behind
+                behind,
+                flash_color,
+                flash_count,
+                flash_plane,
+                flash_cover,
+                flash_haze,
+                flash_scattering,
+                flashes
             ]
+        );
+        shader::assert_layout!(
+            "common/frame.wgsl",
+            "FlashSource",
+            FlashUniform,
+            [position, clouds, air, radius, height]
         );
     }
 }

@@ -13,7 +13,7 @@ use crate::{
         Device,
         bind::{self, Slot},
     },
-    scene::{HostLight, LightUniform, MAX_LIGHTS},
+    scene::{FlashLamp, HostLight, LightUniform, MAX_LIGHTS},
 };
 
 /// A box: its rows, its velocity, which planes cut it.
@@ -62,6 +62,8 @@ pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
+    /// Flashes of lightning, which shine as lamps where the host leaves room for more.
+    pub flash: &'a [FlashLamp],
     pub eye: DVec3,
     pub to_enu: DMat3,
     pub time_s: f64,
@@ -78,7 +80,11 @@ impl HostSurroundings<'_> {
     /// Which there are.
     pub fn present(&self) -> HasSurroundings {
         let maps = self.maps.is_some_and(|m| m.ranges().is_some());
-        HasSurroundings { shelter: maps || !self.shelters.is_empty(), maps, lamps: !self.lights.is_empty() }
+        HasSurroundings {
+            shelter: maps || !self.shelters.is_empty(),
+            maps,
+            lamps: !(self.lights.is_empty() && self.flash.is_empty()),
+        }
     }
 }
 
@@ -154,13 +160,16 @@ impl SurroundingsBlock {
         put(STARTS[1], &maps.to_ne_bytes());
         self.sheltered = near + maps > 0;
         let lights = &host.lights[..host.lights.len().min(MAX_LIGHTS)];
-        put(STARTS[2], &(lights.len() as u32).to_ne_bytes());
-        for (i, light) in lights.iter().enumerate() {
-            let uniform = light.uniform(host.eye, host.to_enu, host.exposure);
-            put(STARTS[2] + 16 + i * size_of::<LightUniform>(), bytemuck::bytes_of(&uniform));
+        let own = lights.iter().map(|light| light.uniform(host.eye, host.to_enu, host.exposure));
+        let all = own.chain(host.flash.iter().map(|lamp| lamp.uniform(host.exposure))).take(MAX_LIGHTS);
+        let mut count = 0;
+        for uniform in all {
+            put(STARTS[2] + 16 + count * size_of::<LightUniform>(), bytemuck::bytes_of(&uniform));
+            count += 1;
         }
+        put(STARTS[2], &(count as u32).to_ne_bytes());
         // What lies behind the last lamp is not read.
-        STARTS[2] + 16 + size_of::<LightUniform>() * lights.len()
+        STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 
     /// Whether anything near the camera keeps rain off: boxes or maps.

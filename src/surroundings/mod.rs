@@ -10,3 +10,4 @@ pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 
 pub(crate) use around::{HostSurroundings, SurroundingsBlock, layout};
 pub(crate) use occluder_maps::OccluderMaps;
+pub(crate) use shelter::met_at;

@@ -178,6 +178,26 @@ impl Shelter {
     }
 }
 
+/// At which share of the way from `a` to `b` (the host's world) the box is met, or what planes leave of it, if it is.
+pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
+    let own = |v: DVec3| shelter.axes.transpose() * v;
+    let (o, d) = (own(a - shelter.center_m), own(b - a));
+    let half = shelter.half_size_m;
+    let faces = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate().flat_map(|(i, n)| [(n, half[i]), (-n, half[i])]);
+    let (mut near, mut far) = (0.0f64, 1.0f64);
+    for (n, distance) in faces.chain(shelter.planes.each()) {
+        let (out, rate) = (n.dot(o) - distance, n.dot(d));
+        if rate < -1e-12 {
+            near = near.max(-out / rate);
+        } else if rate > 1e-12 {
+            far = far.min(-out / rate);
+        } else if out > 0.0 {
+            return None;
+        }
+    }
+    (near <= far).then_some(near)
+}
+
 /// Whether what came to `p` with `velocity` (the host's world) met the box, or what planes leave of it.
 pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
     let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;

@@ -292,6 +292,7 @@ impl World {
             lamps: &self.lights,
             wind_grid: self.wind_grid.as_ref(),
             carried: OnceCell::new(),
+            flash: OnceCell::new(),
             scene,
         })
     }

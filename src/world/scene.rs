@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{
     World,
@@ -190,6 +190,28 @@ impl World {
                 [east * metres_per_deg, (p.latitude_deg - o.latitude_deg) * metres_per_deg]
             }
         }
+    }
+
+    /// Place on the map of a position of the host's world, m east and north of the world's origin.
+    pub fn map_at(&self, position: DVec3) -> DVec2 {
+        DVec2::from_array(self.map_place(position, &self.frame.frame_at(position)))
+    }
+
+    /// Where a place on the map lies in the host's world: the inverse of [`World::map_at`].
+    pub fn position_on_map(&self, map_m: DVec2, altitude_m: f64) -> DVec3 {
+        let o = &self.frame.origin;
+        if self.frame.kind == WorldKind::Flat {
+            let to_enu = self.frame.frame_at(DVec3::ZERO).world_to_enu;
+            return to_enu.transpose() * map_m.extend(altitude_m - o.altitude_m);
+        }
+        let metres_per_deg = self.set.planet.bottom_radius_m.to_radians();
+        let east_m = metres_per_deg * o.latitude_deg.to_radians().cos().max(1e-6);
+        let place = Place {
+            latitude_deg: (o.latitude_deg + map_m.y / metres_per_deg).clamp(-90.0, 90.0),
+            longitude_deg: o.longitude_deg + map_m.x / east_m,
+            altitude_m,
+        };
+        self.frame.position_of(&place)
     }
 
     /// Mean luminance of the moonless sky, cd/m^2, and its light on level ground, lux, a channel.

@@ -6,9 +6,9 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, sky::*,
-    stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_grid::*,
-    windscreen::*,
+    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
+    sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -97,6 +97,14 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)
+        }),
+        case("wk_context_set_lightning", "context", false, |h| unsafe { wk_context_set_lightning(h.cast(), null()) }),
+        case("wk_context_trigger_flash", "context", false, |h| unsafe { wk_context_trigger_flash(h.cast(), null()) }),
+        case("wk_context_get_flashes", "context", false, |h| unsafe {
+            wk_context_get_flashes(h.cast(), null(), 0.0, 1.0, 1e3, null_mut(), 0, 0, null_mut())
+        }),
+        case("wk_context_get_flash_light", "context", false, |h| unsafe {
+            wk_context_get_flash_light(h.cast(), null(), 0.0, 0.0, null_mut())
         }),
         case("wk_context_set_stars", "context", false, |h| unsafe { wk_context_set_stars(h.cast(), null()) }),
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),

@@ -7,8 +7,8 @@ use std::{
 };
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, query::*, rain::*, stars::*,
-    status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, lightning::*, query::*,
+    rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -163,6 +163,26 @@ unsafe fn set_stars(context: *mut wk_context) {
     ok(unsafe { wk_context_set_stars(context, &stars) });
 }
 
+unsafe fn set_lightning(context: *mut wk_context) {
+    let (cells, masts) = ([1.0, 2.0, 3.0, 400.0, 5.5], [7.0, 8.0, 90.0]);
+    let lightning = wk_lightning {
+        flags: WK_LIGHTNING_RATE,
+        flicker: WK_FLICKER_LIMITED,
+        flashes_per_minute: 2.5,
+        cell_count: 1,
+        mast_count: 1,
+        cells: cells.as_ptr(),
+        masts: masts.as_ptr(),
+        ..init("wk_lightning")
+    };
+    ok(unsafe { wk_context_set_lightning(context, &lightning) });
+}
+
+unsafe fn trigger_flash(context: *mut wk_context) {
+    let flash = wk_flash_trigger { time_s: 9.0, peak_ka: 20.0, strokes: 2, ..init("wk_flash_trigger") };
+    ok(unsafe { wk_context_trigger_flash(context, &flash) });
+}
+
 unsafe fn set_wind_grid(context: *mut wk_context) {
     let velocities = [[1.5f32, -0.0, 0.25]; 8];
     let grid = wk_wind_grid {
@@ -183,16 +203,17 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..16].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..18].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 17] = [
+const SETTERS: [(&str, Set); 19] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),
     ("wk_context_set_fog_law", set_fog_law),
     ("wk_context_set_ground_grid", set_ground_grid),
+    ("wk_context_set_lightning", set_lightning),
     ("wk_context_set_lights", set_lights),
     ("wk_context_set_moon", set_moon),
     ("wk_context_set_planet", set_planet),
@@ -203,6 +224,7 @@ const SETTERS: [(&str, Set); 17] = [
     ("wk_context_set_tone_curve", set_tone_curve),
     ("wk_context_set_weather", set_rain),
     ("wk_context_set_wind_grid", set_wind_grid),
+    ("wk_context_trigger_flash", trigger_flash),
     ("wk_context_update", set_time),
     ("all at once", set_all),
 ];

@@ -8,9 +8,9 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, occluder::*, opengl::*, plan::*, query::*, rain::*, report::*, sky::*,
-    stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*,
-    wind_grid::*, windscreen::*,
+    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*, query::*, rain::*,
+    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -119,6 +119,11 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
+        case("wk_lightning", "lightning", true, move |p| unsafe { wk_context_set_lightning(context, p.cast()) }),
+        case("wk_flash_trigger", "flash", true, move |p| unsafe { wk_context_trigger_flash(context, p.cast()) }),
+        case("wk_flash_light", "out_light", false, move |p| unsafe {
+            wk_context_get_flash_light(context, &ORIGIN, 0.0, 0.0, p.cast())
+        }),
         case("wk_stars", "stars", true, move |p| unsafe { wk_context_set_stars(context, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {
@@ -191,6 +196,7 @@ const ORIGIN: [f64; 3] = [0.0; 3];
 const ELSEWHERE: &[&str] = &[
     "wk_surface_config",
     "wk_cloud_slab",
+    "wk_flash",
     "wk_ground_light",
     "wk_ground_cell",
     "wk_segment",

@@ -5,8 +5,8 @@ use std::ptr::{null, null_mut};
 
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, occluder::*, plan::*, query::*, radiance::*, rain::*, report::*,
-    sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
+    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
     wind_grid::*, windscreen::*,
 };
 
@@ -358,6 +358,27 @@ pub const CALLS: &[(&str, Call)] = &[
             wk_utc_from_calendar(1900 + d.whole() as i32, n(d), n(d), n(d), n(d), d.float(), &mut out)
         };
         status.into()
+    }),
+    ("wk_context_set_lightning", |d, w| {
+        let context = handle(d, &w.contexts);
+        set_one(d, "wk_lightning", |p| unsafe { wk_context_set_lightning(context, p.cast()) })
+    }),
+    ("wk_context_trigger_flash", |d, w| {
+        let context = handle(d, &w.contexts);
+        set_one(d, "wk_flash_trigger", |p| unsafe { wk_context_trigger_flash(context, p.cast()) })
+    }),
+    ("wk_context_get_flashes", |d, w| {
+        let mut flashes = room(unsafe { std::mem::zeroed::<wk_flash>() });
+        let (context, at, from, mut count) = (handle(d, &w.contexts), position(d), w.time(d), 0);
+        let (until, far) = (from + if d.one_in(4) { d.float() } else { 60.0 * d.unit() }, 6e4 * d.unit());
+        let (most, size) = (d.below(65) as u32, size_of_element::<wk_flash>(d));
+        let to = flashes.as_mut_ptr();
+        unsafe { wk_context_get_flashes(context, &at, from, until, far, to, most, size, &mut count) }.into()
+    }),
+    ("wk_context_get_flash_light", |d, w| {
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        let exposure = if d.one_in(4) { d.float() } else { d.unit() };
+        get("wk_flash_light", |p| unsafe { wk_context_get_flash_light(context, &at, time, exposure, p.cast()) })
     }),
     ("wk_context_set_stars", |d, w| {
         let context = handle(d, &w.contexts);

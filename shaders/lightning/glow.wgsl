@@ -1,0 +1,63 @@
+// What flashes make glow: the face of the clouds, and the air. The f64 twins are in src/lightning/glow.rs.
+//!include "common/frame.wgsl"
+
+// Whether any flash shines.
+override FLASH: bool = false;
+
+// Asymmetry of what the air scatters of a flash: haze, fog and rain have 0.7 to 0.9.
+const FLASH_ASYMMETRY: f32 = 0.75;
+// Share of the extinction that takes light away: what is scattered goes on nearly as before.
+const FLASH_TAKES: f32 = 0.2;
+// Farthest that the clouds' face is lit, m.
+const FLASH_FARTHEST: f32 = 60000.0;
+
+// Luminance of the clouds' face where a ray meets it. A source h from the face, which sends k h / (r^2 + h^2)^(3/2) at distance r
+// along it: of light that wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over pi.
+fn flash_on_clouds(d: vec3f) -> vec3f {
+    let way = frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
+    if way <= 0.0 || way > FLASH_FARTHEST {
+        return vec3f(0.0);
+    }
+    var sum = 0.0;
+    for (var i = 0u; i < frame.flash_count; i++) {
+        let source = frame.flashes[i];
+        let aside = d.xy * way - source.position.xy;
+        let h = source.height;
+        sum += source.clouds * h * pow(dot(aside, aside) + h * h, -1.5);
+    }
+    // It ends softly where it is cut off.
+    let left = exp(-frame.flash_haze * way) * (1.0 - smoothstep(0.5, 1.0, way / FLASH_FARTHEST));
+    return frame.flash_color * (sum * left);
+}
+
+// Phase function of Henyey and Greenstein (1941), 1/sr.
+fn flash_phase(cosine: f32) -> f32 {
+    let g = FLASH_ASYMMETRY;
+    let d = 1.0 + g * g - 2.0 * g * cosine;
+    return 0.07957747 * (1.0 - g * g) / (d * sqrt(d));
+}
+
+// Light that the air before `range` scatters once towards the eye. With s along the ray from where it passes nearest to a source, at
+// distance h, and s = h tan u, the square of the distance falls out of the integral (Kulla and Fajardo 2012, "equiangular").
+fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
+    let taken = FLASH_TAKES * frame.flash_scattering;
+    var sum = 0.0;
+    for (var i = 0u; i < frame.flash_count; i++) {
+        let source = frame.flashes[i];
+        let to = source.position - ray.origin;
+        let along = dot(to, ray.direction);
+        let h = sqrt(max(dot(to, to) - along * along, 0.0) + source.radius * source.radius);
+        let first = atan(-along / h);
+        let whole = atan((min(range, FLASH_FARTHEST) - along) / h) - first;
+        var part = 0.0;
+        for (var k = 0u; k < 4u; k++) {
+            // Denser at the near end, where light hardly turns.
+            let t = 0.25 * (f32(k) + 0.5);
+            let u = first + whole * t * t;
+            let s = along + h * tan(u);
+            part += t * flash_phase(-sin(u)) * exp(-taken * (s + h / cos(u)));
+        }
+        sum += source.air * part * 0.5 * whole / h;
+    }
+    return frame.flash_color * (sum * frame.flash_scattering);
+}

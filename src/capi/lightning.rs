@@ -1,0 +1,359 @@
+//! Lightning
+//!
+//! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
+//! as often and where the host says. Every flash is a function of the context's seed, the time, the rate and the storm
+//! cells: all channels see the same ones, and any time can be shown again. Views draw channels, the glow of clouds and
+//! air, and light rain and wet ground by them. The host asks for events to play thunder, and for light to light its own
+//! scene:
+//!
+//! ```c
+//! wk_flash flashes[16];
+//! uint32_t count = 0;
+//! wk_context_get_flashes(context, ear, last_s, now_s, 20e3, flashes, 16, sizeof flashes[0], &count);
+//! for (uint32_t i = 0; i < count; i++)
+//!     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
+//! ```
+//!
+//! A frame has the light from the view's frame before it to its own time: a flash is neither missed nor doubled,
+//! however many frames a second there are.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    input::{self, Named, out},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    lightning::{FlashEvent, FlashKind, FlashTrigger, LightningSettings, MAX_CELLS, MAX_MASTS, StormCell},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_lightning.rs"));
+
+/// What a wk_lightning sets.
+pub type wk_lightning_flags = u32;
+/// flashes_per_minute: the host's rate in place of the weather's.
+pub const WK_LIGHTNING_RATE: wk_lightning_flags = 1;
+
+/// How flashes flicker in a picture.
+pub type wk_flicker = u32;
+/// As in nature: many changes of luminance a second.
+pub const WK_FLICKER_AS_IN_NATURE: wk_flicker = 0;
+/// At most three changes of luminance a second, for viewers whom flicker may harm: each drawn flash rises once and
+/// fades, and the next one comes a second later at the earliest. Events and light that are asked for stay.
+pub const WK_FLICKER_LIMITED: wk_flicker = 1;
+
+/// Where a flash goes.
+pub type wk_flash_kind = u32;
+/// To the ground.
+pub const WK_FLASH_KIND_TO_GROUND: wk_flash_kind = 0;
+/// Within the cloud.
+pub const WK_FLASH_KIND_IN_CLOUD: wk_flash_kind = 1;
+
+/// How often it flashes, where, and how views draw it.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_lightning {
+    /// sizeof(wk_lightning) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_LIGHTNING.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Default 0: the weather's rate.
+    pub flags: wk_lightning_flags,
+    /// Default WK_FLICKER_AS_IN_NATURE.
+    pub flicker: wk_flicker,
+    /// With WK_LIGHTNING_RATE: flashes a minute of each square of 20 km, whatever the weather. Range [0, 60], default 0.
+    pub flashes_per_minute: f64,
+    /// Storm cells in `cells`, at most 16, in place of the weather's. Default 0.
+    pub cell_count: u32,
+    /// Tall things in `masts`, at most 64. Default 0.
+    pub mast_count: u32,
+    /// Five numbers a cell: its middle in the host's world, m (the height does not matter); the distance from it within
+    /// which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+    pub cells: *const f64,
+    /// Three numbers each: the tip in the host's world, m. Masts draw ground flashes; so do the tops of shelters. Copied.
+    /// Default NULL.
+    pub masts: *const f64,
+}
+
+impl wk_lightning {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_LIGHTNING,
+        next: null(),
+        flags: 0,
+        flicker: WK_FLICKER_AS_IN_NATURE,
+        flashes_per_minute: 0.0,
+        cell_count: 0,
+        mast_count: 0,
+        cells: null(),
+        masts: null(),
+    };
+}
+
+/// A flash that the host triggers.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_flash_trigger {
+    /// sizeof(wk_flash_trigger) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FLASH_TRIGGER.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// When its first stroke comes, s of simulation time, not before the present. Range [-1e10, 1e10], default 0.
+    pub time_s: f64,
+    /// Where it strikes in the host's world, m; one within the cloud passes over it. A shelter in its way ends it.
+    /// Default 0, 0, 0.
+    pub position_m: [f64; 3],
+    /// Largest peak current of its strokes, kA. Range [0, 500], default 0: by chance. At least 1 otherwise.
+    pub peak_ka: f64,
+    /// Default WK_FLASH_KIND_TO_GROUND.
+    pub kind: wk_flash_kind,
+    /// Strokes. Range [0, 26], default 0: by chance.
+    pub strokes: u32,
+}
+
+impl wk_flash_trigger {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FLASH_TRIGGER,
+        next: null(),
+        time_s: 0.0,
+        position_m: [0.0, 0.0, 0.0],
+        peak_ka: 0.0,
+        kind: WK_FLASH_KIND_TO_GROUND,
+        strokes: 0,
+    };
+}
+
+/// A flash as a place has it; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_flash {
+    /// Number of its own among the flashes of the context.
+    pub id: u64,
+    /// When its first stroke comes, s of simulation time.
+    pub time_s: f64,
+    /// Where it goes.
+    pub kind: wk_flash_kind,
+    /// Strokes, or steps of the light of one within the cloud.
+    pub strokes: u32,
+    /// Largest peak current of its strokes, kA.
+    pub peak_ka: f64,
+    /// What it struck, or the middle of its way in the cloud, in the host's world, m.
+    pub position_m: [f64; 3],
+    /// Distance of the nearest point of its channel, m.
+    pub distance_m: f64,
+    /// Direction to position_m.
+    pub direction: [f64; 3],
+    /// Time from the flash to the beginning of its thunder, s: distance_m over the speed of sound, 331.3 m/s and 0.606 m/s
+    /// for each degree Celsius.
+    pub thunder_delay_s: f64,
+}
+
+impl wk_flash {
+    fn of(f: &FlashEvent) -> Self {
+        Self {
+            id: f.id,
+            time_s: f.time_s,
+            kind: match f.kind {
+                FlashKind::ToGround => WK_FLASH_KIND_TO_GROUND,
+                FlashKind::InCloud => WK_FLASH_KIND_IN_CLOUD,
+            },
+            strokes: f.strokes,
+            peak_ka: f.peak_ka,
+            position_m: f.position.to_array(),
+            distance_m: f.distance_m,
+            direction: f.direction.to_array(),
+            thunder_delay_s: f.thunder_delay_s,
+        }
+    }
+}
+
+/// Light of flashes at a place.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_flash_light {
+    /// sizeof(wk_flash_light) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_FLASH_LIGHT.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Illuminance on surfaces that face the sources, all together, lux a channel.
+    pub facing_lux: [f64; 3],
+    /// Illuminance on level ground, lux.
+    pub level_lux: f64,
+    /// Direction to the middle of the light; straight up where there is none.
+    pub direction: [f64; 3],
+}
+
+impl wk_flash_light {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_FLASH_LIGHT,
+        next: null(),
+        facing_lux: [0.0, 0.0, 0.0],
+        level_lux: 0.0,
+        direction: [0.0, 0.0, 0.0],
+    };
+}
+
+/// # Safety
+/// `p` is a `wk_lightning` whose lists are as long as they say.
+unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&"lightning", p)? };
+    let counts = [("lightning.cell_count", c.cell_count), ("lightning.mast_count", c.mast_count)];
+    let [cells, masts] = counts.map(|(name, count)| Named(name, count as usize));
+    // SAFETY: as above.
+    let (cells, masts): (&[[f64; 5]], &[[f64; 3]]) = unsafe {
+        layout::check_chain(&"lightning", c.next, &[])?;
+        (
+            input::slice("lightning.cells", c.cells.cast(), cells, MAX_CELLS)?,
+            input::slice("lightning.masts", c.masts.cast(), masts, MAX_MASTS)?,
+        )
+    };
+    // A host finds a number by its place in the list.
+    let place = |list: &str, first: usize, p: [f64; 3]| {
+        let within =
+            |(k, v): (usize, &f64)| check_range(&format!("lightning.{list}[{}]", first + k), *v, -1e12, 1e12, "m");
+        p.iter().enumerate().try_for_each(within)?;
+        Ok::<DVec3, Error>(DVec3::from_array(p))
+    };
+    let cell = |(i, [x, y, z, radius_m, rate]): (usize, &[f64; 5])| {
+        let number = |k: usize| format!("lightning.cells[{}]", 5 * i + k);
+        check_range(&number(3), *radius_m, 0.0, 1e5, "m")?;
+        check_range(&number(4), *rate, 0.0, 60.0, "1/min")?;
+        let position = place("cells", 5 * i, [*x, *y, *z])?;
+        Ok(StormCell { position, radius_m: *radius_m, flashes_per_minute: *rate })
+    };
+    Ok(LightningSettings {
+        flashes_per_minute: (c.flags & WK_LIGHTNING_RATE != 0).then_some(c.flashes_per_minute),
+        cells: cells.iter().enumerate().map(cell).collect::<Result<_>>()?,
+        masts: masts.iter().enumerate().map(|(i, m)| place("masts", 3 * i, *m)).collect::<Result<_>>()?,
+        limits_flicker: c.flicker == WK_FLICKER_LIMITED,
+    })
+}
+
+/// Sets how often it flashes, where, and how views draw it; NULL returns to the default. Part of the saved state.
+/// Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_lightning(
+    context: *mut wk_context,
+    lightning: *const wk_lightning,
+) -> wk_status {
+    guard("wk_context_set_lightning", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `lightning`.
+        let set = if lightning.is_null() { LightningSettings::default() } else { unsafe { settings(lightning)? } };
+        object.write().set_lightning(set)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time. Unchanged
+/// after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the present.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_trigger_flash(
+    context: *mut wk_context,
+    flash: *const wk_flash_trigger,
+) -> wk_status {
+    guard("wk_context_trigger_flash", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `flash`.
+        let c = unsafe { layout::read(&"flash", flash)? };
+        // SAFETY: as above.
+        unsafe { layout::check_chain(&"flash", c.next, &[])? };
+        let trigger = FlashTrigger {
+            time_s: c.time_s,
+            position: DVec3::from_array(c.position_m),
+            kind: if c.kind == WK_FLASH_KIND_IN_CLOUD { FlashKind::InCloud } else { FlashKind::ToGround },
+            peak_ka: (c.peak_ka != 0.0).then_some(c.peak_ka),
+            strokes: (c.strokes != 0).then_some(c.strokes),
+        };
+        object.write().trigger_flash(&trigger).map_err(|e| e.renamed("flash.position", "flash.position_m"))?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets the flashes that begin from `from_s` on until `until_s`, 3600 s at most, within `most_distance_m` of a place of the
+/// host's world (on the map; at most 50000 m), in order of time: past or to come. `*out_count` gets their number even if
+/// `capacity` is too small (then nothing else is written and the call fails) or 0 (then it succeeds). `flash_size` is
+/// sizeof(wk_flash) of your header. Where the timeline has forgotten the weather of then, the first that it knows counts.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_flashes(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    from_s: f64,
+    until_s: f64,
+    most_distance_m: f64,
+    flashes: *mut wk_flash,
+    capacity: u32,
+    flash_size: u32,
+    out_count: *mut u32,
+) -> wk_status {
+    guard("wk_context_get_flashes", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `position_m`.
+        let at = DVec3::from_array(unsafe { position("position_m", position_m)? });
+        let count = out("out_count", out_count)?;
+        let room = input::Room::new("flashes", "flash_size", flashes, capacity, flash_size)?;
+        let found = object.read().flashes_near(at, (from_s, until_s), most_distance_m);
+        let found = found.map_err(|e| e.renamed("position", "position_m"))?;
+        // SAFETY: `count` was checked and is the caller's.
+        unsafe { count.write(found.len() as u32) };
+        if capacity > 0 {
+            room.check_capacity("capacity", found.len())?;
+            for (i, flash) in found.iter().enumerate() {
+                // SAFETY: `i` is below the capacity that the caller promises.
+                unsafe { room.write(i, &wk_flash::of(flash)) };
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets the light of flashes at a place of the host's world, on the mean of `exposure_s`, [0, 1], before `time_s`; with 0
+/// that of the very moment. A host lights its own scene by it, with the time from its last frame as exposure.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_flash_light(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    exposure_s: f64,
+    out_light: *mut wk_flash_light,
+) -> wk_status {
+    guard("wk_context_get_flash_light", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promises.
+        let (at, place) =
+            unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_light", out_light)?) };
+        let light = object.read().lightning_at(DVec3::from_array(at), time_s, exposure_s);
+        let light = light.map_err(|e| e.renamed("position", "position_m"))?;
+        place.set(&wk_flash_light {
+            facing_lux: light.facing_lux,
+            level_lux: light.level_lux,
+            direction: light.direction.to_array(),
+            ..wk_flash_light::INIT
+        });
+        Ok(Status::Ok)
+    })
+}

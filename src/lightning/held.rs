@@ -1,0 +1,166 @@
+//! What a context holds of the lightning: its settings, and the flashes that the host triggered.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    schedule::FlashKind,
+    settings::{FlashTrigger, LightningSettings, MAX_TRIGGERED, StormCell},
+};
+use crate::{
+    error::{Error, Result, Status},
+    world::{HeldEffect, Within, World, parse_error},
+};
+
+/// How long a triggered flash is kept after it, s: its thunder has been heard then.
+const KEPT_S: f64 = 120.0;
+
+/// The lightning of a context.
+#[derive(Clone, Default)]
+pub(crate) struct HeldLightning {
+    pub settings: LightningSettings,
+    pub triggered: Vec<FlashTrigger>,
+    /// Revision of both.
+    pub revision: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedCell {
+    position: [f64; 3],
+    radius_m: f64,
+    flashes_per_minute: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedTrigger {
+    time_s: f64,
+    position: [f64; 3],
+    to_ground: bool,
+    peak_ka: Option<f64>,
+    strokes: Option<u32>,
+}
+
+/// As a saved state has it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Saved {
+    flashes_per_minute: Option<f64>,
+    limits_flicker: bool,
+    masts: Vec<[f64; 3]>,
+    cells: Vec<SavedCell>,
+    triggered: Vec<SavedTrigger>,
+}
+
+/// Where it is in a saved state.
+const TABLE: &str = "settings";
+const KEY: &str = "lightning";
+
+impl HeldLightning {
+    /// Takes its part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what is no such part, [`Status::InvalidArgument`] naming what is out of range.
+    pub fn read(&self, state: &mut toml::Table) -> Result<Self> {
+        let revision = self.revision + 1;
+        let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
+        let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self { revision, ..Self::default() }) };
+        let saved: Saved = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        let cell = |c: &SavedCell| StormCell {
+            position: DVec3::from_array(c.position),
+            radius_m: c.radius_m,
+            flashes_per_minute: c.flashes_per_minute,
+        };
+        let trigger = |t: &SavedTrigger| FlashTrigger {
+            time_s: t.time_s,
+            position: DVec3::from_array(t.position),
+            kind: if t.to_ground { FlashKind::ToGround } else { FlashKind::InCloud },
+            peak_ka: t.peak_ka,
+            strokes: t.strokes,
+        };
+        let read = Self {
+            settings: LightningSettings {
+                flashes_per_minute: saved.flashes_per_minute,
+                cells: saved.cells.iter().map(cell).collect(),
+                masts: saved.masts.into_iter().map(DVec3::from_array).collect(),
+                limits_flicker: saved.limits_flicker,
+            },
+            triggered: saved.triggered.iter().map(trigger).collect(),
+            revision,
+        };
+        let checked =
+            read.settings.validate().and_then(|()| read.triggered.iter().try_for_each(FlashTrigger::validate));
+        checked.map_err(|e| e.found_in("saved state"))?;
+        if read.triggered.len() > MAX_TRIGGERED {
+            return Err(parse_error(format_args!("{KEY}: more than {MAX_TRIGGERED} triggered flashes")));
+        }
+        Ok(read)
+    }
+
+    /// Takes one more flash, the present being `now_s`.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field, or for more than [`MAX_TRIGGERED`]; [`Status::WrongOrder`] for one of the past. Nothing
+    /// changes then.
+    pub fn trigger(&mut self, flash: &FlashTrigger, now_s: f64) -> Result<()> {
+        flash.validate()?;
+        if flash.time_s < now_s {
+            let rest = format!("must be at least the present, {now_s} s, got {}", flash.time_s);
+            return Err(Error::about(Status::WrongOrder, "flash.time_s", rest));
+        }
+        if self.triggered.len() >= MAX_TRIGGERED {
+            let accepted = format!("one of at most {MAX_TRIGGERED} to come or within {KEPT_S} s after it");
+            return Err(Error::range("flash", &accepted, "one more"));
+        }
+        self.triggered.push(*flash);
+        self.revision += 1;
+        Ok(())
+    }
+}
+
+impl HeldEffect for HeldLightning {
+    fn lead(&mut self, world: &World, _within: Within) -> Result<Status> {
+        self.triggered.retain(|t| t.time_s + KEPT_S >= world.time_s);
+        Ok(Status::Ok)
+    }
+
+    fn save(&self, state: &mut toml::Table) -> Result<()> {
+        let set = &self.settings;
+        if *set == LightningSettings::default() && self.triggered.is_empty() {
+            return Ok(());
+        }
+        let saved = Saved {
+            flashes_per_minute: set.flashes_per_minute,
+            limits_flicker: set.limits_flicker,
+            masts: set.masts.iter().map(|m| m.to_array()).collect(),
+            cells: set
+                .cells
+                .iter()
+                .map(|c| SavedCell {
+                    position: c.position.to_array(),
+                    radius_m: c.radius_m,
+                    flashes_per_minute: c.flashes_per_minute,
+                })
+                .collect(),
+            triggered: self
+                .triggered
+                .iter()
+                .map(|t| SavedTrigger {
+                    time_s: t.time_s,
+                    position: t.position.to_array(),
+                    to_ground: t.kind == FlashKind::ToGround,
+                    peak_ka: t.peak_ka,
+                    strokes: t.strokes,
+                })
+                .collect(),
+        };
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        let value = toml::Value::try_from(saved).map_err(written)?;
+        let settings = state.entry(TABLE).or_insert_with(|| toml::Table::new().into());
+        if let Some(settings) = settings.as_table_mut() {
+            settings.insert(KEY.into(), value);
+        }
+        Ok(())
+    }
+}

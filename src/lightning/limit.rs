@@ -1,0 +1,54 @@
+//! Fewer changes of luminance for viewers whom flicker may harm.
+//!
+//! A flash that is drawn so rises once and fades: two changes. Of all flashes near a camera those are drawn that begin at least a second
+//! after the one drawn before, so any second has three changes at most (WCAG 2.2, success criterion 2.3.1, has three flashes, each of two
+//! changes). The choice begins anew every 10 s, with a second in which none is drawn: so it depends on the flashes of the last 10 s alone,
+//! and every channel and every way through time choose the same.
+
+/// Length of a stretch of time whose choice depends on no other, s.
+pub const EPOCH_S: f64 = 10.0;
+/// Least time from one drawn flash to the next, s.
+const APART_S: f64 = 1.0;
+
+/// Beginning of the stretch of time of a flash, s.
+pub fn epoch_s(time_s: f64) -> f64 {
+    (time_s / EPOCH_S).floor() * EPOCH_S
+}
+
+/// Whether the flash that begins at `time_s` is drawn, of all that begin at `times_s` since its [`epoch_s`], in order.
+pub fn is_drawn(time_s: f64, times_s: &[f64]) -> bool {
+    let mut drawn_s = epoch_s(time_s);
+    for t in times_s.iter().copied().filter(|t| *t <= time_s) {
+        if t >= drawn_s + APART_S {
+            drawn_s = t;
+            if t == time_s {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chance::Chance;
+
+    #[test]
+    fn drawn_flashes_are_a_second_apart() {
+        let mut chance = Chance::new(3, 4);
+        let mut times: Vec<f64> = (0..2000).map(|_| 1000.0 * chance.even()).collect();
+        times.sort_by(f64::total_cmp);
+        let drawn: Vec<f64> = times
+            .iter()
+            .copied()
+            .filter(|t| {
+                let epoch: Vec<f64> = times.iter().copied().filter(|o| epoch_s(*o) == epoch_s(*t)).collect();
+                is_drawn(*t, &epoch)
+            })
+            .collect();
+        assert!(drawn.len() > 400, "{}", drawn.len());
+        assert!(drawn.windows(2).all(|p| p[1] - p[0] >= APART_S), "closer than a second");
+        assert!(times.windows(2).any(|p| p[1] - p[0] < 0.1), "the test has flashes that are close");
+    }
+}

@@ -1,0 +1,171 @@
+//! The pass that draws channels into the layer before the picture.
+
+use std::sync::Arc;
+
+use super::uniforms::{ChannelUniform, PartInstance};
+use crate::{
+    error::Result,
+    gpu::{
+        Device, KeptLayer, Layer,
+        bind::{self, Slot},
+        is_kept,
+        pass::{self, QuadsDesc},
+        recent::Recent,
+    },
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, yes},
+};
+
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Most parts that are drawn: those of two or three flashes at once.
+pub(super) const MOST_PARTS: usize = 4096;
+/// Pipelines held for a view: those of some weathers that change.
+const MOST_PIPELINES: usize = 4;
+
+/// What decides which pipeline draws, beside the constants of the veil: several samples, any depth.
+type DepthKind = (bool, bool);
+
+/// Made when there first is a channel to draw.
+pub(super) struct ChannelPass {
+    block: wgpu::Buffer,
+    parts: wgpu::Buffer,
+    layouts: [wgpu::BindGroupLayout; 2],
+    none: wgpu::TextureView,
+    pipelines: Recent<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    bound: Option<(Option<KeptLayer>, wgpu::Buffer, wgpu::BindGroup)>,
+}
+
+fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
+    // The block of what lies between is another room's: any size.
+    let slots = [
+        (0, Slot::Uniform(size_of::<FrameUniform>())),
+        (1, Slot::texels(multisampled)),
+        (4, Slot::Uniform(0)),
+        (7, Slot::Uniform(size_of::<ChannelUniform>())),
+    ];
+    bind::layout(device, "flashes", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
+}
+
+impl ChannelPass {
+    pub fn new(device: &Device) -> Self {
+        let parts = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("flashes"),
+            size: (MOST_PARTS * size_of::<PartInstance>()) as u64,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            block: bind::block(&device.device, "flashes", size_of::<ChannelUniform>()),
+            parts,
+            layouts: [false, true].map(|multi| layout(&device.device, multi)),
+            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            pipelines: Recent::new(),
+            bound: None,
+        }
+    }
+
+    /// Bytes of GPU memory.
+    pub fn bytes(&self) -> u64 {
+        self.parts.size() + self.block.size()
+    }
+
+    /// Adds parts to the layer `target`, which is cleared first unless something lies in it already (`over`).
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn draw(
+        &mut self,
+        to: &mut Recording<'_>,
+        (block, parts): (&ChannelUniform, &[PartInstance]),
+        with: &Drawing<'_>,
+        depth: Option<Layer<'_>>,
+        (target, over): (&wgpu::TextureView, bool),
+    ) -> Result<()> {
+        let Some((tables_layout, tables)) = &with.composition.tables else { return Ok(()) };
+        let device = to.device;
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(block));
+        device.queue.write_buffer(&self.parts, 0, bytemuck::cast_slice(parts));
+        let kind = (depth.is_some_and(Layer::is_multisampled), depth.is_some());
+        self.bind(device, with, depth, kind.0);
+        let pipeline = self.pipeline(device, tables_layout, kind, with.composition.least.between.all())?;
+        let Some((.., group)) = &self.bound else { return Ok(()) };
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("flashes"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: if over { wgpu::LoadOp::Load } else { clear },
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_bind_group(1, tables, &[]);
+        pass.set_vertex_buffer(0, self.parts.slice(..));
+        pass.draw(0..4, 0..parts.len() as u32);
+        Ok(())
+    }
+
+    fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
+        let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
+        if self.bound.as_ref().is_some_and(|(d, b, _)| is_kept(depth, d.as_ref()) && b == between) {
+            return;
+        }
+        let view = depth.map(Layer::view);
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("flashes"),
+            layout: &self.layouts[usize::from(multi)],
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: with.block.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(&self.none)),
+                },
+                wgpu::BindGroupEntry { binding: 4, resource: between.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 7, resource: self.block.as_entire_binding() },
+            ],
+        });
+        self.bound = Some((depth.map(Layer::kept), between.clone(), group));
+    }
+
+    /// The pipeline for what is drawn, compiled at its first use.
+    fn pipeline(
+        &mut self,
+        device: &Arc<Device>,
+        tables: &wgpu::BindGroupLayout,
+        (multi, has_depth): DepthKind,
+        constants: &[Constant],
+    ) -> Result<wgpu::RenderPipeline> {
+        let own = &self.layouts[usize::from(multi)];
+        let make = || {
+            let name = if multi { "lightning/channel.wgsl:multi" } else { "lightning/channel.wgsl" };
+            let module = device.shader(name)?;
+            let mut all = constants.to_vec();
+            all.push(("HAS_DEPTH", yes(has_depth)));
+            let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+            let instances = wgpu::VertexBufferLayout {
+                array_stride: size_of::<PartInstance>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            };
+            let pipeline = pass::quads(
+                device,
+                &QuadsDesc {
+                    label: "flashes",
+                    vertex: (&module, "channel_vertex", &[]),
+                    fragment: (&module, "channel_fragment", &all),
+                    layouts: &[Some(own), Some(tables)],
+                    buffers: &[Some(instances)],
+                    format: FORMAT,
+                    counts: false,
+                },
+            );
+            Ok((((multi, has_depth), constants.to_vec()), pipeline?))
+        };
+        self.pipelines.get_or_make(|(k, c)| *k == (multi, has_depth) && c == constants, make).cloned()
+    }
+}

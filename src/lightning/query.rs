@@ -1,0 +1,132 @@
+//! What a host asks: which flashes there are near a place, when their thunder comes, and how much light arrives.
+
+use glam::DVec3;
+
+use super::{
+    channel::sound_m_s,
+    held::HeldLightning,
+    light::{COLOR, Course, Span},
+    schedule::{Flash, FlashKind},
+    settings::FlashTrigger,
+    storms::Storms,
+    strike::Strike,
+};
+use crate::{
+    error::{Result, check_range},
+    world::World,
+};
+
+/// Longest time and farthest distance of one query.
+pub const MOST_SPAN_S: f64 = 3600.0;
+/// Farthest that flashes are asked for, m.
+pub const MOST_DISTANCE_M: f64 = 50_000.0;
+/// Farthest that light is counted, m, on the map.
+pub(crate) const LIGHT_REACH_M: f64 = 30_000.0;
+/// Longest exposure that light is averaged over, s.
+pub const MOST_EXPOSURE_S: f64 = 1.0;
+/// Share of the extinction that takes light away: what droplets scatter goes on nearly as before (asymmetry 0.8).
+pub(crate) const TAKES: f64 = 0.2;
+
+/// A flash as a place has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlashEvent {
+    /// Number of its own among the flashes of the context.
+    pub id: u64,
+    /// When its first stroke comes, s of simulation time.
+    pub time_s: f64,
+    /// Where it goes.
+    pub kind: FlashKind,
+    /// Strokes, or steps of the light of one in the cloud.
+    pub strokes: u32,
+    /// Largest peak current of its strokes, kA.
+    pub peak_ka: f64,
+    /// What it struck, or the middle of its way in the cloud, in the host's world.
+    pub position: DVec3,
+    /// Distance of the nearest point of its channel, m.
+    pub distance_m: f64,
+    /// Direction from the place to `position`, unit vector (east, north, up).
+    pub direction: DVec3,
+    /// Time from the flash to the beginning of its thunder at the place, s.
+    pub thunder_delay_s: f64,
+}
+
+/// Light of flashes at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightningLight {
+    /// Illuminance on surfaces that face each source, all together, lux a channel of linear Rec. 709.
+    pub facing_lux: [f64; 3],
+    /// Illuminance on level ground, lux.
+    pub level_lux: f64,
+    /// Unit vector (east, north, up) towards the middle of the light; straight up where there is none.
+    pub direction: DVec3,
+}
+
+/// All flashes from `from_s` on until `until_s` within `most_m` of a place on the map, in order of time.
+pub(crate) fn events(
+    world: &World,
+    held: &HeldLightning,
+    position: DVec3,
+    (from_s, until_s): (f64, f64),
+    most_m: f64,
+) -> Result<Vec<FlashEvent>> {
+    let local = world.frame.place_at("position", position)?;
+    check_range("from_s", from_s, -1e10, 1e10, "s")?;
+    check_range("until_s", until_s, from_s, from_s + MOST_SPAN_S, "s")?;
+    check_range("most_distance_m", most_m, 0.0, MOST_DISTANCE_M, "m")?;
+    let storms = Storms { world, held };
+    let mut found: Vec<(Flash, Option<FlashTrigger>)> = Vec::new();
+    storms.visit((storms.on_map(position), most_m), (from_s, until_s), |flash, by| found.push((*flash, by.copied())));
+    found.sort_by(|a, b| a.0.time_s.total_cmp(&b.0.time_s).then(a.0.id.cmp(&b.0.id)));
+    let event = |(flash, by): &(Flash, Option<FlashTrigger>)| {
+        let strike = Strike::new(world, &held.settings.masts, *flash, by.map(|t| t.position));
+        let distance_m = strike.channel.distance_m(position);
+        FlashEvent {
+            id: flash.id,
+            time_s: flash.time_s,
+            kind: flash.kind,
+            strokes: flash.strokes().len() as u32,
+            peak_ka: flash.peak_ka(),
+            position: strike.position(),
+            distance_m,
+            direction: (local.world_to_enu * (strike.position() - position)).normalize_or(DVec3::Z),
+            thunder_delay_s: distance_m / sound_m_s(strike.temperature_c),
+        }
+    };
+    Ok(found.iter().map(event).collect())
+}
+
+/// Light of flashes at a place on the mean of `exposure_s` before `time_s`; at 0 of that very moment.
+pub(crate) fn light_at(
+    world: &World,
+    held: &HeldLightning,
+    position: DVec3,
+    time_s: f64,
+    exposure_s: f64,
+) -> Result<LightningLight> {
+    let local = world.frame.place_at("position", position)?;
+    check_range("time_s", time_s, -1e10, 1e10, "s")?;
+    check_range("exposure_s", exposure_s, 0.0, MOST_EXPOSURE_S, "s")?;
+    let storms = Storms { world, held };
+    let span = Span { from_s: time_s - exposure_s, until_s: time_s };
+    let extinction_per_m = world.timeline.at(time_s).extinction_per_m;
+    let (mut sum, mut level, mut towards) = (0.0, 0.0, DVec3::ZERO);
+    let begin = Storms::begin_within(span.from_s, span.until_s);
+    storms.visit((storms.on_map(position), LIGHT_REACH_M), begin, |flash, by| {
+        if !Course::Natural.shines(flash, &span) {
+            return;
+        }
+        let strike = Strike::new(world, &held.settings.masts, *flash, by.map(|t| t.position));
+        for source in strike.sources(&span, Course::Natural).iter() {
+            let way = local.world_to_enu * (source.position - position);
+            let lux = source.intensity_cd(-way) * (-TAKES * extinction_per_m * way.length()).exp()
+                / way.length_squared().max(1.0);
+            let to = way.normalize_or(DVec3::Z);
+            (sum, level, towards) = (sum + lux, level + lux * to.z.max(0.0), towards + to * lux);
+        }
+    });
+    Ok(LightningLight {
+        facing_lux: COLOR.map(|c| c * sum),
+        level_lux: level,
+        direction: towards.normalize_or(DVec3::Z),
+    })
+}

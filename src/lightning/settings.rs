@@ -1,0 +1,143 @@
+//! What a host sets of the lightning, and flashes that it triggers.
+
+use glam::DVec3;
+
+use super::schedule::{FlashKind, MOST_PER_MINUTE, MOST_STROKES};
+use crate::error::{Error, Result, check_range};
+
+/// Most storm cells of a host.
+pub const MAX_CELLS: usize = 16;
+/// Most tall things of a host.
+pub const MAX_MASTS: usize = 64;
+/// Most triggered flashes that are kept at a time.
+pub const MAX_TRIGGERED: usize = 64;
+/// Farthest that a place of the host's world may be from its origin, m.
+const FARTHEST_M: f64 = 1e12;
+
+/// A storm cell of the host.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StormCell {
+    /// Its middle in the host's world; the height does not matter.
+    pub position: DVec3,
+    /// Distance from the middle within which two of three flashes start, m, \[0, 1e5\].
+    pub radius_m: f64,
+    /// Flashes a minute, \[0, 60\].
+    pub flashes_per_minute: f64,
+}
+
+/// How a context flashes, and how its views show it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LightningSettings {
+    /// Flashes a minute of each storm cell, \[0, 60\], in place of those that the weather has (3 in a thunderstorm, else none).
+    pub flashes_per_minute: Option<f64>,
+    /// The host's storm cells, at most [`MAX_CELLS`], in place of the weather's, one in each square of 20 km. Default none.
+    pub cells: Vec<StormCell>,
+    /// Tips of tall things in the host's world, at most [`MAX_MASTS`]: they draw ground flashes. Default none.
+    pub masts: Vec<DVec3>,
+    /// Views draw at most three changes of luminance a second, for viewers whom flicker may harm. Schedule and queries stay. Default off.
+    pub limits_flicker: bool,
+}
+
+impl LightningSettings {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if let Some(rate) = self.flashes_per_minute {
+            check_range("lightning.flashes_per_minute", rate, 0.0, MOST_PER_MINUTE, "1/min")?;
+        }
+        if self.cells.len() > MAX_CELLS {
+            return Err(Error::range("lightning.cells", &format!("at most {MAX_CELLS}"), self.cells.len()));
+        }
+        if self.masts.len() > MAX_MASTS {
+            return Err(Error::range("lightning.masts", &format!("at most {MAX_MASTS}"), self.masts.len()));
+        }
+        for (i, cell) in self.cells.iter().enumerate() {
+            let name = |field: &str| format!("lightning.cells[{i}].{field}");
+            check_place(&name("position"), cell.position)?;
+            check_range(&name("radius_m"), cell.radius_m, 0.0, 1e5, "m")?;
+            check_range(&name("flashes_per_minute"), cell.flashes_per_minute, 0.0, MOST_PER_MINUTE, "1/min")?;
+        }
+        self.masts.iter().enumerate().try_for_each(|(i, tip)| check_place(&format!("lightning.masts[{i}]"), *tip))
+    }
+}
+
+/// A flash that the host triggers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlashTrigger {
+    /// When its first stroke comes, s of simulation time: not before the present.
+    pub time_s: f64,
+    /// Where it strikes, in the host's world; a flash in the cloud passes over it.
+    pub position: DVec3,
+    /// Where it goes.
+    pub kind: FlashKind,
+    /// Largest peak current, kA, \[1, 500\]; by chance where there is none.
+    pub peak_ka: Option<f64>,
+    /// Strokes, 1 to 26; by chance where there is none.
+    pub strokes: Option<u32>,
+}
+
+impl FlashTrigger {
+    /// Refuses what is out of range, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("flash.time_s", self.time_s, -1e10, 1e10, "s")?;
+        check_place("flash.position", self.position)?;
+        if let Some(peak_ka) = self.peak_ka {
+            check_range("flash.peak_ka", peak_ka, 1.0, 500.0, "kA")?;
+        }
+        if let Some(strokes) = self.strokes {
+            check_range("flash.strokes", f64::from(strokes), 1.0, MOST_STROKES as f64, "")?;
+        }
+        Ok(())
+    }
+}
+
+fn check_place(name: &str, position: DVec3) -> Result<()> {
+    if position.is_finite() && position.length() <= FARTHEST_M {
+        return Ok(());
+    }
+    Err(Error::range(name, "finite and within 1e12 m of the world's origin", position))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_out_of_range_is_refused_by_name() {
+        let cell = StormCell { position: DVec3::ZERO, radius_m: 1.0, flashes_per_minute: 1.0 };
+        let set =
+            |cells, masts, rate| LightningSettings { flashes_per_minute: rate, cells, masts, limits_flicker: false };
+        for (bad, name) in [
+            (set(vec![], vec![], Some(61.0)), "lightning.flashes_per_minute"),
+            (set(vec![cell; 17], vec![], None), "lightning.cells"),
+            (set(vec![cell, StormCell { radius_m: -1.0, ..cell }], vec![], None), "lightning.cells[1].radius_m"),
+            (set(vec![], vec![DVec3::NAN], None), "lightning.masts[0]"),
+            (set(vec![], vec![DVec3::ZERO; 65], None), "lightning.masts"),
+        ] {
+            let e = bad.validate().unwrap_err().to_string();
+            assert!(e.contains(name), "{e}");
+        }
+        let flash = FlashTrigger {
+            time_s: 0.0,
+            position: DVec3::ZERO,
+            kind: FlashKind::ToGround,
+            peak_ka: Some(30.0),
+            strokes: Some(3),
+        };
+        flash.validate().unwrap();
+        for (bad, name) in [
+            (FlashTrigger { time_s: f64::NAN, ..flash }, "flash.time_s"),
+            (FlashTrigger { position: DVec3::splat(1e13), ..flash }, "flash.position"),
+            (FlashTrigger { peak_ka: Some(0.0), ..flash }, "flash.peak_ka"),
+            (FlashTrigger { strokes: Some(27), ..flash }, "flash.strokes"),
+        ] {
+            let e = bad.validate().unwrap_err().to_string();
+            assert!(e.contains(name), "{e}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Which flashes there are near a place in a time: those of the weather's cells, of the host's, and those that it triggered.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    held::HeldLightning,
+    light::LONGEST_S,
+    schedule::{Flash, Storm},
+    settings::FlashTrigger,
+};
+use crate::world::World;
+
+/// Side of the squares of the map of which each has one cell of a thunderstorm, m, and the cell's radius: common sizes of single cells
+/// (Byers and Braham 1949).
+pub(crate) const SQUARE_M: f64 = 20_000.0;
+const RADIUS_M: f64 = 2500.0;
+/// Flashes a minute of a cell where the weather says no more than that there is thunder: 1 to 5 are common (Rakov and Uman 2003, chapter 2).
+const PER_MINUTE: f64 = 3.0;
+
+/// The flashes of a context.
+#[derive(Clone, Copy)]
+pub(crate) struct Storms<'a> {
+    pub world: &'a World,
+    pub held: &'a HeldLightning,
+}
+
+impl Storms<'_> {
+    /// Whether there can be no flash between two times.
+    pub fn is_quiet(&self, from_s: f64, until_s: f64) -> bool {
+        let set = &self.held.settings;
+        let by_host = set.cells.iter().any(|c| c.flashes_per_minute > 0.0)
+            || (set.cells.is_empty() && set.flashes_per_minute.is_some_and(|r| r > 0.0))
+            || self.held.triggered.iter().any(|t| (from_s..until_s).contains(&t.time_s));
+        let by_weather = set.cells.is_empty() && set.flashes_per_minute.is_none();
+        let timeline = &self.world.timeline;
+        let thunders = || timeline.changes_between(from_s, until_s) || timeline.at(until_s).precipitation.thunder > 0.0;
+        !(by_host || by_weather && thunders())
+    }
+
+    /// Shows `to` the flashes that begin from `from_s` on until `until_s` within `reach_m` of a place of the map, in no order, and what
+    /// triggered them.
+    pub fn visit(
+        &self,
+        (near_m, reach_m): (DVec2, f64),
+        (from_s, until_s): (f64, f64),
+        mut to: impl FnMut(&Flash, Option<&FlashTrigger>),
+    ) {
+        if self.is_quiet(from_s, until_s) {
+            return;
+        }
+        let is_near = |place: DVec2| (place - near_m).length() <= reach_m;
+        for trigger in self.held.triggered.iter().filter(|t| (from_s..until_s).contains(&t.time_s)) {
+            let flash = Storm::triggered(self.world.seed, trigger, self.world.map_at(trigger.position));
+            if is_near(flash.place_m) {
+                to(&flash, Some(trigger));
+            }
+        }
+        let mut show = |flash: &Flash| {
+            if is_near(flash.place_m) {
+                to(flash, None);
+            }
+        };
+        let set = &self.held.settings;
+        for (i, cell) in set.cells.iter().enumerate() {
+            let middle_m = self.world.map_at(cell.position);
+            let per_minute = cell.flashes_per_minute;
+            let storm = Storm { seed: self.seed(i as i64, i64::MIN), per_minute, middle_m, radius_m: cell.radius_m };
+            storm.visit(from_s, until_s, |_| per_minute, &mut show);
+        }
+        if set.cells.is_empty() {
+            self.visit_squares((near_m, reach_m), (from_s, until_s), &mut show);
+        }
+    }
+
+    fn visit_squares(
+        &self,
+        (near_m, reach_m): (DVec2, f64),
+        (from_s, until_s): (f64, f64),
+        show: &mut impl FnMut(&Flash),
+    ) {
+        let timeline = &self.world.timeline;
+        let steady = (!timeline.changes_between(from_s, until_s)).then(|| timeline.at(until_s).precipitation.thunder);
+        let rate = |time_s: f64| match (self.held.settings.flashes_per_minute, steady) {
+            (Some(rate), _) => rate,
+            (None, Some(thunder)) => PER_MINUTE * thunder,
+            (None, None) => PER_MINUTE * timeline.at(time_s).precipitation.thunder,
+        };
+        // Flashes start up to four radii away from a cell's middle.
+        let reach = DVec2::splat(reach_m + 4.0 * RADIUS_M);
+        let (low, high) = (((near_m - reach) / SQUARE_M).floor(), ((near_m + reach) / SQUARE_M).floor());
+        for j in low.y as i64..=high.y as i64 {
+            for i in low.x as i64..=high.x as i64 {
+                let middle_m = (DVec2::new(i as f64, j as f64) + 0.5) * SQUARE_M;
+                let storm = Storm { seed: self.seed(i, j), per_minute: PER_MINUTE, middle_m, radius_m: RADIUS_M };
+                storm.visit(from_s, until_s, rate, &mut *show);
+            }
+        }
+    }
+
+    fn seed(&self, i: i64, j: i64) -> u64 {
+        // A sum: of xored products, (i, j) and (-i, -j) would often be the same.
+        let (i, j) = (i as u64, j as u64);
+        let mixed = i.wrapping_mul(0xa076_1d64_78bd_642f).wrapping_add(j.wrapping_mul(0xe703_7ed1_a0b4_28db));
+        self.world.seed ^ (mixed ^ (mixed >> 32)).wrapping_mul(0x8ebc_6af0_9c88_c6e3)
+    }
+
+    /// Place on the map of a position of the host's world.
+    pub fn on_map(&self, position: DVec3) -> DVec2 {
+        self.world.map_at(position)
+    }
+
+    /// From when to when the flashes begin that may give light in a span.
+    pub fn begin_within(from_s: f64, until_s: f64) -> (f64, f64) {
+        (from_s - LONGEST_S, until_s + super::light::BEFORE_S)
+    }
+}

@@ -1,0 +1,71 @@
+//! What the shaders of lightning read.
+
+use glam::{DMat3, DMat4};
+
+use super::light::COLOR;
+
+/// `ChannelUniform` of `shaders/lightning/channel.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct ChannelUniform {
+    pub clip: [[f32; 4]; 4],
+    pub color: [f32; 3],
+    pub pixel_sr: f32,
+    pub size: [f32; 2],
+    pub pixel_m2: f32,
+    pub radius: f32,
+}
+
+/// Radius of what shines of a channel, m: photographs show 2 to 10 cm across (Rakov and Uman 2003, section 4.6).
+const RADIUS_M: f64 = 0.03;
+
+impl ChannelUniform {
+    /// Of a picture of so many pixels.
+    ///
+    /// Rows x, y, w of the clip matrix M take a unit direction d to w (X, Y, 1): the cone over dX dY has the solid angle
+    /// |det M^-1| w^3 dX dY. Parallel rays have no w of their own: a pixel has an area then.
+    pub fn new(clip: &DMat4, size: [u32; 2]) -> Self {
+        let rows = [0, 1, 3].map(|i| clip.row(i).truncate());
+        let pixels = f64::from(size[0]) * f64::from(size[1]);
+        let parallel = rows[2].length_squared() < 1e-18;
+        let determinant = DMat3::from_cols(rows[0], rows[1], rows[2]).determinant().abs();
+        let area = rows[0].cross(rows[1]).length();
+        Self {
+            clip: clip.as_mat4().to_cols_array_2d(),
+            color: COLOR.map(|c| c as f32),
+            pixel_sr: if parallel { 0.0 } else { (4.0 / (pixels * determinant.max(1e-30))) as f32 },
+            size: size.map(|s| s as f32),
+            pixel_m2: if parallel { (4.0 / (pixels * area.max(1e-30))) as f32 } else { 0.0 },
+            radius: RADIUS_M as f32,
+        }
+    }
+}
+
+/// A part of a channel as the vertex stage reads it, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct PartInstance {
+    /// One end, camera-relative, m.
+    pub from: [f32; 3],
+    /// Luminous intensity with the exposure on it.
+    pub intensity: f32,
+    /// The other.
+    pub to: [f32; 3],
+    pub pad: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_agree_with_the_shader() {
+        shader::assert_layout!(
+            "lightning/channel.wgsl",
+            "ChannelUniform",
+            ChannelUniform,
+            [clip, color, pixel_sr, size, pixel_m2, radius]
+        );
+    }
+}

@@ -1,0 +1,337 @@
+//! What a view draws of flashes: lines of light in the layer before the picture, and what they make glow in the composition.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    glow::from_clouds_cd,
+    held::HeldLightning,
+    light::{COLOR, Course, Span},
+    limit,
+    passes::{ChannelPass, FORMAT, MOST_PARTS},
+    query::{LIGHT_REACH_M, TAKES},
+    sources::Source,
+    storms::{SQUARE_M, Storms},
+    strike::{CloudSpan, Strike},
+    uniforms::{ChannelUniform, PartInstance},
+};
+use crate::{
+    error::Result,
+    gpu::Device,
+    moment::{FlashLight, Moment},
+    scene::{FlashLamp, MAX_FLASH_LAMPS},
+    stage::{Composition, Drawing, DrawnEffect, FlashUniform, Frame, Recording, Shot, Stages, Texture, yes},
+    weather::Conditions,
+    world::World,
+};
+
+/// Time whose light a frame has that follows no other, s.
+const FRAME_S: f64 = 1.0 / 60.0;
+/// Longest time between two frames whose light the second one has: after a longer one the host has jumped, s.
+const LONGEST_FRAME_S: f64 = 0.5;
+/// Illuminance at the eye below which a flash is not drawn: lux, and over that of the ground by all other light.
+const FAINTEST_LUX: f64 = 1e-7;
+const FAINTEST_SHARE: f64 = 1e-5;
+
+/// The time whose light a frame has.
+#[derive(Clone, Copy)]
+struct FrameTime {
+    frame_id: u64,
+    span: Span,
+}
+
+/// A flash that shines, as it stands in the world under what the host had set.
+struct Shining {
+    id: u64,
+    revisions: [u64; 2],
+    strike: Strike,
+    is_used: bool,
+}
+
+/// What a frame has of flashes.
+struct Lit {
+    span: Span,
+    course: Course,
+    sources: [(Source, DVec3); MAX_FLASH_LAMPS],
+    count: usize,
+    eye: DVec3,
+    eye_m: f64,
+    /// Whether any of an open channel shines.
+    has_line: bool,
+}
+
+/// The flashes of a view.
+#[derive(Default)]
+pub(crate) struct LightningView {
+    /// Whether there may be flashes.
+    storms: bool,
+    frame: Option<FrameTime>,
+    shining: Vec<Shining>,
+    found: Vec<(f64, Source)>,
+    lit: Option<Lit>,
+    passes: Option<Box<ChannelPass>>,
+    parts: Vec<PartInstance>,
+    layer: Option<(wgpu::Texture, wgpu::TextureView)>,
+    /// The layer to draw into, and whether something lies in it already.
+    target: Option<(wgpu::TextureView, bool)>,
+}
+
+/// The time whose light a frame has: from the frame before it on; of one that follows none, a sixtieth of a second. While time stands,
+/// frames have the same.
+fn frame_time(before: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
+    let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
+    let span = match before {
+        Some(b) if b.span.until_s == now_s && (b.frame_id == frame_id || !is_pure) => b.span,
+        Some(b) if !is_pure && (0.0..=LONGEST_FRAME_S).contains(&(now_s - b.span.until_s)) => {
+            Span { from_s: b.span.until_s, until_s: now_s }
+        }
+        _ => alone,
+    };
+    FrameTime { frame_id, span }
+}
+
+impl LightningView {
+    /// Finds the flashes that shine in a frame, and says so to what they light ([`Moment::flash_lamps`]): before the other effects look.
+    pub fn gather(&mut self, now: &Moment<'_>, world: &World, held: &HeldLightning, frame: &Frame<'_>) {
+        let time = frame_time(self.frame, frame.frame_id, now.time_s, frame.is_pure());
+        self.frame = Some(time);
+        (self.lit, self.target) = (None, None);
+        let storms = Storms { world, held };
+        let (from_s, until_s) = Storms::begin_within(time.span.from_s, time.span.until_s);
+        self.storms = !storms.is_quiet(from_s, until_s);
+        if !self.storms {
+            self.shining.clear();
+            return;
+        }
+        let course = if held.settings.limits_flicker { Course::Smooth } else { Course::Natural };
+        self.find(&storms, now, &time.span, course);
+        self.light(now, time.span, course);
+    }
+
+    /// Keeps those that shine in a span.
+    fn find(&mut self, storms: &Storms<'_>, now: &Moment<'_>, span: &Span, course: Course) {
+        let near = DVec2::from_array(now.scene.map_m);
+        let revisions = [storms.held.revision, storms.world.surroundings_revision];
+        self.shining.iter_mut().for_each(|s| s.is_used = false);
+        let shining = &mut self.shining;
+        storms.visit((near, LIGHT_REACH_M), Storms::begin_within(span.from_s, span.until_s), |flash, by| {
+            if !course.shines(flash, span) || (course == Course::Smooth && !kept(storms, near, flash.time_s)) {
+                return;
+            }
+            let same = shining.iter_mut().find(|s| s.id == flash.id && s.revisions == revisions);
+            match same {
+                Some(s) => s.is_used = true,
+                None => {
+                    let masts = &storms.held.settings.masts;
+                    let strike = Strike::new(storms.world, masts, *flash, by.map(|t| t.position));
+                    shining.push(Shining { id: flash.id, revisions, strike, is_used: true });
+                }
+            }
+        });
+        self.shining.retain(|s| s.is_used);
+    }
+
+    /// Finds the places that the light comes from, the brightest first, and makes lamps of them.
+    fn light(&mut self, now: &Moment<'_>, span: Span, course: Course) {
+        self.found.clear();
+        let taken_per_m = TAKES * now.scene.conditions.extinction_per_m;
+        let faintest_lux = FAINTEST_LUX.max(FAINTEST_SHARE * now.scene.ground.total_lux);
+        for shining in &self.shining {
+            for source in shining.strike.sources(&span, course).iter() {
+                let way_m = (now.eye - source.position).length().max(1.0);
+                let lux = source.flux_lm / (4.0 * PI * way_m * way_m) * (-taken_per_m * way_m).exp();
+                if lux > faintest_lux {
+                    self.found.push((lux, *source));
+                }
+            }
+        }
+        if self.found.is_empty() {
+            return;
+        }
+        self.found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut lit = Lit {
+            span,
+            course,
+            sources: [(Source::default(), DVec3::ZERO); MAX_FLASH_LAMPS],
+            count: self.found.len().min(MAX_FLASH_LAMPS),
+            eye: now.eye,
+            eye_m: now.scene.place.altitude_m,
+            has_line: self.found.iter().any(|(_, s)| !s.is_hidden()),
+        };
+        let mut light = FlashLight { count: lit.count, ..FlashLight::default() };
+        for (i, (_, source)) in self.found.iter().enumerate().take(MAX_FLASH_LAMPS) {
+            let position = now.scene.world_to_enu * (source.position - now.eye);
+            lit.sources[i] = (*source, position);
+            let flux_lm = COLOR.map(|c| c * source.flux_lm);
+            light.lamps[i] =
+                FlashLamp { position, flux_lm, down_share: source.is_hidden().then_some(source.down_share) };
+        }
+        self.lit = Some(lit);
+        // A moment is worked out anew for each call.
+        let _ = now.flash.set(light);
+    }
+
+    fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> wgpu::TextureView {
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
+        if self.layer.as_ref().is_some_and(|(texture, _)| texture.size() != size) {
+            self.layer = None;
+        }
+        let made = self.layer.get_or_insert_with(|| {
+            let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("flashes"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        });
+        made.1.clone()
+    }
+
+    /// The parts of all open channels, camera-relative.
+    fn gather_parts(&mut self, shot: &Shot<'_>) {
+        self.parts.clear();
+        let Some(lit) = &self.lit else { return };
+        let to_enu = shot.now.scene.world_to_enu;
+        let relative = |p: DVec3| (to_enu * (p - lit.eye)).as_vec3().to_array();
+        for shining in &self.shining {
+            shining.strike.each_part(&lit.span, lit.course, |part| {
+                let intensity = part.flux_lm * part.open / (4.0 * PI) * shot.exposure;
+                if part.open > 1e-3 && self.parts.len() < MOST_PARTS {
+                    let [from, to] = part.ends.map(relative);
+                    self.parts.push(PartInstance { from, intensity: intensity as f32, to, pad: 0.0 });
+                }
+            });
+        }
+    }
+}
+
+/// Whether a flash is drawn for viewers whom flicker may harm: of those near the square of the map that the camera is over.
+fn kept(storms: &Storms<'_>, near_m: DVec2, time_s: f64) -> bool {
+    let middle = ((near_m / SQUARE_M).floor() + 0.5) * SQUARE_M;
+    let mut times = Vec::new();
+    let from_s = limit::epoch_s(time_s);
+    let reach_m = LIGHT_REACH_M + SQUARE_M;
+    storms.visit((middle, reach_m), (from_s, from_s + limit::EPOCH_S), |flash, _| times.push(flash.time_s));
+    times.sort_by(f64::total_cmp);
+    limit::is_drawn(time_s, &times)
+}
+
+/// What scatters in the air about a camera, 1/m: air and haze, fog inside of it, and what falls below the clouds.
+fn scattering_per_m(c: &Conditions, altitude_m: f64, clouds: Option<CloudSpan>) -> f64 {
+    let height = altitude_m - c.air.station_altitude_m;
+    let thin = |scale: f64| (-height.max(0.0) / scale.max(1.0)).exp();
+    let air = c.air.rayleigh_extinction_per_m * thin(c.air.rayleigh_scale_height_m);
+    let haze = c.aerosol.extinction_per_m * thin(c.aerosol.scale_height_m);
+    let in_fog = (c.fog.base_m..c.fog.top_m).contains(&height.max(0.0));
+    let fog = if in_fog { c.fog.extinction_per_m * c.fog.coverage } else { 0.0 };
+    let falls = clouds.is_none_or(|span| altitude_m < span.base_m);
+    air + haze + fog + if falls { c.precipitation.extinction_per_m } else { 0.0 }
+}
+
+impl Lit {
+    /// Writes what the composition's glow reads.
+    fn write(&self, shot: &Shot<'_>, to: &mut Composition) {
+        let c = &shot.now.scene.conditions;
+        let clouds = CloudSpan::of(c);
+        let block = &mut to.block;
+        // From below the base is seen, from above the tops; inside, whichever is nearer.
+        let from_below = clouds.is_none_or(|s| self.eye_m < 0.5 * (s.base_m + s.top_m));
+        let face_m = clouds.map_or(0.0, |s| if from_below { s.base_m } else { s.top_m });
+        block.flash_color = COLOR.map(|v| v as f32);
+        block.flash_count = self.count as u32;
+        block.flash_plane = (face_m - self.eye_m) as f32;
+        let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
+        block.flash_cover = if clouds.is_some() { (1.0 - cover) as f32 } else { 0.0 };
+        block.flash_haze = (TAKES * (c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m)) as f32;
+        block.flash_scattering = scattering_per_m(c, self.eye_m, clouds) as f32;
+        for (uniform, (source, position)) in block.flashes.iter_mut().zip(&self.sources[..self.count]) {
+            let height = (position.z - (face_m - self.eye_m)).abs().max(30.0);
+            *uniform = FlashUniform {
+                position: position.as_vec3().to_array(),
+                clouds: from_clouds_cd(source, from_below) as f32,
+                air: if source.is_hidden() { 0.0 } else { source.intensity_cd(DVec3::ZERO) as f32 },
+                radius: source.radius_m.max(10.0) as f32,
+                height: height as f32,
+                pad: 0.0,
+            };
+        }
+    }
+}
+
+impl DrawnEffect for LightningView {
+    fn stages(&self) -> Stages {
+        match &self.lit {
+            Some(lit) if lit.has_line => Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES),
+            Some(_) => Stages::BACKGROUND.with(Stages::MEDIUM),
+            None => Stages(0),
+        }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        to.constant("FLASH", yes(self.storms), yes(self.lit.is_some()));
+        let Some(lit) = &self.lit else { return Ok(()) };
+        lit.write(shot, to);
+        if !lit.has_line || !to.asked.has(Stages::PARTICLES) {
+            return Ok(());
+        }
+        // What falls has a layer already, into which the lines are drawn after it.
+        let there = to.textures[Texture::Before as usize].clone().filter(|_| to.stages.has(Stages::PARTICLES));
+        let over = there.is_some();
+        let view = there.unwrap_or_else(|| self.layer(shot.device, shot.color.texture));
+        to.stages = to.stages.with(Stages::PARTICLES);
+        to.set_texture(Texture::Before, Some(view.clone()));
+        self.target = Some((view, over));
+        Ok(())
+    }
+
+    /// Draws the open channels into the layer before the picture.
+    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+        let Some((target, over)) = self.target.take() else { return Ok(()) };
+        self.gather_parts(shot);
+        let size = shot.color.texture.size();
+        let block = ChannelUniform::new(&shot.clip(), [size.width, size.height]);
+        let passes = self.passes.get_or_insert_with(|| Box::new(ChannelPass::new(to.device)));
+        passes.draw(to, (&block, &self.parts), with, shot.frame.depth_layer(), (&target, over))?;
+        to.passes += 1;
+        Ok(())
+    }
+
+    fn bytes(&self) -> u64 {
+        let layer = self.layer.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
+        layer + self.passes.as_ref().map_or(0, |passes| passes.bytes())
+    }
+
+    fn forget_picture(&mut self) {
+        self.layer = None;
+        self.target = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_follow_each_other_without_a_gap_and_stand_while_time_stands() {
+        let span = |before, id, now, pure| frame_time(before, id, now, pure);
+        let first = span(None, 1, 10.0, false);
+        assert!((first.span.until_s - first.span.from_s - FRAME_S).abs() < 1e-12);
+        let second = span(Some(first), 2, 10.033, false);
+        assert_eq!((second.span.from_s, second.span.until_s), (10.0, 10.033));
+        // Another call of the same frame, and a frame at the same time.
+        assert_eq!(span(Some(second), 2, 10.033, false).span, second.span);
+        assert_eq!(span(Some(second), 3, 10.033, false).span, second.span);
+        // A jump, a cut, and time that goes back begin anew.
+        for (now, pure) in [(11.0, false), (10.05, true), (9.0, false)] {
+            let s = span(Some(second), 3, now, pure).span;
+            assert!((s.from_s - (now - FRAME_S)).abs() < 1e-12 && s.until_s == now, "{now} {s:?}");
+        }
+    }
+}
