@@ -4948,6 +4948,36 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
+ * Clouds
+ *
+ * Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
+ * draw them. Light, queries and what falls are the same either way. docs/clouds.md has pictures' costs and errors.
+ * ====================================================================================================
+ */
+
+/** How clouds are drawn. */
+typedef uint32_t wk_cloud_model;
+
+/**
+ * A grey deck where more than half of the sky is covered; broken clouds only dim the light. It costs no more than a
+ * clear sky.
+ */
+#define WK_CLOUD_MODEL_DECK 0
+/**
+ * Layers of a volume that one can fly through, lit by sun or moon, sky and ground. A closed layer seen from below is
+ * drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
+ */
+#define WK_CLOUD_MODEL_VOLUME 1
+
+/**
+ * Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK. Part of the saved state.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
+ */
+WK_API wk_status wk_context_set_cloud_model(wk_context *context, wk_cloud_model cloud_model);
+
+/*
+ * ====================================================================================================
  * Lightning
  *
  * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or

@@ -65,6 +65,8 @@ pub mod light;
 
 pub mod stars;
 
+pub mod clouds;
+
 pub mod lightning;
 
 pub mod windscreen;

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
     sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
     wind_grid::*, windscreen::*,
@@ -83,6 +83,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
+        case("wk_context_set_cloud_model", "context", false, |h| unsafe { wk_context_set_cloud_model(h.cast(), 0) }),
         case("wk_context_set_default_surface_class", "context", false, |h| unsafe {
             wk_context_set_default_surface_class(h.cast(), 0)
         }),

@@ -7,8 +7,8 @@ use std::{
 };
 
 use welkin::capi::{
-    area::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, lightning::*, query::*,
-    rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+    area::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, lightning::*,
+    query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -198,17 +198,22 @@ unsafe fn set_default_surface_class(context: *mut wk_context) {
     ok(unsafe { wk_context_set_default_surface_class(context, WK_SURFACE_CLASS_PAVED) });
 }
 
+unsafe fn set_cloud_model(context: *mut wk_context) {
+    ok(unsafe { wk_context_set_cloud_model(context, WK_CLOUD_MODEL_VOLUME) });
+}
+
 unsafe fn set_time(context: *mut wk_context) {
     ok(unsafe { wk_context_update(context, 7.25) });
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..18].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..19].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 19] = [
+const SETTERS: [(&str, Set); 20] = [
     ("wk_context_set_clock", set_clock),
+    ("wk_context_set_cloud_model", set_cloud_model),
     ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),
     ("wk_context_set_fog_law", set_fog_law),

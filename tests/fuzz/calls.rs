@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
+    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
     report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
     wind_grid::*, windscreen::*,
@@ -461,6 +461,10 @@ pub const CALLS: &[(&str, Call)] = &[
             grid.set("surface_class_count", if d.one_in(10) { d.below(400) as u32 } else { count });
         }
         unsafe { wk_context_set_ground_grid(handle(d, &w.contexts), grid.ptr().cast()) }.into()
+    }),
+    ("wk_context_set_cloud_model", |d, w| {
+        let model = d.below(3) as u32;
+        unsafe { wk_context_set_cloud_model(handle(d, &w.contexts), model) }.into()
     }),
     ("wk_context_set_default_surface_class", |d, w| {
         let class = d.below(8) as u32;
