@@ -1,6 +1,9 @@
 // The clouds of a whole picture, from the pixels that were marched in this frame and from the last frame's picture, seen anew.
+//!include "common/host.wgsl"
 //!include "common/fullscreen.wgsl"
+//!include "common/frame.wgsl"
 //!include "clouds/picture.wgsl"
+//!include "clouds/shadow_map.wgsl"
 
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 @group(0) @binding(2) var marched: texture_2d<f32>;
@@ -11,12 +14,29 @@
 @group(0) @binding(7) var most: texture_2d<f32>;
 @group(0) @binding(8) var back: texture_2d<f32>;
 
+@group(1) @binding(0) var host_depth: HostDepth;
+@group(1) @binding(1) var<uniform> shadows: CloudShadows;
+@group(1) @binding(2) var shadow_map: texture_2d<f32>;
+@group(1) @binding(3) var repeating: sampler;
+
 override HISTORY: bool = true;
+// There are shadows, and a host's depth to cast them on.
+override SHADOWS: bool = true;
 
 struct ResolvedPixel {
     @location(0) seen: vec4f,
-    // log2 of the reach, m.
+    // log2 of the reach, m, and the share of direct light at what the host drew.
     @location(1) reach: vec4f,
+}
+
+// Where the depth has several samples a pixel, the first stands for all: shadows of clouds have no sharp edges.
+fn shadow_on(pixel: vec2u) -> f32 {
+    if !SHADOWS {
+        return 1.0;
+    }
+    let ndc = pixel_ndc(picture, pixel, frame.y_sign);
+    let range = view_range(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
+    return cloud_shadow(shadows, shadow_map, repeating, view_ray(frame.depth, ndc).direction * range);
 }
 
 @fragment
@@ -24,7 +44,8 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
     let now = textureSampleLevel(marched, linear, among, 0.0);
-    let reach = textureSampleLevel(marched_reach, linear, among, 0.0) / max(1.0 - now.a, 1e-4);
+    let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(1.0 - now.a, 1e-4);
+    let reach = vec4f(stands, shadow_on(pixel), 0.0);
     if !HISTORY {
         return ResolvedPixel(now, reach);
     }

@@ -71,6 +71,8 @@ struct FrameUniform {
     flash_haze: f32,
     flash_scattering: f32,
     flashes: array<FlashSource, MAX_FLASHES>,
+    // Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+    cloud_shadow: vec4f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

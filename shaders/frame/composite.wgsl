@@ -13,10 +13,12 @@ override PARTICLES: bool = false;
 
 // Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
 // With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
-// between which they stand, m.
+// between which they stand, m, with the share of direct light that they let through to what the host drew.
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
+// They cast shadows on what the host drew.
+override CLOUD_SHADOWS: bool = false;
 // A closed layer above them all is drawn as a deck.
 override DECK_BEHIND: bool = false;
 // Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
@@ -117,6 +119,15 @@ fn cover_along() -> f32 {
     return frame.flash_cover;
 }
 
+// What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the host lit it.
+fn under_clouds(range: f32) -> vec3f {
+    if !CLOUD_SHADOWS || range >= RANGE_SKY {
+        return vec3f(1.0);
+    }
+    let share = textureLoad(sky_layers, layer_pixel, 1, 0).b;
+    return 1.0 + frame.cloud_shadow.rgb * (share - frame.cloud_shadow.w);
+}
+
 // Display-linear value of scene luminance.
 fn display(luminance: vec3f) -> vec3f {
     // Saturated spectra lie outside of Rec. 709 and have negative parts there.
@@ -166,6 +177,7 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
     let ray = view_ray(frame.depth, seen.ndc);
     var veil = weather_over(ray, seen.range, seen.plane);
     veil = on_surface(veil, linear_host(host.rgb), ray, seen);
+    veil.transmittance *= under_clouds(seen.range);
     if PARTICLES {
         veil = with_drops(veil, seen.pixel);
     }

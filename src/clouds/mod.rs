@@ -25,6 +25,8 @@ mod passes;
 mod picture;
 pub mod probe;
 pub mod reference;
+pub mod shadow;
+mod shadow_map;
 mod shape;
 mod tables;
 pub mod transport;

@@ -5,82 +5,111 @@ use std::sync::Arc;
 
 use super::{
     picture::{BEHIND, PAIR, Picture, SEEN},
+    shadow_map::{ShadowMap, Standing},
     tables::CloudTables,
-    uniforms::{CloudsUniform, PictureUniform},
+    uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
 };
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, Layer,
         bind::{self, Slot},
         pass::{self, FullscreenDesc},
     },
     stage::{FrameUniform, yes},
 };
 
-fn view(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
+/// What distinguishes one pipeline that makes a whole picture from another.
+#[derive(Clone, Copy, PartialEq)]
+struct Resolve {
+    has_history: bool,
+    has_shadows: bool,
+    /// The host's depth has several samples a pixel.
+    is_multisampled: bool,
+    depth_kinds: f64,
 }
 
-fn buffer(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
-}
-
-fn sampled(binding: u32, sampler: &wgpu::Sampler) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) }
-}
-
-/// The pipelines, and the layout of the march's and of the two other passes' group.
+/// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
+/// several samples a pixel.
 struct Pipelines {
-    layouts: [wgpu::BindGroupLayout; 2],
+    march_layout: wgpu::BindGroupLayout,
+    picture_layout: wgpu::BindGroupLayout,
+    shadow_layouts: [wgpu::BindGroupLayout; 2],
     march: wgpu::RenderPipeline,
     follow: wgpu::RenderPipeline,
-    /// With a last frame, and without one.
-    resolve: [wgpu::RenderPipeline; 2],
+    resolve: Vec<(Resolve, wgpu::RenderPipeline)>,
+}
+
+fn make(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layouts: &[&wgpu::BindGroupLayout],
+    formats: &[wgpu::TextureFormat],
+    constants: &[(&str, f64)],
+) -> Result<wgpu::RenderPipeline> {
+    let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
+    pass::fullscreen(device, &FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 })
 }
 
 impl Pipelines {
     fn new(device: &Device, sky: &wgpu::BindGroupLayout) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
-        let layouts = [
+        let march_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<CloudsUniform>())),
+            (2, Slot::Filtered),
+            (3, Slot::FilteredVolume),
+            (4, Slot::Filtered),
+            (5, Slot::Sampler),
+            (6, Slot::Sampler),
+            (7, Slot::Uniform(size_of::<PictureUniform>())),
+        ]);
+        let picture_layout = layout(&[
+            (0, Slot::Uniform(size_of::<FrameUniform>())),
+            (1, Slot::Uniform(size_of::<PictureUniform>())),
+            (2, Slot::Filtered),
+            (3, Slot::Filtered),
+            (4, Slot::Filtered),
+            (5, Slot::Sampler),
+            (6, Slot::Texels),
+            (7, Slot::Texels),
+            (8, Slot::Texels),
+        ]);
+        let shadow_layouts = [false, true].map(|multisampled| {
             layout(&[
-                (0, Slot::Uniform(size_of::<FrameUniform>())),
-                (1, Slot::Uniform(size_of::<CloudsUniform>())),
+                (0, Slot::texels(multisampled)),
+                (1, Slot::Uniform(size_of::<ShadowUniform>())),
                 (2, Slot::Filtered),
-                (3, Slot::FilteredVolume),
-                (4, Slot::Filtered),
-                (5, Slot::Sampler),
-                (6, Slot::Sampler),
-                (7, Slot::Uniform(size_of::<PictureUniform>())),
-            ]),
-            layout(&[
-                (0, Slot::Uniform(size_of::<FrameUniform>())),
-                (1, Slot::Uniform(size_of::<PictureUniform>())),
-                (2, Slot::Filtered),
-                (3, Slot::Filtered),
-                (4, Slot::Filtered),
-                (5, Slot::Sampler),
-                (6, Slot::Texels),
-                (7, Slot::Texels),
-                (8, Slot::Texels),
-            ]),
-        ];
-        let make = |shader, entry, layouts: &[&wgpu::BindGroupLayout], formats: &[wgpu::TextureFormat], history| {
-            let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
-            let constants: &[_] = if entry == "resolve" { &[("HISTORY", yes(history))] } else { &[] };
-            pass::fullscreen(
-                device,
-                &FullscreenDesc { shader, entry, layouts, targets: &targets, constants, samples: 1 },
-            )
-        };
-        let resolve = |history| make("clouds/resolve.wgsl", "resolve", &[&layouts[1]], &[SEEN, SEEN], history);
+                (3, Slot::Sampler),
+            ])
+        });
+        let march = ("clouds/march_view.wgsl", "march");
+        let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
-            march: make("clouds/march_view.wgsl", "march", &[&layouts[0], sky], &[SEEN, PAIR], false)?,
-            follow: make("clouds/follow.wgsl", "follow", &[&layouts[1]], &[SEEN, SEEN, PAIR], true)?,
-            resolve: [resolve(true)?, resolve(false)?],
-            layouts,
+            march: make(device, march, &[&march_layout, sky], &[SEEN, PAIR], &[])?,
+            follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
+            resolve: Vec::new(),
+            march_layout,
+            picture_layout,
+            shadow_layouts,
         })
+    }
+
+    fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
+        if let Some((_, pipeline)) = self.resolve.iter().find(|(made, _)| *made == wanted) {
+            return Ok(pipeline.clone());
+        }
+        let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
+        let constants = [
+            ("HISTORY", yes(wanted.has_history)),
+            ("SHADOWS", yes(wanted.has_shadows)),
+            ("DEPTH_KINDS", wanted.depth_kinds),
+        ];
+        let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
+        let pipeline = make(device, (shader, "resolve"), &layouts, &[SEEN, SEEN], &constants)?;
+        self.resolve.push((wanted, pipeline.clone()));
+        Ok(pipeline)
     }
 }
 
@@ -93,7 +122,19 @@ pub(super) struct CloudPasses {
     picture: Option<Picture>,
     /// What the march is bound to, and with which tables of the sky.
     marched_of: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
+    shadows: Option<ShadowMap>,
+    /// What shadows fall on, and of which of the host's depth images that is.
+    shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
+    no_block: wgpu::Buffer,
+}
+
+/// What shadows are made of, and what they fall on.
+pub(super) struct Shaded<'a> {
+    pub lie: (Standing, ShadowUniform),
+    pub depth: Layer<'a>,
+    /// The frame is a pure function of view and time: all of the map is made.
+    pub is_pure: bool,
 }
 
 /// What the passes draw from.
@@ -105,6 +146,10 @@ pub(super) struct CloudFrame<'a> {
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
     /// What stands behind the sky's own light.
     pub behind: Option<&'a wgpu::Texture>,
+    pub shaded: Option<Shaded<'a>>,
+    /// The host's depth has several samples a pixel, and which kinds of depth there are.
+    pub is_multisampled: bool,
+    pub depth_kinds: f64,
 }
 
 fn attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
@@ -145,7 +190,10 @@ impl CloudPasses {
             pipelines: None,
             picture: None,
             marched_of: None,
+            shadows: None,
+            shaded: None,
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_block: bind::block(&device.device, "no shadows of clouds", size_of::<ShadowUniform>()),
         })
     }
 
@@ -170,7 +218,8 @@ impl CloudPasses {
 
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
-        CloudTables::BYTES + self.picture.as_ref().map_or(0, Picture::bytes)
+        let shadows = self.shadows.as_ref().map_or(0, |_| ShadowMap::BYTES);
+        CloudTables::BYTES + shadows + self.picture.as_ref().map_or(0, Picture::bytes)
     }
 
     /// What the march is bound to.
@@ -180,14 +229,14 @@ impl CloudPasses {
             label: Some("clouds marched"),
             layout,
             entries: &[
-                buffer(0, frame),
-                buffer(1, &self.block),
-                view(2, &self.tables.map),
-                view(3, &solid),
-                view(4, &light),
-                sampled(5, &self.tables.repeating),
-                sampled(6, &self.tables.clamping),
-                buffer(7, &self.picture_block),
+                bind::buffer(0, frame),
+                bind::buffer(1, &self.block),
+                bind::view(2, &self.tables.map),
+                bind::view(3, &solid),
+                bind::view(4, &light),
+                bind::sampler(5, &self.tables.repeating),
+                bind::sampler(6, &self.tables.clamping),
+                bind::buffer(7, &self.picture_block),
             ],
         })
     }
@@ -209,55 +258,96 @@ impl CloudPasses {
                 label: Some("clouds of a picture"),
                 layout,
                 entries: &[
-                    buffer(0, frame),
-                    buffer(1, &self.picture_block),
-                    view(2, &picture.marched[0]),
-                    view(3, &picture.marched[1]),
-                    view(4, last),
-                    sampled(5, &self.tables.clamping),
-                    view(6, least),
-                    view(7, most),
-                    view(8, back),
+                    bind::buffer(0, frame),
+                    bind::buffer(1, &self.picture_block),
+                    bind::view(2, &picture.marched[0]),
+                    bind::view(3, &picture.marched[1]),
+                    bind::view(4, last),
+                    bind::sampler(5, &self.tables.clamping),
+                    bind::view(6, least),
+                    bind::view(7, most),
+                    bind::view(8, back),
                 ],
             })
         })
     }
 
+    /// The group of what shadows fall on, with the map brought up to the frame; of nothing where there are none.
+    fn shade(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        layout: &wgpu::BindGroupLayout,
+        shaded: Option<&Shaded<'_>>,
+    ) -> Result<wgpu::BindGroup> {
+        if shaded.is_some() && self.shadows.is_none() {
+            (self.shadows, self.shaded) = (Some(ShadowMap::new(device)?), None);
+        }
+        if let (Some(of), Some(shadows)) = (shaded, &mut self.shadows) {
+            shadows.draw(device, encoder, &self.tables, &self.block, of.lie, of.is_pure);
+        }
+        let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
+        if let Some((made, group)) = &self.shaded
+            && *made == key
+        {
+            return Ok(group.clone());
+        }
+        let depth = shaded.map(|of| of.depth.view());
+        let map = self.shadows.as_ref().filter(|_| shaded.is_some());
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shadows of clouds"),
+            layout,
+            entries: &[
+                bind::view(0, depth.as_ref().unwrap_or(&self.none)),
+                bind::buffer(1, map.map_or(&self.no_block, |m| &m.block)),
+                bind::view(2, map.map_or(&self.none, |m| &m.view)),
+                bind::sampler(3, &self.tables.repeating),
+            ],
+        });
+        self.shaded = Some((key, group.clone()));
+        Ok(group)
+    }
+
     /// Marches a frame's pixels and makes the picture of them. Answers the passes that it took.
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
-        if self.pipelines.is_none() {
-            self.pipelines = Some(Pipelines::new(device, of.sky.0)?);
-        }
-        let (Some(pipelines), Some(mut picture)) = (&self.pipelines, self.picture.take()) else { return Ok(0) };
+        let mut pipelines = match self.pipelines.take() {
+            Some(pipelines) => pipelines,
+            None => Pipelines::new(device, of.sky.0)?,
+        };
+        let Some(mut picture) = self.picture.take() else { return Ok(0) };
+        let has_history = of.picture.exposed > 0.0;
+        let has_shadows = of.shaded.is_some();
+        let is_multisampled = has_shadows && of.is_multisampled;
+        let kind = Resolve { has_history, has_shadows, is_multisampled, depth_kinds: of.depth_kinds };
+        let resolve = pipelines.resolve(device, kind)?;
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
         device.queue.write_buffer(&self.picture_block, 0, bytemuck::bytes_of(&of.picture));
-        let [march_layout, picture_layout] = &pipelines.layouts;
+        let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
+        let shaded = self.shade(device, encoder, layout, of.shaded.as_ref())?;
         let marched = match &self.marched_of {
             Some((sky, group)) if sky == of.sky.1 => group.clone(),
-            _ => self.march_group(device, march_layout, of.frame),
+            _ => self.march_group(device, &pipelines.march_layout, of.frame),
         };
         self.marched_of = Some((of.sky.1.clone(), marched.clone()));
         let groups = match &picture.groups {
             Some(groups) => groups.clone(),
-            None => self.picture_groups(device, picture_layout, of.frame, &picture),
+            None => self.picture_groups(device, &pipelines.picture_layout, of.frame, &picture),
         };
         let [seen, reach] = &picture.marched;
         run(encoder, &[seen, reach], &pipelines.march, &[&marched, of.sky.1]);
-        let has_history = of.picture.exposed > 0.0;
         if has_history {
             let [least, most, back] = &picture.followed;
             run(encoder, &[least, most, back], &pipelines.follow, &[&groups[0]]);
         }
         let [seen, reach] = &picture.next().written;
-        let resolve = &pipelines.resolve[usize::from(!has_history)];
-        run(encoder, &[seen, reach], resolve, &[&groups[1 + picture.newest]]);
+        run(encoder, &[seen, reach], &resolve, &[&groups[1 + picture.newest], &shaded]);
         if let Some(behind) = of.behind {
             copy_layer(encoder, behind, &picture.next().texture);
         }
         picture.newest = 1 - picture.newest;
         picture.groups = Some(groups);
-        self.picture = Some(picture);
-        Ok(2 + u32::from(has_history))
+        (self.picture, self.pipelines) = (Some(picture), Some(pipelines));
+        Ok(2 + u32::from(has_history) + u32::from(has_shadows))
     }
 }
 

@@ -59,6 +59,21 @@ pub(super) struct PictureUniform {
     pub exposed: f32,
 }
 
+/// The map of the clouds' shadows.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct ShadowUniform {
+    pub to_light: [f32; 3],
+    pub plane: f32,
+    pub camera: [f32; 2],
+    pub period: f32,
+    pub eye: f32,
+    pub mean: f32,
+    pub told: f32,
+    pub top: f32,
+    pub pad: f32,
+}
+
 impl MediumUniform {
     pub fn new(of: &Scattering) -> Self {
         let l = &of.lobes;
@@ -131,6 +146,12 @@ mod tests {
             "CloudsPicture",
             PictureUniform,
             [size, side, place, before, moved, exposed]
+        );
+        shader::assert_layout!(
+            "clouds/shadow_map.wgsl",
+            "CloudShadows",
+            ShadowUniform,
+            [to_light, plane, camera, period, eye, mean, told, top]
         );
     }
 }

@@ -7,13 +7,15 @@ use glam::{DMat4, DVec2, DVec3};
 use super::{
     CloudModel,
     field::Shape,
-    passes::{CloudFrame, CloudPasses},
+    passes::{CloudFrame, CloudPasses, Shaded},
+    shadow::LOWEST,
+    shadow_map,
     uniforms::{CloudsUniform, LAYERS, LayerLight, LayerUniform, MediumUniform, PictureUniform},
 };
 use crate::{
     error::Result,
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Shot, Stages, Texture, yes},
+    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Sampling, Shot, Stages, Texture, yes},
     weather::{CloudSlab, smoothstep},
     world::light_above_clouds,
 };
@@ -111,6 +113,14 @@ impl CloudsView {
         Ok(())
     }
 
+    /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
+    fn casts_shadows(&self, shot: &Shot<'_>, stages: Stages) -> bool {
+        let told = shot.now.scene.brighter().direction.z > LOWEST;
+        told && stages.has(Stages::SURFACE)
+            && shot.frame.depth.is_some()
+            && self.overhead.as_ref().is_some_and(Overhead::is_broken)
+    }
+
     fn is_there(&self, stages: Stages) -> bool {
         self.overhead.is_some() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM))
     }
@@ -126,6 +136,17 @@ fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     let near = 1.0 - smoothstep(DECK_FROM_M[0], DECK_FROM_M[1], over_m);
     let depth = lowest.optical_depth / scene.brighter().direction.z.max(0.01);
     near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
+}
+
+/// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+fn shadow_strength(scene: &Scene) -> [f32; 4] {
+    let light = scene.brighter();
+    let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));
+    let level = |lux: [f64; 3], direction: DVec3| lux.map(|v| v * direction.z.max(0.0));
+    let (sun, moon) = (level(ground.sun_lux, scene.sun.direction), level(ground.moon_lux, scene.moon.direction));
+    let direct = if std::ptr::eq(light, &scene.sun) { sun } else { moon };
+    let one = |i: usize| (direct[i] / share / (sun[i] + moon[i] + ground.sky_lux[i]).max(1e-12)) as f32;
+    [one(0), one(1), one(2), light.direct_share as f32]
 }
 
 /// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
@@ -162,6 +183,11 @@ fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
 }
 
 impl Overhead {
+    /// Whether some of it leaves gaps.
+    fn is_broken(&self) -> bool {
+        self.layers[..self.count].iter().any(|layer| layer.slab.cover < 1.0)
+    }
+
     fn uniform(&self, shot: &Shot<'_>, passes: &CloudPasses) -> CloudsUniform {
         let scene = &shot.now.scene;
         let light = scene.brighter();
@@ -216,7 +242,12 @@ fn side(frame: &Frame<'_>) -> u32 {
 
 impl DrawnEffect for CloudsView {
     fn stages(&self) -> Stages {
-        if self.overhead.is_some() { Stages::BACKGROUND.with(Stages::MEDIUM) } else { Stages(0) }
+        let shown = Stages::BACKGROUND.with(Stages::MEDIUM);
+        match &self.overhead {
+            Some(overhead) if overhead.is_broken() => shown.with(Stages::SURFACE),
+            Some(_) => shown,
+            None => Stages(0),
+        }
     }
 
     fn prepare(&mut self, at: &crate::stage::Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
@@ -235,6 +266,11 @@ impl DrawnEffect for CloudsView {
         to.constant("CLOUDS", yes(is_there), yes(is_there));
         let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.constant("DECK_BEHIND", deck, deck);
+        let shadows = is_there && self.casts_shadows(shot, to.asked);
+        to.constant("CLOUD_SHADOWS", yes(shadows), yes(shadows));
+        if shadows {
+            to.block.cloud_shadow = shadow_strength(&shot.now.scene);
+        }
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
             let texture = shot.color.texture;
             let size = (texture.width(), texture.height());
@@ -255,17 +291,28 @@ impl DrawnEffect for CloudsView {
             return Ok(());
         }
         let (picture, here) = self.picture(shot);
+        let casts_shadows = self.casts_shadows(shot, with.composition.asked);
         let (Some(overhead), Some(passes), Some((layout, group))) =
             (&self.overhead, &mut self.passes, &with.composition.tables)
         else {
             return Ok(());
         };
+        let shapes = overhead.layers.map(|l| l.shape);
+        let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded {
+            lie: shadow_map::lie(shot.now, &shapes[..overhead.count]),
+            depth,
+            is_pure: shot.frame.is_pure(),
+        });
+        let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
         let of = CloudFrame {
             clouds: overhead.uniform(shot, passes),
             picture,
             frame: with.block,
             sky: (layout, group),
             behind: self.behind.as_ref(),
+            shaded,
+            is_multisampled: sampling.multisampled()[1],
+            depth_kinds: f64::from(shot.rays.depth_kinds()),
         };
         to.passes += passes.draw(to.device, to.encoder, &of)?;
         self.before = Some(here);

@@ -1,19 +1,33 @@
 //! The clouds by their name.
 
-use crate::{
-    clouds::{CloudModel, HeldClouds},
-    context::Context,
-};
+use glam::DVec3;
+
+use crate::{clouds::CloudModel, context::Context, error::Result};
 
 impl Context {
-    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Deck`]. Light, queries and what falls do not change with
-    /// it.
+    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Deck`]. Light on the mean, conditions and what falls do
+    /// not change with it; [`Context::sun_share`] does.
     pub fn set_cloud_model(&mut self, model: CloudModel) {
-        self.held.clouds = HeldClouds { model };
+        self.held.clouds.model = model;
     }
 
     /// How clouds are drawn.
     pub fn cloud_model(&self) -> CloudModel {
         self.held.clouds.model
+    }
+
+    /// The share of the direct light of sun or moon, whichever is brighter, that clouds let through to `position` at simulation time
+    /// `time_s`, 0 to 1: in the shadow of a cloud that [`CloudModel::Volume`] draws, or between two. The light of
+    /// [`Context::light_at`] is that on the mean over places: times this over [`Light::direct_share`](crate::moment::Light::direct_share),
+    /// its sun is that of the very place. With [`CloudModel::Deck`] the mean itself.
+    ///
+    /// The first question makes the field that clouds are cut out of, in some tenths of a second.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    pub fn sun_share(&self, position: DVec3, time_s: f64) -> Result<f64> {
+        let scene = self.scene_at(position, time_s)?;
+        let drift_m = self.world.over().carrying_until(time_s)?.displacement_m().truncate();
+        self.held.clouds.sun_share(self.world.seed, &scene, (drift_m, time_s))
     }
 }

@@ -117,3 +117,18 @@ pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
         ..Default::default()
     })
 }
+
+/// A buffer at a binding.
+pub(crate) fn buffer(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
+}
+
+/// A texture at a binding.
+pub(crate) fn view(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
+}
+
+/// A sampler at a binding.
+pub(crate) fn sampler(binding: u32, sampler: &wgpu::Sampler) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) }
+}

@@ -56,6 +56,8 @@ pub(crate) struct FrameUniform {
     pub flash_haze: f32,
     pub flash_scattering: f32,
     pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
+    /// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
+    pub cloud_shadow: [f32; 4],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -113,6 +115,7 @@ pub(crate) fn uniform(
         flash_haze: 0.0,
         flash_scattering: 0.0,
         flashes: [FlashUniform::default(); MAX_FLASH_LAMPS],
+        cloud_shadow: [0.0; 4],
     }
 }
 
@@ -155,7 +158,8 @@ mod tests {
                 flash_cover,
                 flash_haze,
                 flash_scattering,
-                flashes
+                flashes,
+                cloud_shadow
             ]
         );
         shader::assert_layout!(

@@ -13,18 +13,18 @@ use welkin::{
     weather::Weather,
 };
 
-const SIZE: (u32, u32) = (96, 54);
+pub const SIZE: (u32, u32) = (96, 54);
 
-struct Sky {
-    device: Arc<Device>,
-    context: Context,
-    view: View,
-    color: wgpu::Texture,
-    frame_id: u64,
+pub struct Sky {
+    pub device: Arc<Device>,
+    pub context: Context,
+    pub view: View,
+    pub color: wgpu::Texture,
+    pub frame_id: u64,
 }
 
 impl Sky {
-    fn new(report: &str, model: CloudModel) -> Self {
+    pub fn new(report: &str, model: CloudModel) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();

@@ -1,0 +1,84 @@
+//! Shadows of clouds on what the host drew.
+
+use glam::DVec3;
+use welkin::{
+    clouds::CloudModel,
+    frame::{Frame, FrameFlags, Stages},
+    gpu::readback,
+    scene::Camera,
+};
+
+use crate::drawn::{SIZE, Sky};
+
+/// Height of the camera that looks straight down at level ground.
+const HEIGHT_M: f64 = 2500.0;
+const SCATTERED: &str = "LOWI 121150Z 00000KT 9999 SCT100 18/12 Q1015";
+
+/// The picture over a ground of this luminance, green.
+fn over_ground(sky: &mut Sky, luminance: f32) -> Vec<f64> {
+    let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
+    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let write = |texture: &wgpu::Texture, texels: &[f32], bytes: u32| {
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes * SIZE.0), rows_per_image: None };
+        sky.device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, size);
+    };
+    let count = (SIZE.0 * SIZE.1) as usize;
+    write(&depth, &vec![0.1 / HEIGHT_M as f32; count], 4);
+    write(&sky.color, &[luminance, luminance, luminance, 1.0].repeat(count), 16);
+    sky.frame_id += 1;
+    let camera = Camera::look_to(DVec3::Z * HEIGHT_M, DVec3::NEG_Z, DVec3::Y, 1.0, 16.0 / 9.0, 0.1);
+    let mut frame = Frame::new(sky.frame_id, camera, &sky.color, Some(&depth));
+    frame.flags = FrameFlags::NO_HISTORY;
+    let stages = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::SURFACE);
+    sky.view.record(&sky.context, &frame, stages).unwrap();
+    readback::rgba(&sky.device, &sky.color).unwrap().iter().map(|t| f64::from(t[1])).collect()
+}
+
+/// What is left of the ground's light, pixel by pixel.
+fn left_of_ground(sky: &mut Sky) -> Vec<f64> {
+    let (dark, bright) = (over_ground(sky, 0.0), over_ground(sky, 1e4));
+    bright.iter().zip(dark).map(|(bright, dark)| (bright - dark) / 1e4).collect()
+}
+
+#[test]
+fn the_shadow_on_each_pixel_is_that_of_its_place() {
+    let [mut sky, mut deck] = [CloudModel::Volume, CloudModel::Deck].map(|model| Sky::new(SCATTERED, model));
+    let (shaded, even) = (left_of_ground(&mut sky), left_of_ground(&mut deck));
+    // Pictures take how strong shadows are from the light at the camera.
+    let light = sky.context.light_at(DVec3::Z * HEIGHT_M, 0.0).unwrap();
+    let direct = light.arriving.sun_lux[1] * light.sun.direction.z;
+    let strength = direct / light.sun.direct_share / (direct + light.arriving.sky_lux[1]);
+    let (half, aspect) = (HEIGHT_M * 0.5f64.tan(), 16.0 / 9.0);
+    let (mut off, mut shares) = (Vec::new(), Vec::new());
+    for i in (0..shaded.len()).step_by(7) {
+        let (x, y) = (i as u32 % SIZE.0, i as u32 / SIZE.0);
+        let at = |p: u32, of: u32| (f64::from(p) + 0.5) / f64::from(of) * 2.0 - 1.0;
+        let place = DVec3::new(at(x, SIZE.0) * half * aspect, -at(y, SIZE.1) * half, 0.0);
+        let want = sky.context.sun_share(place, 0.0).unwrap();
+        let got = (shaded[i] / even[i] - 1.0) / strength + light.sun.direct_share;
+        off.push((got - want).abs());
+        shares.push(want);
+    }
+    off.sort_by(f64::total_cmp);
+    let (half, most) = (off[off.len() / 2], off[off.len() * 95 / 100]);
+    let lit = shares.iter().filter(|s| **s > 0.9).count() as f64 / shares.len() as f64;
+    let dark = shares.iter().filter(|s| **s < 0.1).count() as f64 / shares.len() as f64;
+    println!("shadows: off by {half:.4} in the median, {most:.3} at 95 %; {lit:.2} lit, {dark:.2} dark");
+    assert!(lit > 0.1 && dark > 0.05, "the picture holds light and shadow: {lit} {dark}");
+    assert!(half < 0.02 && most < 0.12, "{half} {most}");
+}
+
+#[test]
+fn the_mean_over_places_is_the_light_that_the_host_was_told() {
+    let sky = Sky::new(SCATTERED, CloudModel::Volume);
+    let told = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
+    let place = |i: i32| DVec3::new(f64::from(i % 24) * 1733.0, f64::from(i / 24) * 1541.0, 0.0);
+    let shares: Vec<f64> = (0..24 * 24).map(|i| sky.context.sun_share(place(i), 0.0).unwrap()).collect();
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    println!("share of direct light: told {told:.3}, on the mean {mean:.3}");
+    assert!((mean - told).abs() < 0.1);
+    let deck = Sky::new(SCATTERED, CloudModel::Deck);
+    assert_eq!(deck.context.sun_share(DVec3::ZERO, 0.0).unwrap(), told);
+    assert_eq!(sky.context.sun_share(DVec3::Z * 12e3, 0.0).unwrap(), 1.0, "above all clouds");
+}
