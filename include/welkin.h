@@ -4951,7 +4951,11 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  * Clouds
  *
  * Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
- * draw them. Light, queries and what falls are the same either way. docs/clouds.md has pictures' costs and errors.
+ * draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and errors.
+ *
+ * Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
+ * light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
+ * lights a thing of its own by itself, such as the view out of a cab, asks for the share at its place.
  * ====================================================================================================
  */
 
@@ -4975,6 +4979,20 @@ typedef uint32_t wk_cloud_model;
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
  */
 WK_API wk_status wk_context_set_cloud_model(wk_context *context, wk_cloud_model cloud_model);
+
+/**
+ * Gets the share of the direct light of sun or moon, whichever is brighter, that clouds let through to a place, in
+ * [0, 1]: in the shadow of a cloud, or between two. wk_ground_light.sun_lux times this over wk_celestial.direct_share
+ * is the sun's light at the very place. With WK_CLOUD_MODEL_DECK it is the mean, wk_celestial.direct_share. The first
+ * question makes the field that clouds are cut out of, in some tenths of a second.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sun_share(const wk_context *context,
+                                   const double (*position_m)[3],
+                                   double time_s,
+                                   double *out_share);
 
 /*
  * ====================================================================================================

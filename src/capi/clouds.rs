@@ -1,12 +1,20 @@
 //! Clouds
 //!
 //! Layers of cloud come with the weather: wk_cloud_layer, a report, a preset. wk_context_set_cloud_model says how views
-//! draw them. Light, queries and what falls are the same either way. docs/clouds.md has pictures' costs and errors.
+//! draw them. Conditions, what falls and light on the mean are the same either way. docs/clouds.md has costs and errors.
+//!
+//! Volumes cast shadows: the stage SURFACE darkens and brightens what the host drew from its depth, in the ratio of the
+//! light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
+//! lights a thing of its own by itself, such as the view out of a cab, asks for the share at its place.
+
+use glam::DVec3;
 
 use super::{
     boundary::guard,
+    conditions::position,
     context::{ContextObject, wk_context},
-    input, layout,
+    input::{self, out},
+    layout,
     status::*,
 };
 use crate::{clouds::CloudModel, error::Status};
@@ -33,6 +41,32 @@ pub unsafe extern "C" fn wk_context_set_cloud_model(
         input::check_enum("cloud_model", &layout::WK_CLOUD_MODEL, cloud_model)?;
         let model = if cloud_model == WK_CLOUD_MODEL_VOLUME { CloudModel::Volume } else { CloudModel::Deck };
         object.write().set_cloud_model(model);
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets the share of the direct light of sun or moon, whichever is brighter, that clouds let through to a place, in
+/// [0, 1]: in the shadow of a cloud, or between two. wk_ground_light.sun_lux times this over wk_celestial.direct_share
+/// is the sun's light at the very place. With WK_CLOUD_MODEL_DECK it is the mean, wk_celestial.direct_share. The first
+/// question makes the field that clouds are cut out of, in some tenths of a second.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_sun_share(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_share: *mut f64,
+) -> wk_status {
+    guard("wk_context_get_sun_share", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller promises a readable position, or NULL.
+        let at = unsafe { position("position_m", position_m)? };
+        let to = out("out_share", out_share)?;
+        let share =
+            object.read().sun_share(DVec3::from_array(at), time_s).map_err(|e| e.renamed("position", "position_m"))?;
+        // SAFETY: `out` found it to be neither NULL nor misaligned; the caller promises that it can be written.
+        unsafe { to.write(share) };
         Ok(Status::Ok)
     })
 }

@@ -126,6 +126,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_sun", "context", false, |h| unsafe { wk_context_get_sun(h.cast(), null(), null_mut()) }),
         case("wk_context_get_moon", "context", false, |h| unsafe { wk_context_get_moon(h.cast(), null(), null_mut()) }),
+        case("wk_context_get_sun_share", "context", false, |h| unsafe {
+            wk_context_get_sun_share(h.cast(), null(), 0.0, null_mut())
+        }),
         case("wk_context_get_sun_at", "context", false, |h| unsafe {
             wk_context_get_sun_at(h.cast(), null(), 0.0, null_mut())
         }),

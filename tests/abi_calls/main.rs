@@ -6,6 +6,7 @@
 
 mod areas;
 mod clock;
+mod clouds;
 mod flashes;
 mod ground;
 mod handles;

@@ -521,6 +521,11 @@ pub const CALLS: &[(&str, Call)] = &[
         let (context, at) = (handle(d, &w.contexts), position(d));
         get("wk_celestial", |p| unsafe { wk_context_get_sun(context, &at, p.cast()) })
     }),
+    ("wk_context_get_sun_share", |d, w| {
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        let mut share = 0.0;
+        unsafe { wk_context_get_sun_share(context, &at, time, &mut share) }.into()
+    }),
     ("wk_context_get_sun_at", |d, w| {
         let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
         get("wk_celestial", |p| unsafe { wk_context_get_sun_at(context, &at, time, p.cast()) })
