@@ -74,6 +74,44 @@ static bool twelve_km(demo *d) { return clear_with_sun(d, 60, 25); }
 static bool space(demo *d) { return clear_with_sun(d, 30, 5); }
 static bool shadow(demo *d) { return clear_with_sun(d, 10, -9); }
 
+/* Layers of cloud as a volume, from the lowest up. */
+static bool cloudy(demo *d, const wk_cloud_layer *layers, uint32_t count)
+{
+    wk_weather w = weather_here(40e3, 0.5);
+    w.clouds = layers;
+    w.cloud_count = count;
+    w.wind_speed_m_s = 4.0;
+    w.wind_from_deg = 250.0;
+    return weather_clock(&d->weather, HOURS[0].utc_s) &&
+           weather_check(wk_context_set_weather(d->weather.context, &w, 0.0, 0.0)) &&
+           weather_check(wk_context_set_cloud_model(d->weather.context, WK_CLOUD_MODEL_VOLUME));
+}
+
+static wk_cloud_layer layer(wk_cloud_kind kind, double cover, double base_m)
+{
+    wk_cloud_layer l = overcast(kind, base_m);
+    l.cover = cover;
+    return l;
+}
+
+static bool fair_cumulus(demo *d)
+{
+    wk_cloud_layer l = layer(WK_CLOUD_CUMULUS, 0.4, 1200.0);
+    return cloudy(d, &l, 1);
+}
+
+static bool evening_clouds(demo *d)
+{
+    const wk_cloud_layer l[] = {layer(WK_CLOUD_CUMULUS, 0.3, 1100.0), layer(WK_CLOUD_ALTOCUMULUS, 0.4, 3800.0)};
+    return cloudy(d, l, 2) && sun_at(d, 300, 7);
+}
+
+static bool cloud_shadows(demo *d)
+{
+    wk_cloud_layer l = layer(WK_CLOUD_CUMULUS, 0.4, 1500.0);
+    return cloudy(d, &l, 1) && sun_at(d, 150, 50);
+}
+
 /* A thunderstorm at night, some milliseconds after a stroke 2.4 km away. */
 static bool lightning(demo *d)
 {
@@ -307,6 +345,9 @@ const shot SHOTS[] = {
     {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
     {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
     {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
+    {"fair_cumulus", "Fair-weather cumulus", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, fair_cumulus, WORLD, NULL},
+    {"evening_clouds", "Cumulus and altocumulus, low sun", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, evening_clouds, WORLD, NULL},
+    {"cloud_shadows", "Shadows of cumulus", 0.0, -4.8, 500.0, SITE_VIEW_AZIMUTH_DEG + 4.0, -6.0, 60.0, cloud_shadows, WORLD, NULL},
     {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL},
     {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
     {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},

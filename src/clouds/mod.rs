@@ -6,6 +6,7 @@
 //! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box of the depths about
 //!   a place. [`mod@reference`] follows photons.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
+//! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures.
 //!
 //! The deck is drawn by the composition itself (`shaders/frame/composite.wgsl`).
 //!
@@ -46,8 +47,7 @@ pub enum CloudModel {
     /// cheapest.
     #[default]
     Deck,
-    /// Layers of a volume, marched ray by ray. Stars are not drawn between its clouds, wet ground and the cube map mirror a deck, and what
-    /// stands in them is not yet drawn sharp against them.
+    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck. Wet ground and the cube map mirror a deck.
     Volume,
 }
 

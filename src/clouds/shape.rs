@@ -30,7 +30,7 @@ impl Shape {
     /// Of a layer in still air over the sea, cut out of the map by a threshold.
     pub(super) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
-        let sheet = mix(mix(0.35, 0.6, slab.cellular), 1.5, heaps);
+        let sheet = mix(mix(0.35, 1.4, slab.cellular), 1.5, heaps);
         Self {
             base_m: slab.base_m,
             thickness_m: slab.thickness_m,
