@@ -98,7 +98,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4f {
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
     var radiance = light.more;
     if (job.order == 1u) {
         let peak = max(textureLoad(norms, here.at, 0).r, 1e-6);
@@ -223,7 +223,7 @@ fn isotropic_gather(in: FullscreenVarying) -> Sums {
     let nu = cosine_between(d.x, here.mu_s, rule_azimuth(here.tile.x).x);
     let below = here.tile.y < dims.rule_zeniths;
     let ray = sky_ray(air, here.altitude, d.x, below);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.build_panels, here.mu_s, nu);
     var radiance = (light.gas + light.haze) / (4.0 * SKY_PI);
     if (below) {
         let mu_s_ground = clamp((ray.radius * here.mu_s + ray.length * nu) / air.bottom_m, -1.0, 1.0);
@@ -265,6 +265,6 @@ fn once(in: FullscreenVarying) -> Once {
     let mu = once_mu(air, here.altitude, row);
     let nu = cosine_between(mu, here.mu_s, 1.0);
     let ray = sky_ray(air, here.altitude, mu, row >= ONCE_ROWS);
-    let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, ray.length, dims.sky_panels, here.mu_s, nu);
+    let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, ray.length, dims.sky_panels, here.mu_s, nu);
     return Once(sky_encode(light.gas), sky_encode(light.haze));
 }

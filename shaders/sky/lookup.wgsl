@@ -40,11 +40,11 @@ struct SkyView {
 }
 
 @group(1) @binding(0) var<uniform> sky_view: SkyView;
-@group(1) @binding(1) var sky_table: texture_2d_array<f32>;
-@group(1) @binding(2) var sky_volume: texture_2d_array<f32>;
-@group(1) @binding(3) var sky_lights: texture_2d<f32>;
-@group(1) @binding(4) var sky_sources: texture_2d<f32>;
-@group(1) @binding(5) var sky_sampler: sampler;
+// The observer's sky and the air in front of things.
+@group(1) @binding(1) var sky_tables: texture_2d_array<f32>;
+// The planet's light, and below it the sources where pixels march.
+@group(1) @binding(2) var sky_lights: texture_2d<f32>;
+@group(1) @binding(3) var sky_sampler: sampler;
 
 // Set by `SkyTables::pipeline_constants` where the model marches every pixel.
 override SKY_MARCH: bool = false;
@@ -92,7 +92,9 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
     let mu_s = clamp((r * lamp.toward.z + ray.before * nu) / ray.radius, -1.0, 1.0);
-    let light = sky_march(sky_view.air, sky_view.dims, sky_sources, sky_sampler, ray, 0.0, end, sky_view.march_panels, mu_s, nu);
+    let place = marched_sources();
+    let light =
+        sky_march(sky_view.air, sky_view.dims, sky_lights, place, sky_sampler, ray, 0.0, end, sky_view.march_panels, mu_s, nu);
     let once = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, sky_view.air.asymmetry_g);
     return lamp.irradiance * (once + light.more);
 }
@@ -145,13 +147,13 @@ fn sky_table_light(ray: SkyRay, dir: vec3f, v: f32) -> vec3f {
         }
         return out;
     }
-    let size = vec2f(f32(dims.sky_azimuths), f32(dims.sky_above + dims.sky_below));
-    let row = view_row(v, dims.sky_above, dims.sky_below);
+    let size = vec2f(f32(dims.tables_width), f32(dims.tables_height));
+    let first = vec2f(f32(dims.sky_x) + view_row(v, dims.sky_above, dims.sky_below), f32(dims.sky_y) + 0.5);
     for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
-        let uv = vec2f(0.5 + lamp_azimuth(lamp, dir) * (size.x - 1.0), row) / size;
-        let a = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer, 0.0);
-        let b = textureSampleLevel(sky_table, sky_sampler, uv, lamp.layer + 1u, 0.0);
+        let uv = (first + vec2f(0.0, lamp_azimuth(lamp, dir) * f32(dims.sky_azimuths - 1u))) / size;
+        let a = textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer, 0.0);
+        let b = textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer + 1u, 0.0);
         out += lamp_light(lamp, dir, a, b);
     }
     return out;
@@ -174,21 +176,21 @@ fn aerial_on(path: SkyPath, dir: vec3f) -> Aerial {
         }
         return Aerial(out, exp(-depth));
     }
-    let tile = vec2f(f32(dims.air_azimuths), f32(dims.air_above + dims.air_below));
-    let size = vec2f(tile.x * f32(dims.air_slices), tile.y);
+    let size = vec2f(f32(dims.tables_width), f32(dims.tables_height));
+    let tile = f32(dims.air_azimuths);
     let row = view_row(view_place(sky_view.edges, dir.z), dims.air_above, dims.air_below);
     let slice = slice_of(end, ray.length) * f32(dims.air_slices - 1u);
     let near = min(floor(slice), f32(dims.air_slices - 2u));
     for (var i = 0u; i < sky_lamps(); i++) {
         let lamp = sky_view.lamps[i];
-        let x = 0.5 + lamp_azimuth(lamp, dir) * (tile.x - 1.0) + near * tile.x;
+        let x = 0.5 + lamp_azimuth(lamp, dir) * (tile - 1.0) + near * tile;
         let uv = vec2f(x, row) / size;
-        let next = uv + vec2f(tile.x / size.x, 0.0);
+        let next = uv + vec2f(tile / size.x, 0.0);
         let f = slice - near;
-        let a = mix(textureSampleLevel(sky_volume, sky_sampler, uv, lamp.layer, 0.0),
-            textureSampleLevel(sky_volume, sky_sampler, next, lamp.layer, 0.0), f);
-        let b = mix(textureSampleLevel(sky_volume, sky_sampler, uv, lamp.layer + 1u, 0.0),
-            textureSampleLevel(sky_volume, sky_sampler, next, lamp.layer + 1u, 0.0), f);
+        let a = mix(textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer, 0.0),
+            textureSampleLevel(sky_tables, sky_sampler, next, lamp.layer, 0.0), f);
+        let b = mix(textureSampleLevel(sky_tables, sky_sampler, uv, lamp.layer + 1u, 0.0),
+            textureSampleLevel(sky_tables, sky_sampler, next, lamp.layer + 1u, 0.0), f);
         out += lamp_light(lamp, dir, a, b);
     }
     return Aerial(out * air_opacity(depth), exp(-depth));
@@ -216,10 +218,33 @@ fn sky_irradiance(altitude: Length) -> vec3f {
 const SKY_LIGHT_TILES: f32 = 7.0;
 const SKY_LIGHT_SCALE: f32 = 4096.0;
 
+fn light_table_size() -> vec2f {
+    return vec2f(SKY_LIGHT_TILES * f32(sky_view.dims.suns), f32(sky_view.dims.altitudes));
+}
+
+fn sources_table_size() -> vec2f {
+    let dims = sky_view.dims;
+    return vec2f(f32(dims.azimuths * dims.suns), f32(dims.zeniths * dims.altitudes));
+}
+
+// Texels of `sky_lights`.
+fn planet_table_size() -> vec2f {
+    let light = light_table_size();
+    if (!SKY_MARCH) {
+        return light;
+    }
+    let sources = sources_table_size();
+    return vec2f(max(light.x, sources.x), light.y + sources.y);
+}
+
+fn marched_sources() -> vec4f {
+    let all = planet_table_size();
+    return vec4f(vec2f(0.0, light_table_size().y) / all, sources_table_size() / all);
+}
+
 fn diffuse_irradiance(altitude: Length, mu_s: Cosine) -> vec3f {
     let dims = sky_view.dims;
-    let size = vec2f(SKY_LIGHT_TILES * f32(dims.suns), f32(dims.altitudes));
-    let at = planet_texel(sky_view.air, dims, altitude, mu_s) / size;
+    let at = planet_texel(sky_view.air, dims, altitude, mu_s) / planet_table_size();
     return max(textureSampleLevel(sky_lights, sky_sampler, at, 0.0).rgb, vec3f(0.0)) / SKY_LIGHT_SCALE;
 }
 

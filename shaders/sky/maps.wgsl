@@ -22,6 +22,12 @@ struct SkyDims {
     air_above: u32,
     air_below: u32,
     air_slices: u32,
+    // Both lie in one texture. The sky's first texel in it, and the texture's size: the sky is turned by a quarter, rows along x
+    // and azimuths along y, so that it is as high as the volume.
+    sky_x: u32,
+    sky_y: u32,
+    tables_width: u32,
+    tables_height: u32,
 }
 
 // Sun angle: even steps where the sun is below the middle of the terminator as the air's top and bottom see it, and

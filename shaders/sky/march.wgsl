@@ -12,18 +12,21 @@ struct SkyLight {
     transfer: vec3f,
 }
 
+// Where the sources of one triple lie in their texture, in shares of it: xy the corner, zw the size. The triples of a set lie
+// one below the other.
+fn sources_of(air: SkyAir) -> vec4f {
+    return vec4f(0.0, air.layer / air.layers, 1.0, 1.0 / air.layers);
+}
+
 // Light scattered more than once into a direction, per unit of scattering coefficient and of sun: 1/sr.
 fn more_scattered(
-    air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, smp: sampler,
+    air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, place: vec4f, smp: sampler,
     altitude: Length, mu_s: Cosine, mu: Cosine, nu: Cosine,
 ) -> vec3f {
     let at = planet_texel(air, dims, altitude, mu_s);
     let tile = vec2f(f32(dims.suns), f32(dims.altitudes));
-    // The triples of a set lie one below the other.
-    let layer = vec2f(0.0, air.layer / air.layers);
-    let share = vec2f(1.0, 1.0 / air.layers);
     if (!DIRECTIONAL) {
-        return sky_decode(textureSampleLevel(sources, smp, at / tile * share + layer, 0.0));
+        return sky_decode(textureSampleLevel(sources, smp, at / tile * place.zw + place.xy, 0.0));
     }
     let sines = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1e-9));
     let cos_azimuth = clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
@@ -31,8 +34,8 @@ fn more_scattered(
     let d = source_coordinate(mu, cos_azimuth) * steps;
     let i = min(floor(d), steps - 1.0);
     let f = d - i;
-    let scale = share / (tile * (steps + 1.0));
-    let uv = (at + i * tile) * scale + layer;
+    let scale = place.zw / (tile * (steps + 1.0));
+    let uv = (at + i * tile) * scale + place.xy;
     let step = tile * scale;
     let a = textureSampleLevel(sources, smp, uv, 0.0);
     let b = textureSampleLevel(sources, smp, uv + vec2f(step.x, 0.0), 0.0);
@@ -83,7 +86,7 @@ fn gauss_4(i: u32) -> vec2f {
 // the angle between ray and light. The ray is cut at its perigee and at the edges of the planet's shadow; each stretch
 // takes `panels` panels of 4 nodes, fewer if there are several.
 fn sky_march(
-    air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, smp: sampler,
+    air: SkyAir, dims: SkyDims, sources: texture_2d<f32>, place: vec4f, smp: sampler,
     ray: SkyRay, start: Length, end: Length, panels: u32, mu_s: Cosine, nu: Cosine,
 ) -> SkyLight {
     let t_ray = ray.radius * ray.mu;
@@ -129,7 +132,7 @@ fn sky_march(
         let sun = sun_transmittance(air, altitude, mu_s_here);
         out.gas += gas * sun;
         out.haze += haze * sun;
-        out.more += (gas + haze) * more_scattered(air, dims, sources, smp, altitude, mu_s_here, mu_here, nu);
+        out.more += (gas + haze) * more_scattered(air, dims, sources, place, smp, altitude, mu_s_here, mu_here, nu);
         out.transfer += gas + haze;
     }
     return out;

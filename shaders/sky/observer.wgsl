@@ -71,17 +71,22 @@ struct KeptLight {
 fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
     let mu_s = mu_s_at_start(ray, nu);
     if (LAYERS == 1u) {
-        let light = sky_march(air, dims, sky_sources, sky_sampler, ray, 0.0, end, panels, mu_s, nu);
+        let light = sky_march(air, dims, sky_sources, sources_of(air), sky_sampler, ray, 0.0, end, panels, mu_s, nu);
         return KeptLight(light.gas * rayleigh_phase(nu) + light.more, light.haze);
     }
     var sum = KeptLight(vec3f(0.0), vec3f(0.0));
     for (var k = 0u; k < LAYERS; k++) {
         let part = airs[k];
-        let light = sky_march(part, dims, sky_sources, sky_sampler, ray, 0.0, end, panels, mu_s, nu);
+        let light = sky_march(part, dims, sky_sources, sources_of(part), sky_sampler, ray, 0.0, end, panels, mu_s, nu);
         sum.even += air_part(part, light.gas * rayleigh_phase(nu) + light.more);
         sum.haze += air_part(part, light.haze);
     }
     return sum;
+}
+
+// Azimuth and row of the sky at a texel of an observer's tables.
+fn sky_texel(px: vec2u) -> vec2u {
+    return px.yx - vec2u(dims.sky_y, dims.sky_x);
 }
 
 // Sky and air by one entry point: what they share, the march, is most of what a software driver compiles.
@@ -95,7 +100,10 @@ fn observed(in: FullscreenVarying) -> SkyTexel {
         vec3u(dims.air_azimuths, dims.air_above, dims.air_below),
         is_air,
     );
-    let view = view_texel(vec2u(px.x - slice * dims.air_azimuths, px.y), size.x, size.y, size.z);
+    // Sums, for Mesa 22.3's llvmpipe crashes where a choice turns the picture.
+    let air_px = vec2u(px.x - slice * dims.air_azimuths, px.y);
+    let texel = observer.is_air * air_px + (1u - observer.is_air) * sky_texel(px);
+    let view = view_texel(texel, size.x, size.y, size.z);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let w = max(f32(slice), 0.05) / f32(dims.air_slices - 1u);
     let end = select(ray.length, slice_distance(w, ray.length), is_air);
@@ -128,7 +136,7 @@ fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLigh
 // A whole ray. From space it is that of the point where it enters the air, under the sun angle there.
 @fragment
 fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
-    let view = view_texel(vec2u(in.position.xy), dims.sky_azimuths, dims.sky_above, dims.sky_below);
+    let view = view_texel(sky_texel(vec2u(in.position.xy)), dims.sky_azimuths, dims.sky_above, dims.sky_below);
     let ray = sky_ray(air, observer.altitude, view.mu, view.below);
     let light = once_at(ray.altitude, ray.mu, mu_s_at_start(ray, view.nu), view.below);
     let even = light.gas * rayleigh_phase(view.nu) * f32(ray.length > 0.0);

@@ -235,9 +235,9 @@ mod tests {
         assert_eq!(faults(given), ["f"], "one is found");
     }
 
-    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more.
+    /// WebGPU promises 16 textures a stage, and tier 0 devices have no more: four are left for what comes.
     #[test]
-    fn no_shader_reads_more_than_fourteen_textures() {
+    fn no_shader_reads_more_than_twelve_textures() {
         use wgpu::naga::{ImageClass, TypeInner, front::wgsl::parse_str};
         let count = |name: &str| {
             let module = parse_str(&assemble(name).unwrap()).unwrap();
@@ -248,7 +248,7 @@ mod tests {
             module.global_variables.iter().filter(|(_, v)| is_read(&module.types[v.ty].inner)).count()
         };
         let (most, name) = names().map(|name| (count(name), name)).max().unwrap();
-        assert!(most <= 14, "{name}: {most}");
+        assert!(most <= 12, "{name}: {most}");
         assert_eq!(count("frame/composite_view.wgsl"), most, "the count sees them");
     }
 

@@ -238,7 +238,8 @@ fn source_texels(s: &SkySettings) -> f64 {
 
 /// The cost of a setting: its planet's tables, its observer's, and a pixel.
 pub fn work(s: &SkySettings) -> Work {
-    let texels = |name: Name| f64::from(name.size(s).0) * f64::from(name.size(s).1);
+    let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
+    let texels = |name: Name| area(name.size(s));
     let mut rebuild = Units::default();
     for pass in passes(s) {
         let count = texels(pass.draws[0]) * f64::from(s.layers());
@@ -255,12 +256,11 @@ pub fn work(s: &SkySettings) -> Work {
         rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
     }
     // Scratch of a build, and two airs: the one that is shown and the one that follows it.
-    let kept = |name: &Name| f64::from(name.result_size(s).0) * f64::from(name.result_size(s).1);
+    let kept = |name: &Name| area(name.result_size(s));
     let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
         + 2.0 * Name::RESULTS.iter().map(kept).sum::<f64>()
-        + texels(Name::Lights);
-    let sky = f64::from(s.sky_azimuths * (s.sky_above + s.sky_below));
-    let air = f64::from(s.air_azimuths * s.air_slices * (s.air_above + s.air_below));
+        + area(Name::shown_size(s));
+    let (sky, air) = (area(s.sky_size()), area(s.air_size()));
     let nodes = match s.model {
         SkyModel::BruteForce => 0.0,
         SkyModel::Table3d => sky + air,
@@ -281,7 +281,7 @@ pub fn work(s: &SkySettings) -> Work {
         pixel,
         shared_bytes: (TEXEL_BYTES * shared) as u64,
         // Two layers for each of two lamps.
-        view_bytes: (4.0 * TEXEL_BYTES * (sky + air)) as u64,
+        view_bytes: (4.0 * TEXEL_BYTES * area(s.observer_size())) as u64,
     }
 }
 

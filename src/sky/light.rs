@@ -5,6 +5,7 @@
 
 use half::f16;
 
+use super::settings::SkySettings;
 use super::uniforms::{AirUniform, LIGHT_SCALE, LIGHT_TILES};
 use crate::gpu::{Device, readback};
 use crate::{Result, sky::passes::Table};
@@ -28,6 +29,12 @@ const SUN_SPREAD: f32 = 0.3;
 const SUN_BELOW: f32 = 0.22;
 
 impl LightTable {
+    /// No light.
+    pub(crate) fn dark(settings: &SkySettings, air: AirUniform) -> Self {
+        let (suns, altitudes) = (settings.suns as usize, settings.altitudes as usize);
+        Self { air, suns, altitudes, values: vec![[0.0; 3]; suns * LIGHT_TILES as usize * altitudes] }
+    }
+
     /// Reads a finished table; waits for the GPU.
     pub(crate) fn read(device: &Device, table: &Table, air: AirUniform) -> Result<Self> {
         let (width, height) = (table.texture.width() as usize, table.texture.height() as usize);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bytemuck::bytes_of;
 use wgpu::util::DeviceExt as _;
 
-use super::recipe::{Pass, PassKind};
+use super::recipe::{Name, Pass, PassKind};
 use super::settings::SkySettings;
 use super::uniforms::{DimsUniform, JobUniform};
 use crate::error::Result;
@@ -188,6 +188,8 @@ pub(crate) struct FadePasses {
     light: wgpu::RenderPipeline,
     /// Texel by texel.
     texels: wgpu::RenderPipeline,
+    /// Texels of the light.
+    light_size: (u32, u32),
 }
 
 impl FadePasses {
@@ -211,7 +213,7 @@ impl FadePasses {
             fullscreen(device, &desc)
         };
         let (light, texels) = (make("light", &sizes)?, make("copy", &[])?);
-        Ok(Self { layout, light, texels })
+        Ok(Self { layout, light, texels, light_size: Name::Lights.size(settings) })
     }
 
     /// How a table is read.
@@ -227,7 +229,7 @@ impl FadePasses {
         first: &wgpu::BindGroup,
         other: Option<(&wgpu::BindGroup, f32)>,
     ) {
-        draw_over(encoder, &self.light, target, [Some((first, 1.0)), other]);
+        draw_over(encoder, &self.light, target, Some(self.light_size), [Some((first, 1.0)), other]);
     }
 
     /// Draws into `target` what lies between two tables of its size.
@@ -238,15 +240,16 @@ impl FadePasses {
         [first, other]: [&wgpu::BindGroup; 2],
         share: f32,
     ) {
-        draw_over(encoder, &self.texels, target, [Some((first, 1.0)), Some((other, share))]);
+        draw_over(encoder, &self.texels, target, None, [Some((first, 1.0)), Some((other, share))]);
     }
 }
 
-/// Draws shares of tables over a target.
+/// Draws shares of tables over a target, or over so much of it; the rest is cleared.
 fn draw_over(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
     view: &wgpu::TextureView,
+    size: Option<(u32, u32)>,
     tables: [Option<(&wgpu::BindGroup, f32)>; 2],
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -260,6 +263,9 @@ fn draw_over(
         ..Default::default()
     });
     pass.set_pipeline(pipeline);
+    if let Some((width, height)) = size {
+        pass.set_scissor_rect(0, 0, width, height);
+    }
     for (group, share) in tables.into_iter().flatten() {
         let t = f64::from(share.clamp(0.0, 1.0));
         pass.set_blend_constant(wgpu::Color { r: t, g: t, b: t, a: t });

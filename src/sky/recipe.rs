@@ -58,6 +58,15 @@ impl Name {
         (width, if self == Name::Sources { height * s.layers() } else { height })
     }
 
+    /// Size in texels of a planet's light as it is shown, with the sources below it where pixels march through them.
+    pub fn shown_size(s: &SkySettings) -> (u32, u32) {
+        let (light, sources) = (Self::Lights.size(s), Self::Sources.size(s));
+        match s.model {
+            SkyModel::BruteForce => (light.0.max(sources.0), light.1 + sources.1),
+            _ => light,
+        }
+    }
+
     /// Size in texels of what a build draws.
     pub fn size(self, s: &SkySettings) -> (u32, u32) {
         let (x, y) = match self {

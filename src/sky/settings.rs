@@ -104,6 +104,9 @@ pub struct SkySettings {
 /// Most wavelengths of a set, as `sky/observer.wgsl` has room for.
 pub(crate) const MOST_WAVELENGTHS: u32 = 15;
 
+/// Every device draws into so many texels; an atlas must not be wider.
+const WIDEST: u32 = 2048;
+
 impl Default for SkySettings {
     fn default() -> Self {
         Self {
@@ -159,6 +162,28 @@ impl SkySettings {
         self.wavelengths / 3
     }
 
+    /// Size in texels of the air in front of things: its slices lie side by side.
+    pub(crate) fn air_size(&self) -> (u32, u32) {
+        (self.air_azimuths * self.air_slices, self.air_above + self.air_below)
+    }
+
+    /// Size in texels of an observer's sky, turned by a quarter: rows along x, azimuths along y.
+    pub(crate) fn sky_size(&self) -> (u32, u32) {
+        (self.sky_above + self.sky_below, self.sky_azimuths)
+    }
+
+    /// First texel of the sky in an observer's tables: beside the air, or below it where that would be too wide.
+    pub(crate) fn sky_corner(&self) -> (u32, u32) {
+        let (air, sky) = (self.air_size(), self.sky_size());
+        if air.0 + sky.0 <= WIDEST { (air.0, 0) } else { (0, air.1) }
+    }
+
+    /// Size in texels of an observer's tables: the air and the sky.
+    pub(crate) fn observer_size(&self) -> (u32, u32) {
+        let (corner, air, sky) = (self.sky_corner(), self.air_size(), self.sky_size());
+        (air.0.max(corner.0 + sky.0), air.1.max(corner.1 + sky.1))
+    }
+
     /// Every number with its name and range.
     pub(crate) fn numbers(&self) -> [(&'static str, u32, u32, u32); 19] {
         [
@@ -201,7 +226,6 @@ impl SkySettings {
             let accepted = format!("3 with the model {}", self.model.name());
             return Err(Error::range("wavelengths", &accepted, self.wavelengths));
         }
-        // Every device draws into 2048 texels; an atlas must not be wider.
         for (name, times, (a, b)) in [
             ("suns", "rule_azimuths", (self.suns, self.rule_azimuths)),
             ("suns", "azimuths", (self.suns, self.azimuths.max(super::uniforms::LIGHT_TILES))),
@@ -209,8 +233,8 @@ impl SkySettings {
             ("altitudes", "zeniths x wavelengths/3", (self.altitudes * self.layers(), self.zeniths)),
             ("air_azimuths", "air_slices", (self.air_azimuths, self.air_slices)),
         ] {
-            if a * b > 2048 {
-                let rest = format!("x {times} must be at most 2048 texels, got {}", a * b);
+            if a * b > WIDEST {
+                let rest = format!("x {times} must be at most {WIDEST} texels, got {}", a * b);
                 return Err(Error::invalid(name, rest));
             }
         }
@@ -239,5 +263,19 @@ mod tests {
         assert!(SkySettings { wavelengths: 15, ..Default::default() }.check().is_ok());
         let wide = SkySettings { suns: 128, azimuths: 24, ..Default::default() };
         assert!(wide.check().unwrap_err().to_string().contains("suns x azimuths"));
+    }
+
+    #[test]
+    fn an_observers_sky_and_air_do_not_overlap_and_no_atlas_is_too_wide() {
+        let most =
+            SkySettings { air_azimuths: 64, air_slices: 32, sky_above: 256, sky_below: 256, ..Default::default() };
+        assert!(most.check().is_ok());
+        for s in [SkySettings::default(), most] {
+            let (corner, air, sky, all) = (s.sky_corner(), s.air_size(), s.sky_size(), s.observer_size());
+            assert!(corner.0 >= air.0 || corner.1 >= air.1, "{corner:?} {air:?}");
+            assert!(corner.0 + sky.0 <= all.0 && corner.1 + sky.1 <= all.1 && all.0 <= WIDEST && all.1 <= WIDEST);
+        }
+        let (width, height) = SkySettings::default().observer_size();
+        assert_eq!(width * height, 40 * 120 + 24 * 16 * 40, "nothing is left empty by default");
     }
 }

@@ -51,7 +51,8 @@ pub struct TablesProgress {
 pub struct SkyTables {
     pub(crate) device: Arc<Device>,
     kit: Arc<Kit>,
-    /// The light as it is shown: that of one planet, or of two while one fades into the other.
+    /// The light as it is shown: that of one planet, or of two while one fades into the other. Where pixels march, the sources
+    /// of the shown planet lie below it.
     pub(crate) light: Table,
     shown: Option<Arc<TableSet>>,
     state: State,
@@ -75,7 +76,7 @@ impl SkyTables {
     /// As [`SkyTables::new`].
     pub fn of_library(library: &SkyLibrary, device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let kit = library.kit(device, settings)?;
-        let light = Table::new(device, "sky light", Name::Lights.size(settings));
+        let light = Table::new(device, "sky light", Name::shown_size(settings));
         device.check_made()?;
         Ok(Self { device: device.clone(), kit, light, shown: None, state: State::Idle, revision: 0, busy: false })
     }
@@ -237,7 +238,7 @@ impl SkyTables {
     /// GPU faults.
     pub fn read_light(&self) -> Result<LightTable> {
         let Some(shown) = &self.shown else {
-            return LightTable::read(&self.device, &self.light, AirUniform::of(&Planet::earth()));
+            return Ok(LightTable::dark(self.settings(), AirUniform::of(&Planet::earth())));
         };
         let shown = shown.read_light(&self.device, self.settings())?;
         Ok(match &self.state {
@@ -340,6 +341,12 @@ impl SkyTables {
         if let Some(shown) = &self.shown {
             let next = self.fading().filter(|(_, t)| *t > 0.0).map(|(set, t)| (&set.light_group, t));
             self.kit.fades.show_light(encoder, &self.light.view, &shown.light_group, next);
+            if self.settings().model == SkyModel::BruteForce {
+                let sources = &shown.result(Name::Sources).texture;
+                let mut below = self.light.texture.as_image_copy();
+                below.origin.y = Name::Lights.size(self.settings()).1;
+                encoder.copy_texture_to_texture(sources.as_image_copy(), below, sources.size());
+            }
         }
     }
 }

@@ -115,10 +115,16 @@ pub(crate) struct DimsUniform {
     pub air_above: u32,
     pub air_below: u32,
     pub air_slices: u32,
+    pub sky_x: u32,
+    pub sky_y: u32,
+    pub tables_width: u32,
+    pub tables_height: u32,
 }
 
 impl DimsUniform {
     pub fn of(s: &SkySettings) -> Self {
+        let (sky_x, sky_y) = s.sky_corner();
+        let (tables_width, tables_height) = s.observer_size();
         Self {
             suns: s.suns,
             altitudes: s.altitudes,
@@ -136,6 +142,10 @@ impl DimsUniform {
             air_above: s.air_above,
             air_below: s.air_below,
             air_slices: s.air_slices,
+            sky_x,
+            sky_y,
+            tables_width,
+            tables_height,
         }
     }
 }
@@ -235,7 +245,7 @@ mod tests {
         let observer = assemble("sky/observer.wgsl").unwrap();
         for (text, name, size, count) in [
             (&lookup, "SkyAir", size_of::<AirUniform>(), 20),
-            (&lookup, "SkyDims", size_of::<DimsUniform>(), 16),
+            (&lookup, "SkyDims", size_of::<DimsUniform>(), 20),
             (&lookup, "SkyEdges", size_of::<EdgesUniform>(), 4),
             (&lookup, "SkyLamp", size_of::<LampUniform>(), 11),
             (&lookup, "SkyView", size_of::<ViewUniform>(), 8),

@@ -7,7 +7,6 @@ use bytemuck::{Zeroable as _, bytes_of};
 use super::kit::Kit;
 use super::observer::{Lamp, Observer};
 use super::passes::{TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
-use super::recipe::Name;
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
 use super::tables::SkyTables;
@@ -21,7 +20,7 @@ use crate::gpu::pass::{FullscreenDesc, fullscreen};
 const LAYERS: u32 = 2;
 const LAMPS: usize = 2;
 
-/// An array texture that passes draw into layer by layer.
+/// An observer's air and, beside or below it, the sky: an array texture that passes draw into layer by layer.
 struct Layered {
     texture: wgpu::Texture,
     whole: wgpu::TextureView,
@@ -29,8 +28,8 @@ struct Layered {
 }
 
 impl Layered {
-    fn new(device: &Device, label: &str, size: (u32, u32)) -> Self {
-        let texture = table_texture(device, label, size, LAYERS * LAMPS as u32);
+    fn new(device: &Device, settings: &SkySettings) -> Self {
+        let texture = table_texture(device, "sky of an observer", settings.observer_size(), LAYERS * LAMPS as u32);
         let view = |dimension, base, count| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
@@ -120,28 +119,21 @@ struct DrawnFor {
 
 /// Tables of which one fades into the other: each is drawn once, and every step lays one over the other.
 struct Fade {
-    /// The sky's and the air's that fade out, and that fade in.
-    first: [Layered; 2],
-    next: [Layered; 2],
+    /// What fades out, and what fades in.
+    first: Layered,
+    next: Layered,
     drawn: [Option<DrawnFor>; LAMPS],
     /// How each layer of both is read.
-    groups: [[Vec<wgpu::BindGroup>; 2]; 2],
+    groups: [Vec<wgpu::BindGroup>; 2],
 }
 
 impl Fade {
     fn new(device: &Device, kit: &Kit) -> Self {
-        let (first, next) = (layered(device, &kit.settings), layered(device, &kit.settings));
+        let (first, next) = (Layered::new(device, &kit.settings), Layered::new(device, &kit.settings));
         let read = |t: &Layered| t.layers.iter().map(|l| kit.fades.group(device, l)).collect();
-        let groups = [&first, &next].map(|tables| tables.each_ref().map(read));
+        let groups = [&first, &next].map(read);
         Self { first, next, drawn: [None; LAMPS], groups }
     }
-}
-
-/// An observer's sky and air.
-fn layered(device: &Device, s: &SkySettings) -> [Layered; 2] {
-    let sky = Layered::new(device, "sky of an observer", (s.sky_azimuths, s.sky_above + s.sky_below));
-    let air_size = (s.air_azimuths * s.air_slices, s.air_above + s.air_below);
-    [sky, Layered::new(device, "air of an observer", air_size)]
 }
 
 /// Tables follow a sun that has moved by so much, rad; in frames that have other tables to pay, by so much.
@@ -153,8 +145,7 @@ const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 pub struct SkyVolume {
     device: Arc<Device>,
     kit: Arc<Kit>,
-    sky: Layered,
-    air: Layered,
+    tables: Layered,
     /// By lamp: of the sky, and of the air.
     observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
     observers: [[wgpu::Buffer; 2]; LAMPS],
@@ -162,8 +153,6 @@ pub struct SkyVolume {
     view_group: wgpu::BindGroup,
     /// The tables' light, which the group holds.
     light: wgpu::TextureView,
-    /// Whose sources the group holds, where pixels march through them.
-    marched: Option<Arc<TableSet>>,
     drawn: [Option<DrawnFor>; LAMPS],
     /// Made when first something fades in.
     fade: Option<Box<Fade>>,
@@ -177,32 +166,27 @@ impl SkyVolume {
     /// GPU faults.
     pub fn new(tables: &SkyTables) -> Result<Self> {
         let (device, kit) = (tables.device.clone(), tables.kit().clone());
-        let s = *tables.settings();
-        let [sky, air] = layered(&device, &s);
+        let observed = Layered::new(&device, &kit.settings);
         let zero = bytes_of(&ObserverUniform::zeroed()).to_vec();
         let observers = [(); LAMPS].map(|_| [(); 2].map(|_| uniform_buffer(&device, "sky observer", &zero)));
         let group = |b: &wgpu::Buffer| bind(&device, &kit.observer_layouts.observer, &[b.as_entire_binding()]);
         let observer_groups = observers.each_ref().map(|of_lamp| of_lamp.each_ref().map(group));
         let written = ViewUniform::zeroed();
         let view = uniform_buffer(&device, "sky view", bytes_of(&written));
-        let textures = [&sky.whole, &air.whole, &tables.light.view, &kit.nothing.view];
-        let view_group = view_group(&kit, &view, textures);
+        let view_group = view_group(&kit, &view, [&observed.whole, &tables.light.view]);
         device.check_made()?;
-        let (marched, drawn, fade) = (None, [None; LAMPS], None);
         let light = tables.light.view.clone();
         Ok(Self {
             device,
             kit,
-            sky,
-            air,
+            tables: observed,
             observer_groups,
             observers,
             view,
             view_group,
             light,
-            marched,
-            drawn,
-            fade,
+            drawn: [None; LAMPS],
+            fade: None,
             written,
         })
     }
@@ -225,8 +209,7 @@ impl SkyVolume {
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
     pub fn view_layout(device: &Device) -> wgpu::BindGroupLayout {
         use Slot::{Filtered, FilteredArray, Sampler};
-        let slots = [Slot::Uniform(0), FilteredArray, FilteredArray, Filtered, Filtered, Sampler];
-        layout(device, "sky view", &slots)
+        layout(device, "sky view", &[Slot::Uniform(0), FilteredArray, Filtered, Sampler])
     }
 
     /// The layout that this volume's group was made with.
@@ -234,7 +217,7 @@ impl SkyVolume {
         &self.kit.observer_layouts.view
     }
 
-    /// Group 1 of every shader that includes `sky/lookup.wgsl`. Ask again after every [`SkyVolume::prepare`].
+    /// Group 1 of every shader that includes `sky/lookup.wgsl`.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.view_group
     }
@@ -251,7 +234,6 @@ impl SkyVolume {
         observer: &Observer,
     ) -> Result<bool> {
         observer.check()?;
-        self.follow_sources(tables);
         let air = tables.air();
         let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
         // Lamps that matter, and the altitude that all their tables were drawn for.
@@ -340,7 +322,7 @@ impl SkyVolume {
             }
             if share > 0.0 && d.over != Some((next.id, share)) {
                 if let (None, Some(fade)) = (d.over, &self.fade) {
-                    [&self.sky, &self.air].into_iter().zip(&fade.first).for_each(|(t, to)| t.copy(encoder, i, to));
+                    self.tables.copy(encoder, i, &fade.first);
                 }
                 self.lay_over(encoder, i, share);
                 drawn = true;
@@ -369,24 +351,9 @@ impl SkyVolume {
     fn lay_over(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
         let Some(fade) = &self.fade else { return };
         let [first, next] = &fade.groups;
-        for (part, target) in [&self.sky, &self.air].into_iter().enumerate() {
-            for k in LAYERS as usize * i..LAYERS as usize * (i + 1) {
-                self.kit.fades.between(encoder, &target.layers[k], [&first[part][k], &next[part][k]], share);
-            }
+        for k in LAYERS as usize * i..LAYERS as usize * (i + 1) {
+            self.kit.fades.between(encoder, &self.tables.layers[k], [&first[k], &next[k]], share);
         }
-    }
-
-    /// Where every pixel marches, it reads the sources of the planet that is shown.
-    fn follow_sources(&mut self, tables: &SkyTables) {
-        let Some(shown) = tables.shown() else { return };
-        let same = self.marched.as_ref().is_some_and(|m| Arc::ptr_eq(m, shown));
-        if self.kit.settings.model != SkyModel::BruteForce || same {
-            return;
-        }
-        let sources = &shown.result(Name::Sources).view;
-        let textures = [&self.sky.whole, &self.air.whole, &tables.light.view, sources];
-        self.view_group = view_group(&self.kit, &self.view, textures);
-        self.marched = Some(shown.clone());
     }
 
     /// Draws lamp `i`'s tables of a planet's, for looking up or for laying over those.
@@ -395,45 +362,45 @@ impl SkyVolume {
             return Ok(());
         }
         let passes = self.kit.observer_passes()?;
-        let targets = if is_next {
+        let target = if is_next {
             let fade = self.fade.get_or_insert_with(|| Box::new(Fade::new(&self.device, &self.kit)));
             fade.drawn[i] = self.drawn[i].map(|d| DrawnFor { set: set.id, over: None, ..d });
-            fade.next.each_ref()
+            &fade.next
         } else {
-            [&self.sky, &self.air]
+            &self.tables
         };
+        let layer = |k: usize| {
+            Some(wgpu::RenderPassColorAttachment {
+                view: &target.layers[LAYERS as usize * i + k],
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })
+        };
+        let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("sky of an observer"),
+            color_attachments: &[layer(0), layer(1)],
+            ..Default::default()
+        });
+        let s = &self.kit.settings;
+        let places = [(s.sky_corner(), s.sky_size()), ((0, 0), s.air_size())];
         let drawn = [&passes.sky, &passes.air].into_iter().zip(&self.observer_groups[i]);
-        for ((pipeline, group), target) in drawn.zip(targets) {
-            let layer = |k: usize| {
-                Some(wgpu::RenderPassColorAttachment {
-                    view: &target.layers[LAYERS as usize * i + k],
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })
-            };
-            let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("sky of an observer"),
-                color_attachments: &[layer(0), layer(1)],
-                ..Default::default()
-            });
+        for ((pipeline, group), (corner, size)) in drawn.zip(places) {
+            let [x, y, width, height] = [corner.0, corner.1, size.0, size.1].map(|v| v as f32);
             recorded.set_pipeline(pipeline);
             recorded.set_bind_group(0, &set.observer_group, &[]);
             recorded.set_bind_group(1, group, &[]);
+            recorded.set_viewport(x, y, width, height, 0.0, 1.0);
             recorded.draw(0..3, 0..1);
         }
         Ok(())
     }
 }
 
-/// What shaders look up: the observer's sky and air, the planet's light, and the sources where pixels march.
-fn view_group(kit: &Kit, view: &wgpu::Buffer, textures: [&wgpu::TextureView; 4]) -> wgpu::BindGroup {
-    let [sky, air, light, sources] = textures.map(tex);
+/// What shaders look up: the observer's sky and air, and the planet's light.
+fn view_group(kit: &Kit, view: &wgpu::Buffer, [tables, light]: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
     let sampler = wgpu::BindingResource::Sampler(&kit.builder.sampler);
-    bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), sky, air, light, sources, sampler])
+    bind(&kit.device, &kit.observer_layouts.view, &[view.as_entire_binding(), tex(tables), tex(light), sampler])
 }
 
 fn pipeline(
