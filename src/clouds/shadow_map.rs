@@ -27,7 +27,7 @@ const TOLD: [f64; 2] = [LOWEST, 0.07];
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
 /// What the map is made of.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct Standing {
     time_s: f64,
     to_light: DVec3,
@@ -43,6 +43,8 @@ pub(super) struct ShadowMap {
     pipeline: wgpu::RenderPipeline,
     standing: Option<Standing>,
     row: u32,
+    /// Rows made since anything changed: with all of them made there is nothing left to do.
+    made: u32,
 }
 
 /// What the map is made of for a frame, how it lies, and where the camera stands in it.
@@ -110,6 +112,7 @@ impl ShadowMap {
             layout,
             standing: None,
             row: 0,
+            made: 0,
         })
     }
 
@@ -127,10 +130,15 @@ impl ShadowMap {
         is_pure: bool,
     ) {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+        let rests = self.standing == Some(here);
+        if rests && self.made >= TEXELS {
+            return;
+        }
         let holds = self.standing.is_some_and(|b| !is_pure && !here.leaps_from(&b));
         self.standing = Some(here);
         let (first, rows) = if holds { (self.row, ROWS) } else { (0, TEXELS) };
         self.row = (first + rows) % TEXELS;
+        self.made = if rests && holds { self.made + rows } else { rows };
         let solid = tables.solid.view();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadows of clouds"),
