@@ -2756,8 +2756,8 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  *
  * These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
  * simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
- * the host has placed stands there at all times. Only wk_context_get_ambient reads the sky's tables, and it answers
- * for the present alone. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
+ * the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the sky's
+ * tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
  * cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
  * value.
  *
@@ -2969,14 +2969,41 @@ wk_status wk_context_get_between_at(const wk_context *context,
                                     uint32_t between_size);
 
 /**
+ * Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
+ * north, up) at the place, of length 1 within 0.001. There the air, fog, rain and snow before it leave 5 % of the light of 550 nm, and
+ * so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+ */
+WK_API
+wk_status wk_context_get_visibility_at(const wk_context *context,
+                                       const double (*position_m)[3],
+                                       const double (*direction)[3],
+                                       double time_s,
+                                       double *out_visibility_m);
+
+/**
  * Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
  * done so yet, and waits for the GPU once after every change of the air.
  * Thread: as wk_view_record.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
  */
 WK_API
 wk_status wk_context_get_ambient(wk_context *context,
                                  const double (*position_m)[3],
                                  wk_ambient *out_ambient);
+
+/**
+ * As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show; how bright all
+ * of it is, and clouds and fog, are those of `time_s`.
+ * Thread: as wk_view_record.
+ * Errors: as wk_context_get_ambient and wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_ambient_at(wk_context *context,
+                                    const double (*position_m)[3],
+                                    double time_s,
+                                    wk_ambient *out_ambient);
 
 /**
  * Writes the default of every field: the same bytes as `WK_CELESTIAL_INIT`. `struct_size` is `sizeof(wk_celestial)`
@@ -4939,6 +4966,18 @@ typedef struct wk_stars {
 WK_API
 wk_status wk_context_set_stars(wk_context *context,
                                const wk_stars *stars);
+
+/**
+ * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at a simulation time.
+ * It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus infinity where nothing comes through.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_limiting_magnitude_at(const wk_context *context,
+                                               const double (*position_m)[3],
+                                               double time_s,
+                                               double *out_magnitude);
 
 /**
  * Writes the default of every field: the same bytes as `WK_STARS_INIT`. `struct_size` is `sizeof(wk_stars)`

@@ -2,8 +2,8 @@
 //!
 //! These answer at any place of the host's world, for the present or (functions that end in _at) for any past or future
 //! simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or moon that
-//! the host has placed stands there at all times. Only wk_context_get_ambient reads the sky's tables, and it answers
-//! for the present alone. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
+//! the host has placed stands there at all times. Only wk_context_get_ambient and wk_context_get_ambient_at read the sky's
+//! tables. Directions are unit vectors (east, north, up) at the place asked for. Light is in lux and
 //! cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722) is the photometric
 //! value.
 //!
@@ -391,22 +391,80 @@ unsafe fn way(
     })
 }
 
+/// Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
+/// north, up) at the place, of length 1 within 0.001. There the air, fog, rain and snow before it leave 5 % of the light of 550 nm, and
+/// so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_visibility_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    direction: *const [f64; 3],
+    time_s: f64,
+    out_visibility_m: *mut f64,
+) -> wk_status {
+    guard("wk_context_get_visibility_at", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let place = input::out("out_visibility_m", out_visibility_m)?;
+        // SAFETY: the caller's promises.
+        let [at, toward] = unsafe { [position("position_m", position_m)?, position("direction", direction)?] };
+        let context = object.read();
+        let [at, toward] = [at, toward].map(DVec3::from_array);
+        let seen = context.visibility_toward(at, toward, time_s).map_err(|e| e.renamed("position", "position_m"))?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(seen) };
+        Ok(Status::Ok)
+    })
+}
+
 /// Gets the sky's light on surfaces of any slope at a place. It reads the sky's tables: it builds them if no frame has
 /// done so yet, and waits for the GPU once after every change of the air.
 /// Thread: as wk_view_record.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient(
     context: *mut wk_context,
     position_m: *const [f64; 3],
     out_ambient: *mut wk_ambient,
 ) -> wk_status {
-    guard("wk_context_get_ambient", |call| {
+    // SAFETY: the caller's promises are the same.
+    unsafe { ambient("wk_context_get_ambient", context, position_m, None, out_ambient) }
+}
+
+/// As wk_context_get_ambient, at a simulation time. The clear sky's pattern is that of the air that the tables show; how bright all
+/// of it is, and clouds and fog, are those of `time_s`.
+/// Thread: as wk_view_record.
+/// Errors: as wk_context_get_ambient and wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_ambient_at(
+    context: *mut wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_ambient: *mut wk_ambient,
+) -> wk_status {
+    // SAFETY: the caller's promises are the same.
+    unsafe { ambient("wk_context_get_ambient_at", context, position_m, Some(time_s), out_ambient) }
+}
+
+/// # Safety
+/// The position is NULL or three numbers, the answer NULL or as large as it says.
+unsafe fn ambient(
+    function: &'static str,
+    context: *mut wk_context,
+    position_m: *const [f64; 3],
+    time_s: Option<f64>,
+    out_ambient: *mut wk_ambient,
+) -> wk_status {
+    guard(function, |call| {
         let object = call.get::<ContextObject>("context", context)?;
         // SAFETY: the caller's promises.
         let (at, place) =
             unsafe { (position("position_m", position_m)?, layout::out_struct(&"out_ambient", out_ambient)?) };
         object.cell.drain();
-        let sh = object.read().ambient_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", "position_m"))?;
+        let context = object.read();
+        let time_s = time_or_now(&context, time_s)?;
+        let sh = context.ambient_at(DVec3::from_array(at), time_s).map_err(|e| e.renamed("position", "position_m"))?;
         let mut answer = wk_ambient::INIT;
         for (to, from) in answer.sh9.iter_mut().zip(sh.as_flattened()) {
             *to = f64::from(*from);

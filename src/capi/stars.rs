@@ -6,10 +6,11 @@
 
 use std::{ffi::c_void, ptr::null};
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::{
     boundary::guard,
+    conditions::position,
     context::{ContextObject, wk_context},
     input::{self, Named},
     layout::{self, init_struct, struct_size},
@@ -111,6 +112,30 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
         // SAFETY: the caller's promise about `stars`.
         let settings = if stars.is_null() { StarSettings::default() } else { unsafe { settings(stars)? } };
         object.write().set_stars(settings)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at a simulation time.
+/// It falls with the sky's light, and with what air, fog and clouds take of the star's. Minus infinity where nothing comes through.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_limiting_magnitude_at(
+    context: *const wk_context,
+    position_m: *const [f64; 3],
+    time_s: f64,
+    out_magnitude: *mut f64,
+) -> wk_status {
+    guard("wk_context_get_limiting_magnitude_at", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let place = input::out("out_magnitude", out_magnitude)?;
+        // SAFETY: the caller's promise.
+        let at = DVec3::from_array(unsafe { position("position_m", position_m)? });
+        let named = |e: Error| e.renamed("position", "position_m");
+        let magnitude = object.read().limiting_magnitude(at, time_s).map_err(named)?;
+        // SAFETY: `place` was checked and is the caller's.
+        unsafe { place.write(magnitude) };
         Ok(Status::Ok)
     })
 }

@@ -1,16 +1,19 @@
 //! Air, sky and fog by their names: what lies between two places, the sky's light and its tables, the fog laws.
 //!
 //! Queries are closed forms in f64 that need no device and no frame, but for [`Context::ambient_at`], which looks into the sky's
-//! tables and so answers for the present. Positions are in the host's world.
+//! tables. Positions are in the host's world.
 
 use std::sync::MutexGuard;
 
 use glam::DVec3;
 
 use crate::{
-    context::{Context, Light},
+    context::{Context, Light, Scene},
     error::{Error, Result, Status},
-    fog::{Between, FogLayer, Law, Viewpoint, fog_layer, koschmieder_visibility_m, transmittance_between},
+    fog::{
+        Between, CONTRAST_THRESHOLD, FogLayer, Law, Viewpoint, fog_layer, koschmieder_visibility_m,
+        transmittance_between,
+    },
     sky::{
         FollowedSky, LightTable, Planet, Sh9, SkyLibrary, SkySettings,
         reference::{medium::Medium, ray::Ray},
@@ -33,6 +36,44 @@ impl Context {
         if distance < 1e-3 {
             return Err(Error::range("to", "at least a millimetre from the other end", to));
         }
+        let through = self.through(&scene, from, offset, time_s)?;
+        // The logarithm of 1 has a sign of its own.
+        let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
+        Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
+    }
+
+    /// Slant visual range: how far a black object is seen from `position` along `direction`, a unit vector (east, north, up) there, at
+    /// simulation time `time_s`, m. Its contrast with what lies behind it falls to 5 % where [`Context::between`] leaves 5 % of the light
+    /// of 550 nm: by air, fog, rain, snow and rain areas. Infinite where more is left at the end of the air or on the planet's ground.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place or the direction no unit vector; for times as
+    /// [`Context::conditions_at`].
+    pub fn visibility_toward(&self, position: DVec3, direction: DVec3, time_s: f64) -> Result<f64> {
+        let scene = self.scene_at(position, time_s)?;
+        let unit = unit_vector("direction", direction)?;
+        let medium = Medium::of(&scene.planet);
+        let Some((_, end, _)) = Ray::new(&medium, scene.place.altitude_m, unit.z).in_air(&medium) else {
+            return Ok(f64::INFINITY);
+        };
+        let is_seen = |d: f64| Ok(self.through(&scene, position, unit * d, time_s)?[1] > CONTRAST_THRESHOLD);
+        let (mut near, mut far) = (0.0, 1f64.min(end));
+        while is_seen(far)? {
+            if far >= end {
+                return Ok(f64::INFINITY);
+            }
+            (near, far) = (far, (2.0 * far).min(end));
+        }
+        while far - near > 1e-9 * far {
+            let middle = 0.5 * (near + far);
+            if is_seen(middle)? { near = middle } else { far = middle }
+        }
+        Ok(far)
+    }
+
+    /// Share of light per channel that is left over `offset` metres (east, north, up) from a scene's place.
+    fn through(&self, scene: &Scene, from: DVec3, offset: DVec3, time_s: f64) -> Result<[f64; 3]> {
+        let distance = offset.length();
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
@@ -47,21 +88,20 @@ impl Context {
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
         let areas = (-self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
-        through = through.map(|t| (t * areas).min(1.0));
-        // The logarithm of 1 has a sign of its own.
-        let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
-        Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
+        Ok(through.map(|t| (t * areas).min(1.0)))
     }
 
-    /// The sky's light on surfaces of any slope at `position`, now: nine spherical harmonics of radiance, cd/m^2 a channel, in
-    /// (east, north, up) of the place, the lit ground as the lower half. Clouds dim and whiten it.
+    /// The sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical harmonics of radiance, cd/m^2 a
+    /// channel, in (east, north, up) of the place, the lit ground as the lower half. Clouds dim and whiten it.
     ///
-    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the air.
+    /// Reads the sky's tables: builds them first if no frame did, and waits for the GPU once after every change of the air. The clear
+    /// sky's pattern is that of the air that the tables show; how bright all of it is, and clouds and fog, are those of `time_s`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is no place; [`crate::Status::DeviceLost`] or a GPU fault.
-    pub fn ambient_at(&self, position: DVec3) -> Result<Sh9> {
-        let scene = self.scene_at(position, self.world.time_s)?;
+    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`];
+    /// [`crate::Status::DeviceLost`] or a GPU fault.
+    pub fn ambient_at(&self, position: DVec3, time_s: f64) -> Result<Sh9> {
+        let scene = self.scene_at(position, time_s)?;
         let table = self.light_table(&scene.planet)?;
         let clear = |light: &Light| -> (Sh9, f32) {
             let sh = table.sh9(scene.place.altitude_m, light.direction.to_array());
@@ -165,6 +205,18 @@ impl Context {
         let _entered = device.enter()?;
         self.sky()?.light_table(&device, planet)
     }
+}
+
+/// A direction's length may be so far from 1.
+const LENGTH_OFF: f64 = 1e-3;
+
+/// A host's direction, made exactly as long as 1.
+pub(super) fn unit_vector(name: &str, direction: DVec3) -> Result<DVec3> {
+    let length = direction.length();
+    if (length - 1.0).abs() < LENGTH_OFF {
+        return Ok(direction / length);
+    }
+    Err(Error::range(name, "a unit vector (east, north, up)", direction))
 }
 
 /// Adds a sky of the same radiance `u` everywhere above the horizon and a ground of albedo `a` that it lights.

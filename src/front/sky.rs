@@ -5,9 +5,10 @@ use std::{cell::OnceCell, sync::Arc};
 
 use glam::DVec3;
 
+use super::air::unit_vector;
 use crate::{
     context::{Context, Light, Scene},
-    error::{Error, Result},
+    error::Result,
     fog::{FogModel, reference::fog_along},
     scene::depth::RANGE_SKY_M,
     sky::{Sightline, SolvedSkies, SolvedSky},
@@ -19,8 +20,6 @@ use crate::{
 const NEAR_FOG_M: f64 = 50.0;
 /// Irradiance of level ground under an overcast sky over pi times its zenith's luminance (Moon and Spencer 1942).
 const UNDER_DECK: f64 = 7.0 / 9.0;
-/// A direction's length may be so far from 1.
-const LENGTH_OFF: f64 = 1e-3;
 
 impl Context {
     /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time `time_s`: cd/m^2
@@ -36,13 +35,7 @@ impl Context {
     /// [`Context::conditions_at`].
     pub fn sky_radiance(&self, position: DVec3, directions: &[DVec3], time_s: f64) -> Result<Vec<[f64; 3]>> {
         let scene = self.scene_at(position, time_s)?;
-        let toward = |i: usize| {
-            let length = directions[i].length();
-            if (length - 1.0).abs() < LENGTH_OFF {
-                return Ok(directions[i] / length);
-            }
-            Err(Error::range(&format!("directions[{i}]"), "a unit vector (east, north, up)", directions[i]))
-        };
+        let toward = |i: usize| unit_vector(&format!("directions[{i}]"), directions[i]);
         let units = (0..directions.len()).map(toward).collect::<Result<Vec<_>>>()?;
         if units.is_empty() {
             return Ok(Vec::new());

@@ -1,9 +1,15 @@
 //! The stars by their name.
 
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
 use crate::{
     context::Context,
     error::Result,
-    stars::{HeldStars, StarSettings},
+    light::luminance,
+    stars::{HeldStars, LAND_ALBEDO, StarSettings, limits::limiting_magnitude},
+    world::zenith_depth,
 };
 
 impl Context {
@@ -17,6 +23,23 @@ impl Context {
         self.held.stars = HeldStars { settings };
         self.world.night = self.held.stars.night();
         Ok(())
+    }
+
+    /// Magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from `position` at simulation time
+    /// `time_s`: what [`limiting_magnitude`] sees against the sky's mean luminance, by which pictures leave stars out too, less what
+    /// air, fog and clouds take of the star's light at 550 nm. Negative infinity where nothing comes through.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
+    pub fn limiting_magnitude(&self, position: DVec3, time_s: f64) -> Result<f64> {
+        let scene = self.scene_at(position, time_s)?;
+        let altitude_m = scene.place.altitude_m;
+        let fog = scene.fog_model(self.fog_law(), self.world.seed, self.world.set.planet.bottom_radius_m)?;
+        let depth = zenith_depth(&scene.planet, altitude_m.max(0.0))[1] + fog.depth_above(altitude_m);
+        let clouds = scene.conditions.cloud_light_at(1.0, LAND_ALBEDO, altitude_m.max(0.0));
+        let through = clouds.direct.clamp(0.0, 1.0) * (-depth).exp();
+        let at_eye = limiting_magnitude(luminance(&scene.above_fog.sky_lux) / PI);
+        Ok(at_eye + 2.5 * through.log10())
     }
 
     /// How the night sky is drawn.

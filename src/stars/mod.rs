@@ -80,4 +80,4 @@ pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
-pub(crate) use view::{STARS, StarsView};
+pub(crate) use view::{LAND_ALBEDO, STARS, StarsView};

@@ -37,7 +37,7 @@ pub(super) const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
 /// Least share of the night's light that clouds and fog let through to be drawn.
 pub(super) const LEAST_THROUGH: f64 = 1e-3;
 /// Reflectance of the land under the clouds, with which light goes back and forth; of what passes straight it changes nothing.
-const LAND_ALBEDO: f64 = 0.2;
+pub(crate) const LAND_ALBEDO: f64 = 0.2;
 /// Stars whose brightest pixel is less than this share of a step of the display are not drawn.
 const SHARE_OF_STEP: f64 = 0.25;
 

@@ -156,6 +156,15 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_ambient", "context", false, |h| unsafe {
             wk_context_get_ambient(h.cast(), null(), null_mut())
         }),
+        case("wk_context_get_ambient_at", "context", false, |h| unsafe {
+            wk_context_get_ambient_at(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_visibility_at", "context", false, |h| unsafe {
+            wk_context_get_visibility_at(h.cast(), null(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_limiting_magnitude_at", "context", false, |h| unsafe {
+            wk_context_get_limiting_magnitude_at(h.cast(), null(), 0.0, null_mut())
+        }),
         case("wk_context_get_frame_light", "context", false, |h| unsafe {
             wk_context_get_frame_light(h.cast(), null(), null_mut())
         }),

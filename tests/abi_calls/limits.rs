@@ -56,6 +56,11 @@ fn ask(world: &World, at: [f64; 3]) -> Vec<(&'static str, wk_status, String)> {
         take("position_m", wk_context_get_sky_radiance_at(context, &at, &up, 1, 24, 0.0, out, size));
         let mut ambient = init::<wk_ambient>("wk_ambient");
         take("position_m", wk_context_get_ambient(context, &at, &mut ambient));
+        take("position_m", wk_context_get_ambient_at(context, &at, 0.0, &mut ambient));
+        let (mut visibility_m, mut magnitude) = (0.0, 0.0);
+        take("position_m", wk_context_get_visibility_at(context, &at, &up, 0.0, &mut visibility_m));
+        take("position_m", wk_context_get_limiting_magnitude_at(context, &at, 0.0, &mut magnitude));
+        assert!(visibility_m >= 0.0 && magnitude < 30.0, "{at:?}: {visibility_m} {magnitude}");
         let frame = wk_frame { frame_id: next_frame(), position_m: at, ..init("wk_frame") };
         take("frame.position_m", wk_view_record(world.view, &frame, WK_STAGE_PREPARE));
         let finite = |values: &[f64]| assert!(values.iter().all(|v| v.is_finite()), "{at:?}: {values:?}");

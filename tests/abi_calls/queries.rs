@@ -4,7 +4,7 @@ use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, context::*, fog_law::*, frame::*, query::*, radiance::*, status::*, timeline::*, view::*,
+    conditions::*, context::*, fog_law::*, frame::*, query::*, radiance::*, stars::*, status::*, timeline::*, view::*,
     weather::*, weather_kinds::*,
 };
 
@@ -277,6 +277,44 @@ fn ambient_light_is_asked_for_with_a_place() {
         assert_eq!(wk_context_get_ambient(world.context, &EYE, &mut ambient), WK_OK, "{}", message());
     }
     assert!(ambient.sh9.iter().all(|v| v.is_finite()));
+    let mut then = init::<wk_ambient>("wk_ambient");
+    // SAFETY: live pointers.
+    unsafe {
+        let now = 0.0;
+        assert_eq!(wk_context_get_ambient_at(world.context, &EYE, now, &mut then), WK_OK, "{}", message());
+        assert_eq!(then.sh9, ambient.sh9);
+        // Twelve hours later.
+        assert_eq!(wk_context_get_ambient_at(world.context, &EYE, now + 43_200.0, &mut then), WK_OK, "{}", message());
+        refused(wk_context_get_ambient_at(world.context, &EYE, f64::NAN, &mut then), "time_s must be");
+    }
+    assert_ne!(then.sh9, ambient.sh9);
+}
+
+#[test]
+fn visibility_and_faintest_star_are_asked_for_with_a_place_and_a_time() {
+    let world = World::new();
+    let (context, level, mut out) = (world.context, [0.6, 0.8, 0.0], -1.0);
+    // SAFETY: live pointers.
+    unsafe {
+        refused(wk_context_get_visibility_at(context, null(), &level, 0.0, &mut out), "position_m must not be NULL");
+        refused(wk_context_get_visibility_at(context, &EYE, null(), 0.0, &mut out), "direction must not be NULL");
+        refused(
+            wk_context_get_visibility_at(context, &EYE, &level, 0.0, null_mut()),
+            "out_visibility_m must not be NULL",
+        );
+        refused(
+            wk_context_get_visibility_at(context, &EYE, &[1.0; 3], 0.0, &mut out),
+            "direction must be a unit vector",
+        );
+        refused(wk_context_get_visibility_at(context, &EYE, &level, f64::NAN, &mut out), "time_s must be");
+        refused(wk_context_get_limiting_magnitude_at(context, null(), 0.0, &mut out), "position_m must not be NULL");
+        refused(wk_context_get_limiting_magnitude_at(context, &EYE, 0.0, null_mut()), "out_magnitude must not be NULL");
+        assert_eq!(out, -1.0, "nothing was written");
+        assert_eq!(wk_context_get_visibility_at(context, &EYE, &level, 0.0, &mut out), WK_OK, "{}", message());
+        assert!(out > 100.0, "{out}");
+        assert_eq!(wk_context_get_limiting_magnitude_at(context, &EYE, 0.0, &mut out), WK_OK, "{}", message());
+        assert!((-7.0..8.0).contains(&out), "{out}");
+    }
 }
 
 #[test]

@@ -158,6 +158,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_ambient", "out_ambient", false, move |p| unsafe {
             wk_context_get_ambient(context, &ORIGIN, p.cast())
         }),
+        case("wk_ambient", "out_ambient", false, move |p| unsafe {
+            wk_context_get_ambient_at(context, &ORIGIN, 0.0, p.cast())
+        }),
         case("wk_environment", "out_environment", false, move |p| unsafe { wk_view_get_environment(view, p.cast()) }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())

@@ -12,6 +12,8 @@ mod host;
 mod lookup;
 mod measure;
 mod night;
+#[path = "../support/opaque.rs"]
+mod opaque;
 mod queries;
 mod radiance;
 mod refined;

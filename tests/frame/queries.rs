@@ -3,7 +3,7 @@
 use glam::DVec3;
 use welkin::{
     context::{ContextDesc, GivenDirection},
-    weather::{Fog, FogKind, Lofted, LoftedKind, Weather},
+    weather::{Fog, FogKind, Lofted, LoftedKind, Precipitation, PrecipitationKind, Weather},
 };
 
 use crate::host::Host;
@@ -27,13 +27,74 @@ fn visibility_between_two_points_is_the_reported_one() {
     }
 }
 
+/// Against a sum of the optical depths of short pieces of the way, each asked for alone.
+#[test]
+fn a_black_object_is_seen_as_far_as_a_plain_sum_of_the_way_leaves_5_percent() {
+    let mut host = host();
+    let mist = Weather { visibility_m: 2000.0, fog: Fog::of(FogKind::Mist), ..Weather::default() };
+    let shallow = Weather { visibility_m: 9000.0, fog: Fog::of(FogKind::Shallow), ..Weather::default() };
+    let inside = Weather { fog: Fog { visibility_inside_m: Some(150.0), top_m: Some(60.0), ..shallow.fog }, ..shallow };
+    let rain = Weather {
+        visibility_m: 1500.0,
+        precipitation: Precipitation { kind: PrecipitationKind::Rain, rate_mm_h: 20.0, ..Default::default() },
+        ..Weather::default()
+    };
+    for (i, weather) in [mist, inside, rain].into_iter().enumerate() {
+        let t = i as f64;
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        host.context.update(t).unwrap();
+        for up in [0.0, 0.05, 0.4, 1.0, -0.3] {
+            let from = DVec3::new(10.0, -20.0, if up < 0.0 { 300.0 } else { 1.5 });
+            let unit = DVec3::new(0.0, f64::sqrt(1.0 - up * up), up);
+            let seen = host.context.visibility_toward(from, unit, t).unwrap();
+            // Pieces of 1/200 of the way, or of the 8 km in which nothing hides the object.
+            let whole = seen.min(8000.0);
+            let piece = |k: i32| {
+                let at = |k: i32| from + unit * (whole * f64::from(k) / 200.0);
+                -host.context.between(at(k), at(k + 1), t).unwrap().transmittance[1].ln()
+            };
+            // Downwards the ground may come first.
+            let pieces = if up < 0.0 { (200.0 * (300.0 / 0.3 / whole).min(1.0)) as i32 } else { 200 };
+            let depth: f64 = (0..pieces).map(piece).sum();
+            let left = (-depth).exp();
+            let is_right = if seen.is_finite() { (depth / 3.0 - 1.0).abs() < 0.02 } else { left > 0.05 };
+            assert!(is_right, "{i} {up}: {seen} m, {left} left of it");
+        }
+        let level = host.context.visibility_toward(DVec3::Z * 1.5, DVec3::Y, t).unwrap();
+        let stated = [2000.0, 150.0, 1500.0][i];
+        assert!((level / stated - 1.0).abs() < 0.05, "{i}: {level} of {stated}");
+        let slanted = host.context.visibility_toward(DVec3::Z, DVec3::Y * 1.1, t).unwrap_err().to_string();
+        assert!(slanted.starts_with("direction must be a unit vector"), "{slanted}");
+    }
+}
+
+/// A moonless night in common air shows stars to magnitude 5.5, the middle of the day none but Venus; fog takes two magnitudes or more.
+#[test]
+fn the_faintest_star_follows_sky_and_clouds() {
+    let mut host = host();
+    let limit = |host: &mut Host, weather: &Weather, elevation_deg: f64| {
+        host.context.set_weather(weather, 0.0, 0.0).unwrap();
+        host.context.set_sun(Some(GivenDirection { azimuth_deg: 90.0, elevation_deg })).unwrap();
+        host.context.set_moon(Some(GivenDirection { azimuth_deg: 90.0, elevation_deg: -60.0 })).unwrap();
+        host.context.limiting_magnitude(DVec3::ZERO, 0.0).unwrap()
+    };
+    let clear = Weather::default();
+    let [night, dusk, day] = [-40.0, -8.0, 50.0].map(|e| limit(&mut host, &clear, e));
+    assert!((5.2..6.5).contains(&night), "{night}");
+    assert!((-5.0..-2.0).contains(&day), "{day}");
+    assert!(day + 3.0 < dusk && dusk + 1.0 < night, "{day} {dusk} {night}");
+    let hidden = Weather { visibility_m: 100.0, fog: Fog::of(FogKind::Fog), ..Weather::default() };
+    let fog = limit(&mut host, &hidden, -40.0);
+    assert!(fog + 2.0 < night, "{fog} in fog, {night} without");
+}
+
 #[test]
 fn ambient_light_agrees_with_the_light_on_level_ground() {
     let mut host = host();
     for elevation_deg in [60.0, 20.0] {
         host.context.set_sun(Some(GivenDirection { azimuth_deg: 90.0, elevation_deg })).unwrap();
         let light = host.context.light_at(DVec3::ZERO, 0.0).unwrap();
-        let sh = host.context.ambient_at(DVec3::ZERO).unwrap();
+        let sh = host.context.ambient_at(DVec3::ZERO, 0.0).unwrap();
         let pi = std::f32::consts::PI;
         let level = |up: f32| {
             pi * sh[0][1] * 0.282_095

@@ -8,7 +8,10 @@ use welkin::{
     weather::{Precipitation, PrecipitationKind, Weather},
 };
 
-use crate::host::{Host, SIZE, camera, texture};
+use crate::{
+    host::{Host, SIZE, camera, texture},
+    opaque::{Opaque, draw_opaque},
+};
 
 pub const EXPOSURE: f64 = 2e-4;
 const WALL_DEPTH: f32 = 5e-5; // 2 km in front of the camera's 0.1 m near plane
@@ -130,24 +133,10 @@ fn every_sample_of_a_multisampled_host_is_composed_by_its_own_depth() {
     let color = texture(&host.device, wgpu::TextureFormat::Rgba16Float, 4);
     let depth = texture(&host.device, wgpu::TextureFormat::Depth32Float, 4);
     let mut multi = Host { color, depth, ..host };
-    let resolved = texture(&multi.device, wgpu::TextureFormat::Rgba16Float, 1);
     let mut pixel = |far: f32| {
         multi.clear([100.0, 100.0, 100.0, 1.0], far);
         multi.record(u64::from(far.to_bits()), Stages::BACKGROUND.with(Stages::MEDIUM)).unwrap();
-        let mut encoder = multi.device.device.create_command_encoder(&Default::default());
-        let (from, to) = (multi.color.create_view(&Default::default()), resolved.create_view(&Default::default()));
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: None,
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &from,
-                depth_slice: None,
-                resolve_target: Some(&to),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        multi.device.submit_and_wait(encoder).unwrap();
-        welkin::gpu::readback::rgba(&multi.device, &resolved).unwrap()[80 * 4]
+        resolve(&multi)[80 * 4]
     };
     let (sky, wall) = (pixel(0.0), pixel(0.01));
     assert!(sky[2] > 500.0, "{sky:?}");
@@ -163,57 +152,9 @@ const EDGE: &str = "
 @fragment fn wall() -> @location(0) vec4<f32> { return vec4(400.0, 400.0, 400.0, 1.0); }
 ";
 
-fn draw_edge(host: &Host, samples: u32) {
-    let device = &host.device.device;
-    let source = wgpu::ShaderSource::Wgsl(EDGE.into());
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: None,
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: None,
-            compilation_options: Default::default(),
-            targets: &[Some(host.color.format().into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    let (color, depth) = (host.color.create_view(&Default::default()), host.depth.create_view(&Default::default()));
-    let mut encoder = device.create_command_encoder(&Default::default());
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &color,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    });
-    pass.set_pipeline(&pipeline);
-    pass.draw(0..3, 0..1);
-    drop(pass);
+fn draw_edge(host: &Host) {
+    let edge = Opaque { shader: EDGE, vertices: 3, passes: wgpu::CompareFunction::Always };
+    let encoder = draw_opaque(&host.device.device, &edge, &host.color, &host.depth);
     host.device.submit_and_wait(encoder).unwrap();
 }
 
@@ -256,7 +197,7 @@ fn a_pixel_at_an_edge_is_the_mean_of_its_samples_composed_one_by_one() {
         let mut shoot = |multi: &mut Host, wall: f64, depth: f32, edge: bool| {
             multi.clear([wall, wall, wall, 1.0], depth);
             if edge {
-                draw_edge(multi, samples);
+                draw_edge(multi);
             }
             let bare = resolve(multi);
             id += 1;

@@ -62,7 +62,7 @@ fn a_lost_device_answers_so_and_a_new_one_works() {
     device.simulate_loss();
     let frame = Frame::new(1, camera(), &color, None);
     assert_eq!(view.record(&lost, &frame, Stages::ALL).unwrap_err().status, welkin::Status::DeviceLost);
-    for error in [view.frame_textures().err(), View::new(&lost).err(), lost.ambient_at(DVec3::ZERO).err()] {
+    for error in [view.frame_textures().err(), View::new(&lost).err(), lost.ambient_at(DVec3::ZERO, 0.0).err()] {
         assert_eq!(error.unwrap().status, welkin::Status::DeviceLost);
     }
     // What needs no device answers on.

@@ -594,6 +594,20 @@ pub const CALLS: &[(&str, Call)] = &[
         let (context, at) = (handle(d, &w.contexts), position(d));
         get("wk_ambient", |p| unsafe { wk_context_get_ambient(context, &at, p.cast()) })
     }),
+    ("wk_context_get_ambient_at", |d, w| {
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        get("wk_ambient", |p| unsafe { wk_context_get_ambient_at(context, &at, time, p.cast()) })
+    }),
+    ("wk_context_get_visibility_at", |d, w| {
+        let (context, at, toward, time) = (handle(d, &w.contexts), position(d), direction(d), w.time(d));
+        let mut out = 0.0;
+        unsafe { wk_context_get_visibility_at(context, &at, &toward, time, &mut out) }.into()
+    }),
+    ("wk_context_get_limiting_magnitude_at", |d, w| {
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        let mut out = 0.0;
+        unsafe { wk_context_get_limiting_magnitude_at(context, &at, time, &mut out) }.into()
+    }),
     ("wk_context_get_ground", |d, w| {
         let (context, at) = (handle(d, &w.contexts), position(d));
         get("wk_ground", |p| unsafe { wk_context_get_ground(context, &at, p.cast()) })

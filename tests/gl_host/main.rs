@@ -17,6 +17,8 @@ mod loss;
 mod marks;
 mod matrix;
 mod memory;
+#[path = "../support/opaque.rs"]
+mod opaque;
 #[path = "../support/opaque_card.rs"]
 mod opaque_card;
 mod own;

@@ -12,6 +12,8 @@ mod images;
 mod loss;
 mod marks;
 mod memory;
+#[path = "../support/opaque.rs"]
+mod opaque;
 #[path = "../support/opaque_card.rs"]
 mod opaque_card;
 mod refusals;
