@@ -1,0 +1,1 @@
+//! Asks the field from outside.
