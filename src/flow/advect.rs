@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::lattice::{Faces, Lattice};
+use super::lattice::{Faces, GHOSTS, Lattice};
 
 /// How velocity is carried, and how a step is split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,27 +20,61 @@ pub enum Scheme {
 
 /// A wind to be carried by, and where it may be looked up.
 pub(super) struct Carrier<'a> {
-    pub lattice: &'a Lattice,
-    pub wind: &'a Faces,
-    /// For each axis, the range of places in cells, or none where it is periodic.
-    pub range: [Option<[f32; 2]>; 3],
+    lattice: &'a Lattice,
+    wind: &'a Faces,
+    /// For each axis, the range of places in cells; where it is periodic, none, and places wrap.
+    range: [Option<[f32; 2]>; 3],
+    /// Offset to the next value along each axis: none along a flat one.
+    next: [usize; 3],
+    is_flat: [bool; 3],
+    per_cell: [f32; 3],
 }
 
-/// The values about a place: where the lowest of them stands, the stride to the others, and how far the place lies between.
+/// The values about a place: where the lowest of them stands, and how far the place lies between them along each axis.
 struct Taps {
     low: usize,
     part: [f32; 3],
 }
 
-impl Carrier<'_> {
-    /// The place itself, or where it leaves the range of places, the nearest in it.
-    fn kept(&self, mut place: [f32; 3]) -> [f32; 3] {
-        for a in self.lattice.axes() {
+/// A place among the values of all components: offset and part along each axis, between faces and between middles of cells.
+struct Between {
+    faces: [(usize, f32); 3],
+    middles: [(usize, f32); 3],
+}
+
+impl Between {
+    #[inline]
+    fn taps(&self, component: usize) -> Taps {
+        let mut taps = Taps { low: 0, part: [0.0; 3] };
+        for a in 0..3 {
+            let (offset, part) = if a == component { self.faces[a] } else { self.middles[a] };
+            taps.low += offset;
+            taps.part[a] = part;
+        }
+        taps
+    }
+}
+
+impl<'a> Carrier<'a> {
+    pub(super) fn new(lattice: &'a Lattice, wind: &'a Faces, range: [Option<[f32; 2]>; 3]) -> Self {
+        let is_flat = [0, 1, 2].map(|a| lattice.is_flat(a));
+        let next = [0, 1, 2].map(|a| if is_flat[a] { 0 } else { lattice.stride[a] });
+        Self { lattice, wind, range, next, is_flat, per_cell: lattice.h.map(|h| 1.0 / h) }
+    }
+
+    /// A place that lies `far` times `way` from another, m; where that leaves the range of places, the nearest in it.
+    #[inline]
+    fn moved(&self, mut place: [f32; 3], way: [f32; 3], far: f32) -> [f32; 3] {
+        for a in 0..3 {
+            if self.is_flat[a] {
+                continue;
+            }
+            let p = place[a] + far * self.per_cell[a] * way[a];
             place[a] = match self.range[a] {
-                Some([low, high]) => place[a].max(low).min(high),
+                Some([low, high]) => p.max(low).min(high),
                 None => {
                     let n = self.lattice.n[a] as f32;
-                    let p = place[a] - n * (place[a] / n).floor();
+                    let p = if (0.0..n).contains(&p) { p } else { p - n * (p / n).floor() };
                     if p < n { p } else { 0.0 }
                 }
             };
@@ -48,35 +82,50 @@ impl Carrier<'_> {
         place
     }
 
-    fn taps(&self, component: usize, place: [f32; 3]) -> Taps {
-        let mut taps = Taps { low: 0, part: [0.0; 3] };
-        for (a, along) in place.into_iter().enumerate() {
-            let (offset, part) = self.lattice.between(component, a, along);
-            taps.low += offset;
-            taps.part[a] = part;
+    #[inline]
+    fn between(&self, place: [f32; 3]) -> Between {
+        let mut between = Between { faces: [(0, 0.0); 3], middles: [(0, 0.0); 3] };
+        for a in 0..3 {
+            if self.is_flat[a] {
+                continue;
+            }
+            let stride = self.lattice.stride[a];
+            let along = place[a] + GHOSTS as f32;
+            let low = along as usize;
+            between.faces[a] = (low * stride, along - low as f32);
+            let along = along - 0.5;
+            let low = along as usize;
+            between.middles[a] = (low * stride, along - low as f32);
         }
-        taps
+        between
     }
 
-    /// Offset to the next value along an axis: none along a flat one.
-    fn next(&self, axis: usize) -> usize {
-        if self.lattice.is_flat(axis) { 0 } else { self.lattice.stride[axis] }
+    #[inline]
+    fn taps(&self, component: usize, place: [f32; 3]) -> Taps {
+        self.between(place).taps(component)
     }
 
+    #[inline]
     /// Linear between the eight values about a place.
     fn linear(&self, values: &[f32], taps: &Taps) -> f32 {
-        let [dx, dy, dz] = [0, 1, 2].map(|a| self.next(a));
+        let [dx, dy, dz] = self.next;
         let [fx, fy, fz] = taps.part;
-        let mix = |a: f32, b: f32, f: f32| a + (b - a) * f;
-        let row = |at: usize| mix(values[at], values[at + dx], fx);
-        let layer = |at: usize| mix(row(at), row(at + dy), fy);
-        let low = layer(taps.low);
-        if dz == 0 { low } else { mix(low, layer(taps.low + dz), fz) }
+        let mut layers = [0.0; 2];
+        for (layer, at) in layers.iter_mut().zip([taps.low, taps.low + dz]) {
+            let low = values[at] + (values[at + dx] - values[at]) * fx;
+            let beside = at + dy;
+            let high = values[beside] + (values[beside + dx] - values[beside]) * fx;
+            *layer = low + (high - low) * fy;
+            if dz == 0 {
+                return *layer;
+            }
+        }
+        layers[0] + (layers[1] - layers[0]) * fz
     }
 
     /// The least and the largest of the eight.
     fn bounds(&self, values: &[f32], taps: &Taps) -> [f32; 2] {
-        let [dx, dy, dz] = [0, 1, 2].map(|a| self.next(a));
+        let [dx, dy, dz] = self.next;
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
         for z in [0, dz] {
             for y in [0, dy] {
@@ -92,7 +141,7 @@ impl Carrier<'_> {
 
     /// Cubic (Lagrange's polynomial through four values) along each axis.
     fn cubic(&self, values: &[f32], taps: &Taps) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|a| (self.next(a), cubic_weights(taps.part[a])));
+        let [x, y, z] = [0, 1, 2].map(|a| (self.next[a], cubic_weights(taps.part[a])));
         let row = |at: usize| match x {
             (0, _) => values[at],
             (d, w) => w[0] * values[at - d] + w[1] * values[at] + w[2] * values[at + d] + w[3] * values[at + 2 * d],
@@ -108,38 +157,38 @@ impl Carrier<'_> {
         }
     }
 
-    /// The wind at a place in cells, m/s.
-    pub(super) fn velocity(&self, place: [f32; 3]) -> Vec3 {
-        let place = self.kept(place);
-        let mut v = Vec3::ZERO;
-        for a in self.lattice.axes() {
-            v[a] = self.linear(&self.wind[a], &self.taps(a, place));
+    /// The wind at a place in cells, m/s; out of range that of the nearest place.
+    pub(super) fn velocity_near(&self, place: [f32; 3]) -> Vec3 {
+        self.velocity(self.moved(place, [0.0; 3], 0.0)).into()
+    }
+
+    #[inline]
+    fn velocity(&self, place: [f32; 3]) -> [f32; 3] {
+        let between = self.between(place);
+        let mut v = [0.0; 3];
+        for a in 0..3 {
+            if !self.is_flat[a] {
+                v[a] = self.linear(&self.wind[a], &between.taps(a));
+            }
         }
         v
     }
 
-    /// The wind in cells a second.
-    fn speed(&self, place: [f32; 3]) -> [f32; 3] {
-        let mut speed = [0.0; 3];
-        for a in self.lattice.axes() {
-            speed[a] = self.linear(&self.wind[a], &self.taps(a, place)) / self.lattice.h[a];
-        }
-        speed
-    }
-
     /// Where air that is at `place` will be after `dt` (was, if negative), along a straight path.
     fn straight(&self, place: [f32; 3], dt: f32) -> [f32; 3] {
-        let v = self.speed(place);
-        self.kept([0, 1, 2].map(|a| place[a] + dt * v[a]))
+        self.moved(place, self.velocity(place), dt)
     }
 
     /// The same along a curved one (third order, Ralston 1962).
     fn curved(&self, place: [f32; 3], dt: f32) -> [f32; 3] {
-        let to = |v: [f32; 3], share: f32| self.kept([0, 1, 2].map(|a| place[a] + share * dt * v[a]));
-        let v1 = self.speed(place);
-        let v2 = self.speed(to(v1, 0.5));
-        let v3 = self.speed(to(v2, 0.75));
-        to([0, 1, 2].map(|a| (2.0 * v1[a] + 3.0 * v2[a] + 4.0 * v3[a]) / 9.0), 1.0)
+        let v1 = self.velocity(place);
+        let v2 = self.velocity(self.moved(place, v1, 0.5 * dt));
+        let v3 = self.velocity(self.moved(place, v2, 0.75 * dt));
+        let mut v = [0.0; 3];
+        for a in 0..3 {
+            v[a] = (2.0 * v1[a] + 3.0 * v2[a] + 4.0 * v3[a]) / 9.0;
+        }
+        self.moved(place, v, dt)
     }
 
     /// Carries `from` by `dt` along straight paths, linear.

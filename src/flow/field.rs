@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use super::{
     advect::{Carrier, Scheme},
     lattice::{Faces, Lattice},
+    obstacles::FlowObstacles,
     openings::Openings,
     pressure::{Pressure, PressureMethod, Solved},
     sides::{Role, Roles, Side, fastest, fill, roles},
@@ -87,18 +88,22 @@ fn check(settings: &FlowSettings) -> Result<()> {
 }
 
 impl FlowField {
-    /// A field of air without obstacles that moves as `wind` says (m/s east, north, up, at a place), made free of divergence. Open
+    /// A field of air round `obstacles` that moves as `wind` says (m/s east, north, up, at a place), made free of divergence. Open
     /// sides keep that wind as the outer one.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for settings outside their ranges, and for a wind that is not finite or over
-    /// [`MAX_SPEED_M_S`].
-    pub fn new(settings: &FlowSettings, wind: impl Fn(DVec3) -> DVec3) -> Result<Self> {
+    /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
+    /// [`MAX_SPEED_M_S`], and for obstacles outside of the field or without a finite height.
+    pub fn new(
+        settings: &FlowSettings,
+        obstacles: &FlowObstacles,
+        wind: impl Fn(DVec3) -> DVec3,
+    ) -> Result<Self> {
         check(settings)?;
         let lattice = Lattice::new(settings.cells, settings.cell_m)?;
         let outer = at_faces(&lattice, wind)?;
         let roles = roles(&lattice, &settings.sides, &outer);
-        let openings = Openings::new(&lattice, &roles, lattice.zeros().map(|v| vec![1.0; v.len()]));
+        let openings = Openings::new(&lattice, &roles, obstacles.open(&lattice)?);
         let pressure = Pressure::new(openings.level(&lattice, &roles));
         let count = lattice.n.iter().product();
         let bounds = if settings.scheme == Scheme::MacCormack { lattice.len() } else { 0 };
@@ -134,6 +139,18 @@ impl FlowField {
             self.openings.fill_inside(&self.lattice, self.settings.is_slip, c, &mut v[c]);
             fill(&self.lattice, &self.roles, &self.outer, c, &mut v[c]);
         }
+    }
+
+    /// Puts other obstacles into the air, which flows on round them.
+    ///
+    /// # Errors
+    /// As [`FlowField::new`]; the field is as it was then.
+    pub fn set_obstacles(&mut self, obstacles: &FlowObstacles) -> Result<()> {
+        let open = obstacles.open(&self.lattice)?;
+        self.openings = Openings::new(&self.lattice, &self.roles, open);
+        self.pressure = Pressure::new(self.openings.level(&self.lattice, &self.roles));
+        self.begin();
+        Ok(())
     }
 
     /// Leads the field on by `dt` seconds.
@@ -185,7 +202,7 @@ impl FlowField {
     /// `to` becomes what `from` is after the wind has carried it by `dt` and viscosity has mixed it, ghosts filled.
     fn carry(&mut self, wind: &Faces, from: &Faces, dt: f64, other: &mut Faces, to: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
-        let carrier = Carrier { lattice: &self.lattice, wind, range: self.range() };
+        let carrier = Carrier::new(&self.lattice, wind, self.range());
         let t = dt as f32;
         match self.settings.scheme {
             Scheme::SemiLagrangian => carrier.semi_lagrangian(from, t, to),
@@ -305,8 +322,8 @@ impl FlowField {
 
     /// The velocity at a place, m/s (east, north, up), linear between faces; outside of the box that of its nearest place.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
-        let carrier = Carrier { lattice: &self.lattice, wind: &self.velocity, range: self.range() };
-        carrier.velocity((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()
+        let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
+        carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()
     }
 
     /// The largest component of the velocity anywhere, m/s.

@@ -130,15 +130,4 @@ impl Lattice {
     pub(super) fn place(&self, component: usize, i: [usize; 3]) -> [f32; 3] {
         [0, 1, 2].map(|a| i[a] as f32 + if a == component && !self.is_flat(a) { 0.0 } else { 0.5 })
     }
-
-    /// Along an axis from a place in cells: the lower of the two values of a component that it lies between, as an offset, and
-    /// how far it lies from that toward the next. The place must lie within half a cell of the box.
-    pub(super) fn between(&self, component: usize, axis: usize, place: f32) -> (usize, f32) {
-        if self.is_flat(axis) {
-            return (0, 0.0);
-        }
-        let along = place + self.ghosts[axis] as f32 - if component == axis { 0.0 } else { 0.5 };
-        let low = along as usize;
-        (low * self.stride[axis], along - low as f32)
-    }
 }

@@ -40,7 +40,9 @@ impl Level {
     pub(super) fn new(n: [usize; 3], h: [f32; 3], lower: [Vec<f32>; 3]) -> Self {
         let count = n.iter().product();
         let mut level = Self { n, h, lower, join: [1; 3], ..Self::default() };
-        [&mut level.sum, &mut level.x, &mut level.b, &mut level.r].map(|v| v.resize(count, 0.0));
+        for values in [&mut level.sum, &mut level.x, &mut level.b, &mut level.r] {
+            values.resize(count, 0.0);
+        }
         let mut sum = take(&mut level.sum);
         level.each_row(|row, _| {
             for i in 0..n[0] {

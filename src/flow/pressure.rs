@@ -122,7 +122,8 @@ impl Pressure {
             while iterations < next {
                 let share = iterations as f32 / (most - 1).max(1) as f32;
                 let relaxation = first + (last - first) * share;
-                [0, 1].map(|colour| level.relax(x, b, relaxation, colour));
+                level.relax(x, b, relaxation, 0);
+                level.relax(x, b, relaxation, 1);
                 iterations += 1;
             }
             level.residual(x, b, &mut self.r);
