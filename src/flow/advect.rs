@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::lattice::{Faces, GHOSTS, Lattice};
+use crate::error::{Error, Result, shown};
 
 /// How velocity is carried, and how a step is split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +53,22 @@ impl Between {
             taps.part[a] = part;
         }
         taps
+    }
+}
+
+impl Scheme {
+    /// All of them, with the names that tools know them by.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("semi-lagrangian", Self::SemiLagrangian), ("maccormack", Self::MacCormack), ("reflection", Self::Reflection)];
+
+    /// The scheme of a name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] with the names that there are.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let known = Self::NAMES.map(|(n, _)| n).join(", ");
+        let found = Self::NAMES.into_iter().find(|(n, _)| *n == name).map(|(_, s)| s);
+        found.ok_or_else(|| Error::range("scheme", &format!("one of {known}"), format!("`{}`", shown(name))))
     }
 }
 
@@ -140,7 +157,7 @@ impl<'a> Carrier<'a> {
     }
 
     /// Cubic (Lagrange's polynomial through four values) along each axis.
-    fn cubic(&self, values: &[f32], taps: &Taps) -> f32 {
+    fn cubic_between(&self, values: &[f32], taps: &Taps) -> f32 {
         let [x, y, z] = [0, 1, 2].map(|a| (self.next[a], cubic_weights(taps.part[a])));
         let row = |at: usize| match x {
             (0, _) => values[at],
@@ -201,15 +218,13 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Carries `from` by `dt` along curved paths; cubic between values, kept within the eight nearest if `limited`.
-    pub(super) fn cubic_step(&self, from: &Faces, dt: f32, limited: bool, to: &mut Faces) {
+    /// Carries `from` by `dt` along curved paths; cubic between values, within the eight nearest.
+    pub(super) fn cubic(&self, from: &Faces, dt: f32, to: &mut Faces) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
-                let place = self.curved(self.lattice.place(c, i), -dt);
-                let taps = self.taps(c, place);
-                let value = self.cubic(&from[c], &taps);
-                let [least, most] = if limited { self.bounds(&from[c], &taps) } else { [value; 2] };
-                to[c][at] = value.max(least).min(most);
+                let taps = self.taps(c, self.curved(self.lattice.place(c, i), -dt));
+                let [least, most] = self.bounds(&from[c], &taps);
+                to[c][at] = self.cubic_between(&from[c], &taps).max(least).min(most);
             });
         }
     }

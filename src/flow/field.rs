@@ -187,6 +187,38 @@ impl FlowField {
         Ok(())
     }
 
+    /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no velocity
+    /// changes by more than `rest` of the largest. Steps have the length in which the fastest air passes `cfl` cells.
+    ///
+    /// Answers whether it rests; air that sheds whirls never does, and after `most` such times this gives up.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for `cfl` not in \[0.01, 64\] and `rest` not in \[1e-6, 1\].
+    pub fn settle(&mut self, cfl: f64, rest: f64, most: u32) -> Result<bool> {
+        check_range("flow.cfl", cfl, 0.01, 64.0, "")?;
+        check_range("flow.rest", rest, 1e-6, 1.0, "")?;
+        let h = self.lattice.h.map(f64::from);
+        let longest = self.lattice.axes().map(|a| self.lattice.n[a] as f64 * h[a]).fold(0.0, f64::max);
+        let shortest = self.lattice.axes().map(|a| h[a]).fold(f64::INFINITY, f64::min);
+        let steps = (longest / (cfl * shortest)).ceil() as u32;
+        for _ in 0..most {
+            let speed = self.fastest_m_s();
+            if speed == 0.0 {
+                return Ok(true);
+            }
+            let before = self.velocity.clone();
+            for _ in 0..steps {
+                self.step(longest / speed / f64::from(steps))?;
+            }
+            let now = self.velocity.iter().flatten().zip(before.iter().flatten());
+            let change = now.fold(0.0_f32, |most, (a, b)| most.max((a - b).abs()));
+            if f64::from(change) <= rest * speed {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// Projects `middle`, and makes `mirrored` what lies as far beyond the projection as it lay before.
     fn reflect(&mut self, middle: &mut Faces, mirrored: &mut Faces) {
         for c in self.lattice.axes() {
@@ -211,7 +243,7 @@ impl FlowField {
                 self.fill_all(other);
                 carrier.correct(from, other, t, &bounds, to);
             }
-            Scheme::Reflection => carrier.cubic_step(from, t, false, to),
+            Scheme::Reflection => carrier.cubic(from, t, to),
         }
         self.bounds = bounds;
         self.fill_all(to);
