@@ -241,7 +241,14 @@ impl<'a> Carrier<'a> {
     }
 
     /// MacCormack's correction of `predicted`, whose ghosts are filled: half of what carrying it back misses.
-    pub(super) fn correct(&self, from: &Faces, predicted: &Faces, dt: f32, bounds: &[Vec<[f32; 2]>; 3], to: &mut Faces) {
+    pub(super) fn correct(
+        &self,
+        from: &Faces,
+        predicted: &Faces,
+        dt: f32,
+        bounds: &[Vec<[f32; 2]>; 3],
+        to: &mut Faces,
+    ) {
         for c in self.lattice.axes() {
             self.lattice.each(c, |i, at| {
                 let back = self.linear(&predicted[c], &self.taps(c, self.curved(self.lattice.place(c, i), dt)));

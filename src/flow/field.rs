@@ -67,6 +67,7 @@ pub struct FlowField {
     /// Potentials of the first and the second projection of a step, from which the next step's begin.
     potentials: [Vec<f32>; 2],
     divergence: Vec<f32>,
+    correction: Vec<f32>,
     solved: Solved,
 }
 
@@ -80,7 +81,13 @@ fn check(settings: &FlowSettings) -> Result<()> {
         }
         for side in [low, high] {
             if let Side::NoSlip(v) = side {
-                check_range(&format!("flow.sides[{a}].velocity"), Vec3::from(v).length().into(), 0.0, MAX_SPEED_M_S, "m/s")?;
+                check_range(
+                    &format!("flow.sides[{a}].velocity"),
+                    Vec3::from(v).length().into(),
+                    0.0,
+                    MAX_SPEED_M_S,
+                    "m/s",
+                )?;
             }
         }
     }
@@ -94,11 +101,7 @@ impl FlowField {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
     /// [`MAX_SPEED_M_S`], and for obstacles outside of the field or without a finite height.
-    pub fn new(
-        settings: &FlowSettings,
-        obstacles: &FlowObstacles,
-        wind: impl Fn(DVec3) -> DVec3,
-    ) -> Result<Self> {
+    pub fn new(settings: &FlowSettings, obstacles: &FlowObstacles, wind: impl Fn(DVec3) -> DVec3) -> Result<Self> {
         check(settings)?;
         let lattice = Lattice::new(settings.cells, settings.cell_m)?;
         let outer = at_faces(&lattice, wind)?;
@@ -118,6 +121,7 @@ impl FlowField {
             bounds: [0, 1, 2].map(|_| vec![[0.0; 2]; bounds]),
             potentials: [0, 1].map(|_| vec![0.0; count]),
             divergence: vec![0.0; count],
+            correction: vec![0.0; count],
             solved: Solved::default(),
             lattice,
         };
@@ -199,8 +203,7 @@ impl FlowField {
         check_range("flow.rest", rest, 1e-6, 1.0, "")?;
         let h = self.lattice.h.map(f64::from);
         let longest = self.lattice.axes().map(|a| self.lattice.n[a] as f64 * h[a]).fold(0.0, f64::max);
-        let shortest = self.lattice.axes().map(|a| h[a]).fold(f64::INFINITY, f64::min);
-        let steps = (longest / (cfl * shortest)).ceil() as u32;
+        let steps = (longest / (cfl * f64::from(self.lattice.shortest_m()))).ceil() as u32;
         for _ in 0..most {
             let speed = self.fastest_m_s();
             if speed == 0.0 {
@@ -210,8 +213,10 @@ impl FlowField {
             for _ in 0..steps {
                 self.step(longest / speed / f64::from(steps))?;
             }
-            let now = self.velocity.iter().flatten().zip(before.iter().flatten());
-            let change = now.fold(0.0_f32, |most, (a, b)| most.max((a - b).abs()));
+            let mut change = 0.0_f32;
+            for c in self.lattice.axes() {
+                self.lattice.each(c, |_, at| change = change.max((self.velocity[c][at] - before[c][at]).abs()));
+            }
             if f64::from(change) <= rest * speed {
                 return Ok(true);
             }
@@ -283,30 +288,51 @@ impl FlowField {
     }
 
     /// Makes a field, its ghosts filled, free of divergence; fills the ghosts again.
+    ///
+    /// The potential of the step before is taken off first, and only what is then missing is solved for: the correction is small,
+    /// and so are its rounding errors. What rounding still leaves is solved for once more.
     fn project(&mut self, v: &mut Faces, which: usize) {
         self.openings.balance(&self.lattice, &self.roles, v);
-        self.find_divergence(v);
+        let tolerance = self.settings.tolerance as f32 * fastest(&self.lattice, v) as f32 / self.lattice.shortest_m();
+        let mut potential = std::mem::take(&mut self.potentials[which]);
+        let mut correction = std::mem::take(&mut self.correction);
+        self.subtract_gradient(v, &potential);
+        self.solved = Solved::default();
+        for _ in 0..2 {
+            self.find_divergence(v);
+            correction.fill(0.0);
+            let solved = self.pressure.solve(self.settings.pressure, &mut correction, &self.divergence, tolerance);
+            self.subtract_gradient(v, &correction);
+            potential.iter_mut().zip(&correction).for_each(|(p, c)| *p += c);
+            self.solved = self.solved.then(solved);
+            if solved.iterations == 0 || solved.residual > tolerance {
+                break;
+            }
+        }
+        self.potentials[which] = potential;
+        self.correction = correction;
+        self.fill_all(v);
+    }
+
+    fn subtract_gradient(&self, v: &mut Faces, potential: &[f32]) {
         let lattice = &self.lattice;
-        let shortest = lattice.axes().map(|a| lattice.h[a]).fold(f32::INFINITY, f32::min);
-        let tolerance = self.settings.tolerance as f32 * fastest(v) as f32 / shortest;
-        let phi = &mut self.potentials[which];
-        self.solved = self.pressure.solve(self.settings.pressure, phi, &self.divergence, tolerance);
         let [nx, ny, _] = lattice.n;
         let steps = [1, nx, nx * ny];
         for a in lattice.axes() {
             let wraps = self.roles[a][0] == Role::Periodic;
+            let (values, open) = (&mut v[a], &self.openings.open[a]);
+            let (round, beyond) = ((lattice.n[a] - 1) * steps[a], lattice.n[a] * lattice.stride[a]);
             lattice.each_cell(|i, cell, at| {
-                let before = match i[a] {
-                    0 if wraps => cell + (lattice.n[a] - 1) * steps[a],
-                    0 => return,
-                    _ => cell - steps[a],
-                };
-                if self.openings.open[a][at] > 0.0 {
-                    v[a][at] -= (phi[cell] - phi[before]) / lattice.h[a];
+                if open[at] == 0.0 || (i[a] == 0 && !wraps) {
+                    return;
+                }
+                let before = if i[a] == 0 { cell + round } else { cell - steps[a] };
+                values[at] -= (potential[cell] - potential[before]) / lattice.h[a];
+                if i[a] == 0 {
+                    values[at + beyond] = values[at];
                 }
             });
         }
-        self.fill_all(v);
     }
 
     /// Air that leaves each cell through its open faces, over the cell's volume.
@@ -328,10 +354,9 @@ impl FlowField {
         self.find_divergence(&v);
         let cells = self.divergence.iter().enumerate().filter(|(cell, _)| self.pressure.has_air(*cell));
         let most = cells.fold(0.0_f32, |most, (_, d)| most.max(d.abs()));
-        let speed = fastest(&v);
-        let shortest = self.lattice.axes().map(|a| self.lattice.h[a]).fold(f32::INFINITY, f32::min);
+        let speed = fastest(&self.lattice, &v);
         self.velocity = v;
-        if speed > 0.0 { f64::from(most * shortest) / speed } else { 0.0 }
+        if speed > 0.0 { f64::from(most * self.lattice.shortest_m()) / speed } else { 0.0 }
     }
 
     /// Kinetic energy of all air over its density, m5/s2 (m4/s2 for each metre along a flat axis).
@@ -345,7 +370,15 @@ impl FlowField {
                 let share = if i[c] == 0 || i[c] == last { 0.5 } else { 1.0 };
                 let open = f64::from(self.openings.open[c][at]);
                 let v = f64::from(self.velocity[c][at]);
-                sum += if wraps && i[c] == last { 0.0 } else if wraps { 1.0 } else { share } * open * v * v;
+                sum += if wraps && i[c] == last {
+                    0.0
+                } else if wraps {
+                    1.0
+                } else {
+                    share
+                } * open
+                    * v
+                    * v;
             });
         }
         let cell: f64 = self.lattice.axes().map(|a| f64::from(self.lattice.h[a])).product();
@@ -360,7 +393,7 @@ impl FlowField {
 
     /// The largest component of the velocity anywhere, m/s.
     pub fn fastest_m_s(&self) -> f64 {
-        fastest(&self.velocity)
+        fastest(&self.lattice, &self.velocity)
     }
 
     /// How the last projection went.

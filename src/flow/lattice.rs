@@ -58,6 +58,11 @@ impl Lattice {
         (0..3).filter(move |a| n[*a] > 1)
     }
 
+    /// The shortest side of a cell, m.
+    pub(super) fn shortest_m(&self) -> f32 {
+        self.axes().map(|a| self.h[a]).fold(f32::INFINITY, f32::min)
+    }
+
     /// Values of a component, ghosts included.
     pub(super) fn len(&self) -> usize {
         self.size.iter().product()

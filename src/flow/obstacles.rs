@@ -62,7 +62,8 @@ impl FlowObstacles<'_> {
                 check_range(&name("half_size_m"), v, 1e-3, 1e5, "m")?;
             }
             check_range(&name("turned_deg"), b.turned_deg, -360.0, 360.0, "")?;
-            let reach = DVec3::new(b.half_size_m.truncate().length(), b.half_size_m.truncate().length(), b.half_size_m.z);
+            let reach =
+                DVec3::new(b.half_size_m.truncate().length(), b.half_size_m.truncate().length(), b.half_size_m.z);
             let is_in = (b.center_m + reach).cmpgt(DVec3::ZERO).all() && (b.center_m - reach).cmplt(size).all();
             if !(b.center_m.is_finite() && is_in) {
                 return Err(Error::range(&name("center_m"), "such that the box reaches into the field", b.center_m));
@@ -76,7 +77,8 @@ impl FlowObstacles<'_> {
         let footprint = |b: &FlowBox| {
             let angle = b.turned_deg.to_radians();
             let along = DVec2::new(libm::cos(angle), libm::sin(angle));
-            let thinnest = 0.5 * DVec2::new(along.x.abs() * hx + along.y.abs() * hy, along.y.abs() * hx + along.x.abs() * hy);
+            let thinnest =
+                0.5 * DVec2::new(along.x.abs() * hx + along.y.abs() * hy, along.y.abs() * hx + along.x.abs() * hy);
             let half = b.half_size_m.truncate().max(thinnest) + NEAR * hx.min(hy);
             let half_height = b.half_size_m.z.max(0.5 * hz) + NEAR * hz;
             let (low, high) = (b.center_m.z - half_height, b.center_m.z + half_height);

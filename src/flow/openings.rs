@@ -57,7 +57,8 @@ impl Openings {
             let beyond = lattice.n[a] * lattice.stride[a];
             lattice.each_line(a, |first| open[a][first + beyond] = open[a][first]);
         }
-        let mut new = Self { open, bodies: Vec::new(), body_count: 0, inside: Default::default(), layers: Default::default() };
+        let mut new =
+            Self { open, bodies: Vec::new(), body_count: 0, inside: Default::default(), layers: Default::default() };
         new.find_bodies(lattice, roles);
         new.close_dead_ends(lattice, roles);
         new.find_layers(lattice);
@@ -123,7 +124,9 @@ impl Openings {
             let area: f64 = lattice.axes().filter(|o| *o != a).map(|o| size[o]).product();
             lattice.each_cell(|i, cell, at| {
                 for (end, (is_last, at, outward)) in
-                    [(i[a] == 0, at, -1.0), (i[a] == lattice.n[a] - 1, at + lattice.stride[a], 1.0)].into_iter().enumerate()
+                    [(i[a] == 0, at, -1.0), (i[a] == lattice.n[a] - 1, at + lattice.stride[a], 1.0)]
+                        .into_iter()
+                        .enumerate()
                 {
                     let role = roles[a][end];
                     if is_last && (role == Role::In || role == Role::Out) {

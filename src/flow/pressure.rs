@@ -64,6 +64,13 @@ pub struct Solved {
     pub residual: f32,
 }
 
+impl Solved {
+    /// This one, and `next` on what it left.
+    pub(super) fn then(self, next: Self) -> Self {
+        Self { iterations: self.iterations + next.iterations, work: self.work + next.work, residual: next.residual }
+    }
+}
+
 /// The equation of a grid, and room to solve it in.
 #[derive(Clone, Debug)]
 pub(super) struct Pressure {
@@ -108,9 +115,7 @@ impl Pressure {
     pub(super) fn solve(&mut self, method: PressureMethod, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
         match method {
             PressureMethod::Multigrid { max_cycles } => self.multigrid(max_cycles, x, b, tolerance),
-            PressureMethod::Sor { relaxation, max_iterations } => {
-                self.sor(relaxation, max_iterations, x, b, tolerance)
-            }
+            PressureMethod::Sor { relaxation, max_iterations } => self.sor(relaxation, max_iterations, x, b, tolerance),
         }
     }
 

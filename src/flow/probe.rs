@@ -26,6 +26,7 @@ pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
         cell_m: DVec3::splat(1.0 / f64::from(n)),
         sides: [[wall, wall], [wall, Side::NoSlip([1.0, 0.0, 0.0])], [Side::Periodic; 2]],
         viscosity_m2_s: 1.0 / re,
+        tolerance: 1e-5,
         ..FlowSettings::default()
     };
     let mut field = FlowField::new(&settings, &FlowObstacles::default(), |_| DVec3::ZERO)?;

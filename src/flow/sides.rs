@@ -37,7 +37,7 @@ const LEAST_THROUGH: f64 = 1e-4;
 /// Roles of the sides in an outer wind that stands in `outer`.
 pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) -> Roles {
     let mut roles = [[Role::Periodic; 2]; 3];
-    let fastest = fastest(outer);
+    let fastest = fastest(lattice, outer);
     for axis in 0..3 {
         for end in 0..2 {
             roles[axis][end] = match sides[axis][end] {
@@ -59,9 +59,13 @@ pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) ->
     roles
 }
 
-/// The largest component anywhere, m/s.
-pub(super) fn fastest(faces: &Faces) -> f64 {
-    f64::from(faces.iter().flatten().fold(0.0_f32, |most, v| most.max(v.abs())))
+/// The largest component of any face, m/s.
+pub(super) fn fastest(lattice: &Lattice, faces: &Faces) -> f64 {
+    let mut most = 0.0_f32;
+    for c in lattice.axes() {
+        lattice.each(c, |_, at| most = most.max(faces[c][at].abs()));
+    }
+    most.into()
 }
 
 fn mean_through(lattice: &Lattice, outer: &Faces, axis: usize, end: usize) -> f64 {
@@ -107,8 +111,9 @@ pub(super) fn fill(lattice: &Lattice, roles: &Roles, outer: &Faces, component: u
                     }
                     Role::Slip => (1..=2).for_each(|g| values[inward(-g)] = values[inward((g - 1).min(edge))]),
                     Role::NoSlip(wall) => {
-                        (1..=2)
-                            .for_each(|g| values[inward(-g)] = 2.0 * wall[component] - values[inward((g - 1).min(edge))]);
+                        (1..=2).for_each(|g| {
+                            values[inward(-g)] = 2.0 * wall[component] - values[inward((g - 1).min(edge))]
+                        });
                     }
                     Role::In => (if across { 0 } else { 1 }..=2).for_each(|g| values[inward(-g)] = outer[inward(-g)]),
                     Role::Out => (1..=2).for_each(|g| values[inward(-g)] = values[inward(0)]),
