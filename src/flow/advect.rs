@@ -82,12 +82,12 @@ impl<'a> Carrier<'a> {
     /// A place that lies `far` times `way` from another, m; where that leaves the range of places, the nearest in it.
     #[inline]
     fn moved(&self, mut place: [f32; 3], way: [f32; 3], far: f32) -> [f32; 3] {
-        for a in 0..3 {
+        for (a, along) in place.iter_mut().enumerate() {
             if self.is_flat[a] {
                 continue;
             }
-            let p = place[a] + far * self.per_cell[a] * way[a];
-            place[a] = match self.range[a] {
+            let p = *along + far * self.per_cell[a] * way[a];
+            *along = match self.range[a] {
                 Some([low, high]) => p.max(low).min(high),
                 None => {
                     let n = self.lattice.n[a] as f32;
@@ -102,12 +102,12 @@ impl<'a> Carrier<'a> {
     #[inline]
     fn between(&self, place: [f32; 3]) -> Between {
         let mut between = Between { faces: [(0, 0.0); 3], middles: [(0, 0.0); 3] };
-        for a in 0..3 {
+        for (a, along) in place.into_iter().enumerate() {
             if self.is_flat[a] {
                 continue;
             }
             let stride = self.lattice.stride[a];
-            let along = place[a] + GHOSTS as f32;
+            let along = along + GHOSTS as f32;
             let low = along as usize;
             between.faces[a] = (low * stride, along - low as f32);
             let along = along - 0.5;
@@ -183,9 +183,9 @@ impl<'a> Carrier<'a> {
     fn velocity(&self, place: [f32; 3]) -> [f32; 3] {
         let between = self.between(place);
         let mut v = [0.0; 3];
-        for a in 0..3 {
+        for (a, v) in v.iter_mut().enumerate() {
             if !self.is_flat[a] {
-                v[a] = self.linear(&self.wind[a], &between.taps(a));
+                *v = self.linear(&self.wind[a], &between.taps(a));
             }
         }
         v
@@ -202,8 +202,8 @@ impl<'a> Carrier<'a> {
         let v2 = self.velocity(self.moved(place, v1, 0.5 * dt));
         let v3 = self.velocity(self.moved(place, v2, 0.75 * dt));
         let mut v = [0.0; 3];
-        for a in 0..3 {
-            v[a] = (2.0 * v1[a] + 3.0 * v2[a] + 4.0 * v3[a]) / 9.0;
+        for (a, v) in v.iter_mut().enumerate() {
+            *v = (2.0 * v1[a] + 3.0 * v2[a] + 4.0 * v3[a]) / 9.0;
         }
         self.moved(place, v, dt)
     }

@@ -62,7 +62,9 @@ pub struct FlowField {
     pressure: Pressure,
     velocity: Faces,
     /// What steps are made in.
-    scratch: [Faces; 2],
+    scratch: [Faces; 3],
+    /// Length of the step before, s; 0: there is none to lead on from.
+    last_dt: f64,
     bounds: [Vec<[f32; 2]>; 3],
     /// Potentials of the first and the second projection of a step, from which the next step's begin.
     potentials: [Vec<f32>; 2],
@@ -117,7 +119,8 @@ impl FlowField {
             outer,
             openings,
             pressure,
-            scratch: [lattice.zeros(), lattice.zeros()],
+            scratch: [lattice.zeros(), lattice.zeros(), lattice.zeros()],
+            last_dt: 0.0,
             bounds: [0, 1, 2].map(|_| vec![[0.0; 2]; bounds]),
             potentials: [0, 1].map(|_| vec![0.0; count]),
             divergence: vec![0.0; count],
@@ -133,6 +136,7 @@ impl FlowField {
     fn begin(&mut self) {
         let mut v = std::mem::take(&mut self.velocity);
         self.potentials.iter_mut().for_each(|p| p.fill(0.0));
+        self.last_dt = 0.0;
         self.fill_all(&mut v);
         self.project(&mut v, 0);
         self.velocity = v;
@@ -166,29 +170,41 @@ impl FlowField {
         if dt == 0.0 {
             return Ok(());
         }
-        let from = std::mem::take(&mut self.velocity);
-        let [mut to, mut other] = std::mem::take(&mut self.scratch);
         match self.settings.scheme {
-            Scheme::SemiLagrangian | Scheme::MacCormack => {
-                self.carry(&from, &from, dt, &mut other, &mut to);
-                self.project(&mut to, 0);
-            }
-            Scheme::Reflection => {
-                self.carry(&from, &from, dt / 2.0, &mut other, &mut to);
-                self.reflect(&mut to, &mut other);
-                let middle = std::mem::replace(&mut to, from);
-                self.carry(&middle, &other, dt / 2.0, &mut Faces::default(), &mut to);
-                self.velocity = to;
-                self.scratch = [middle, other];
-                let mut v = std::mem::take(&mut self.velocity);
-                self.project(&mut v, 1);
-                self.velocity = v;
-                return Ok(());
-            }
+            Scheme::SemiLagrangian | Scheme::MacCormack => self.step_whole(dt),
+            Scheme::Reflection => self.step_mirrored(dt),
         }
-        self.velocity = to;
-        self.scratch = [from, other];
         Ok(())
+    }
+
+    /// Carries by the whole step and projects.
+    fn step_whole(&mut self, dt: f64) {
+        let from = std::mem::take(&mut self.velocity);
+        let [mut to, mut other, spare] = std::mem::take(&mut self.scratch);
+        self.carry(&from, &from, dt, &mut other, &mut to);
+        self.project(&mut to, 0);
+        self.velocity = to;
+        self.scratch = [from, other, spare];
+    }
+
+    /// Carries by half a step, projects, mirrors, carries by half a step and projects. The wind that carries is that of the middle of each
+    /// half, led on from the two winds before it: by the wind of the half's beginning, whirls would stray across the mean wind.
+    fn step_mirrored(&mut self, dt: f64) {
+        let from = std::mem::take(&mut self.velocity);
+        let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
+        // The scratch still has the middle of the step before.
+        let ahead = if self.last_dt > 0.0 { (0.5 * dt / self.last_dt).min(1.0) as f32 } else { 0.0 };
+        lead_on(&from, &mut wind, ahead);
+        self.carry(&from, &wind, dt / 2.0, &mut Faces::default(), &mut middle);
+        let mut mirrored = wind;
+        self.reflect(&mut middle, &mut mirrored);
+        let mut wind = from;
+        lead_on(&middle, &mut wind, 0.5);
+        self.carry(&mirrored, &wind, dt / 2.0, &mut Faces::default(), &mut to);
+        self.project(&mut to, 1);
+        self.velocity = to;
+        self.scratch = [middle, mirrored, wind];
+        self.last_dt = dt;
     }
 
     /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no velocity
@@ -237,7 +253,7 @@ impl FlowField {
     }
 
     /// `to` becomes what `from` is after the wind has carried it by `dt` and viscosity has mixed it, ghosts filled.
-    fn carry(&mut self, wind: &Faces, from: &Faces, dt: f64, other: &mut Faces, to: &mut Faces) {
+    fn carry(&mut self, from: &Faces, wind: &Faces, dt: f64, other: &mut Faces, to: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
         let carrier = Carrier::new(&self.lattice, wind, self.range());
         let t = dt as f32;
@@ -402,6 +418,13 @@ impl FlowField {
     }
 }
 
+/// Makes `before` the wind that goes on from it through `now`, `ahead` times as far as from the one to the other.
+fn lead_on(now: &Faces, before: &mut Faces, ahead: f32) {
+    for (now, before) in now.iter().flatten().zip(before.iter_mut().flatten()) {
+        *before = now + ahead * (now - *before);
+    }
+}
+
 /// A wind at every face and ghost.
 fn at_faces(lattice: &Lattice, wind: impl Fn(DVec3) -> DVec3) -> Result<Faces> {
     let mut faces = lattice.zeros();
@@ -413,7 +436,7 @@ fn at_faces(lattice: &Lattice, wind: impl Fn(DVec3) -> DVec3) -> Result<Faces> {
                 (i[a] as f64 + half) * f64::from(lattice.h[a])
             });
             let v = wind(DVec3::from(place));
-            if !(v.length() <= MAX_SPEED_M_S) {
+            if !(0.0..=MAX_SPEED_M_S).contains(&v.length()) {
                 bad = Some(v);
             }
             faces[c][at] = v[c] as f32;

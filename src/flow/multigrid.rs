@@ -179,7 +179,8 @@ impl Level {
             }
             let own = i / 2;
             let last = coarse.n[a] - 1;
-            let (other, beyond) = if i % 2 == 0 { (own.wrapping_sub(1), own == 0) } else { (own + 1, own == last) };
+            let (other, beyond) =
+                if i.is_multiple_of(2) { (own.wrapping_sub(1), own == 0) } else { (own + 1, own == last) };
             [(own, 0.75), (if beyond { own } else { other }, 0.25)]
         };
         let rows: Vec<_> = (0..self.n[0]).map(|i| taps(0, i)).collect();
