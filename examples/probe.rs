@@ -11,6 +11,7 @@
 //! probe lightning --rate FLASHES_A_MINUTE --hours H
 //! probe cavity --re R --n N
 //! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]
+//! probe wind --scene FILE
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
@@ -33,7 +34,8 @@ const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model N
                      probe cover --genus NAME --okta 0..8 --seeds N\n       \
                      probe lightning --rate FLASHES_A_MINUTE --hours H\n       \
                      probe cavity --re R --n N\n       \
-                     probe taylor-green --n N --cfl C [--scheme NAME]";
+                     probe taylor-green --n N --cfl C [--scheme NAME]\n       \
+                     probe wind --scene FILE < places.csv";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -142,6 +144,13 @@ fn taylor_green(rest: impl Iterator<Item = String>) -> Result<String> {
     welkin::flow::probe::taylor_green_csv(options.count("--n")?, options.any_number("--cfl")?, scheme)
 }
 
+fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--scene"], rest)?;
+    let path = options.given("--scene")?;
+    let text = std::fs::read_to_string(path).map_err(|e| Error::new(Status::Io, format!("{path}: {e}")))?;
+    welkin::flow::probe::wind_csv(&text, &read_input()?)
+}
+
 fn run() -> Result<String> {
     let mut arguments = std::env::args().skip(1);
     let what = arguments.next().ok_or_else(|| usage("no question"))?;
@@ -159,6 +168,7 @@ fn run() -> Result<String> {
         "cover" => cover(arguments),
         "lightning" => lightning(arguments),
         "cavity" => cavity(arguments),
+        "wind" => wind(arguments),
         "taylor-green" => taylor_green(arguments),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }

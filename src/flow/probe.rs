@@ -1,10 +1,11 @@
-//! Flows whose answers others have published, as CSV: `probe cavity`, `probe taylor-green`.
+//! Flows whose answers others have published, as CSV: `probe cavity`, `probe taylor-green`; and `probe wind`, the wind in a scene.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use glam::DVec3;
 
+pub use super::scene::wind_csv;
 use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
 use crate::error::{Error, Result, Status, check_range};
 
