@@ -9,6 +9,9 @@
 //! probe slab
 //! probe cover --genus NAME --okta 0..8 --seeds N
 //! probe lightning --rate FLASHES_A_MINUTE --hours H
+//! probe cavity --re R --n N
+//! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]
+//! probe wind --scene FILE
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
@@ -16,6 +19,7 @@ use std::io::{Read as _, Write as _};
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use welkin::flow::Scheme;
 use welkin::gpu::{Device, DeviceOptions};
 use welkin::sky::probe::{Probe, Question};
 use welkin::sky::{Planet, SkyModel, SkySettings};
@@ -28,7 +32,10 @@ const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model N
                      probe ice < rates.csv\n       \
                      probe slab < slabs.csv\n       \
                      probe cover --genus NAME --okta 0..8 --seeds N\n       \
-                     probe lightning --rate FLASHES_A_MINUTE --hours H";
+                     probe lightning --rate FLASHES_A_MINUTE --hours H\n       \
+                     probe cavity --re R --n N\n       \
+                     probe taylor-green --n N --cfl C [--scheme NAME]\n       \
+                     probe wind --scene FILE < places.csv";
 
 /// Options by name, each with its value.
 struct Options(Vec<(String, String)>);
@@ -113,6 +120,37 @@ fn lightning(rest: impl Iterator<Item = String>) -> Result<String> {
     welkin::lightning::probe::flashes_csv(options.number("--rate", 60.0)?, options.number("--hours", 1000.0)?)
 }
 
+impl Options {
+    /// A number; what it may be is the question's to say.
+    fn any_number(&self, name: &str) -> Result<f64> {
+        let text = self.given(name)?;
+        text.parse().map_err(|_| usage(&format!("{name} must be a number, not {text:?}")))
+    }
+
+    fn count(&self, name: &str) -> Result<u32> {
+        let text = self.given(name)?;
+        text.parse().map_err(|_| usage(&format!("{name} must be a whole number, not {text:?}")))
+    }
+}
+
+fn cavity(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--re", "--n"], rest)?;
+    welkin::flow::probe::cavity_csv(options.any_number("--re")?, options.count("--n")?)
+}
+
+fn taylor_green(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--n", "--cfl", "--scheme"], rest)?;
+    let scheme = options.get("--scheme").map_or(Ok(Scheme::default()), Scheme::from_name)?;
+    welkin::flow::probe::taylor_green_csv(options.count("--n")?, options.any_number("--cfl")?, scheme)
+}
+
+fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--scene"], rest)?;
+    let path = options.given("--scene")?;
+    let text = std::fs::read_to_string(path).map_err(|e| Error::new(Status::Io, format!("{path}: {e}")))?;
+    welkin::flow::probe::wind_csv(&text, &read_input()?)
+}
+
 fn run() -> Result<String> {
     let mut arguments = std::env::args().skip(1);
     let what = arguments.next().ok_or_else(|| usage("no question"))?;
@@ -129,6 +167,9 @@ fn run() -> Result<String> {
         }
         "cover" => cover(arguments),
         "lightning" => lightning(arguments),
+        "cavity" => cavity(arguments),
+        "wind" => wind(arguments),
+        "taylor-green" => taylor_green(arguments),
         other => Err(usage(&format!("unknown question `{other}`"))),
     }
 }

@@ -14,6 +14,7 @@ pub mod context;
 mod effects;
 pub mod error;
 mod falling;
+pub mod flow;
 pub mod fog;
 pub mod frame;
 mod front;

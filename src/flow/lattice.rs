@@ -1,0 +1,138 @@
+//! The staggered grid (Harlow and Welch 1965): a velocity component stands in the middle of the faces that it passes through,
+//! pressure in the middle of cells. Around the box lie two layers of ghost values, which the sides fill.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result, check_range};
+
+/// Layers of ghost values on each side of an axis: what cubic interpolation reaches.
+pub(super) const GHOSTS: usize = 2;
+/// Most cells of a grid: at some 150 bytes a cell about 5 GB.
+const MAX_CELLS: u64 = 1 << 25;
+
+/// Cells of the box and their size. An axis of one cell is flat: nothing changes along it, and its component stays zero.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Lattice {
+    /// Cells east, north and up.
+    pub n: [usize; 3],
+    /// Size of a cell, m.
+    pub h: [f32; 3],
+    /// From one value to the next along each axis.
+    pub stride: [usize; 3],
+    /// Values along each axis, ghosts included: as many for each component.
+    size: [usize; 3],
+    /// Layers of ghosts along each axis: none along a flat one.
+    ghosts: [usize; 3],
+}
+
+/// The three components, each in the middle of its faces.
+pub(super) type Faces = [Vec<f32>; 3];
+
+impl Lattice {
+    pub(super) fn new(cells: [u32; 3], cell_m: DVec3) -> Result<Self> {
+        for (i, (n, h)) in cells.into_iter().zip(cell_m.to_array()).enumerate() {
+            check_range(&format!("flow.cells[{i}]"), f64::from(n), 1.0, 4096.0, "")?;
+            check_range(&format!("flow.cell_m[{i}]"), h, 1e-6, 1e4, "m")?;
+        }
+        let count: u64 = cells.iter().map(|n| u64::from(*n)).product();
+        if count > MAX_CELLS {
+            return Err(Error::range("flow.cells", &format!("at most {MAX_CELLS} cells in all"), count));
+        }
+        if cells.iter().filter(|n| **n > 1).count() < 2 {
+            return Err(Error::range("flow.cells", "more than one along two axes at least", format!("{cells:?}")));
+        }
+        let n = cells.map(|n| n as usize);
+        let ghosts = n.map(|n| if n == 1 { 0 } else { GHOSTS });
+        let size = [0, 1, 2].map(|a| if n[a] == 1 { 1 } else { n[a] + 1 + 2 * GHOSTS });
+        let stride = [1, size[0], size[0] * size[1]];
+        Ok(Self { n, h: cell_m.as_vec3().to_array(), stride, size, ghosts })
+    }
+
+    pub(super) fn is_flat(&self, axis: usize) -> bool {
+        self.n[axis] == 1
+    }
+
+    /// Axes along which something changes.
+    pub(super) fn axes(&self) -> impl Iterator<Item = usize> + use<> {
+        let n = self.n;
+        (0..3).filter(move |a| n[*a] > 1)
+    }
+
+    /// The shortest side of a cell, m.
+    pub(super) fn shortest_m(&self) -> f32 {
+        self.axes().map(|a| self.h[a]).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Values of a component, ghosts included.
+    pub(super) fn len(&self) -> usize {
+        self.size.iter().product()
+    }
+
+    pub(super) fn zeros(&self) -> Faces {
+        [0, 1, 2].map(|_| vec![0.0; self.len()])
+    }
+
+    /// Where the value stands that has these indices; a component's first face and a row's first cell have index 0.
+    pub(super) fn at(&self, i: [usize; 3]) -> usize {
+        (0..3).map(|a| (i[a] + self.ghosts[a]) * self.stride[a]).sum()
+    }
+
+    /// Values of a component along an axis, without ghosts.
+    pub(super) fn count(&self, component: usize, axis: usize) -> usize {
+        self.n[axis] + usize::from(component == axis && !self.is_flat(axis))
+    }
+
+    /// Calls `f` for every value of a component, with its indices and where it stands.
+    pub(super) fn each(&self, component: usize, mut f: impl FnMut([usize; 3], usize)) {
+        let [nx, ny, nz] = [0, 1, 2].map(|a| self.count(component, a));
+        for k in 0..nz {
+            for j in 0..ny {
+                let row = self.at([0, j, k]);
+                for i in 0..nx {
+                    f([i, j, k], row + i);
+                }
+            }
+        }
+    }
+
+    /// Calls `f` for every value of a component and every ghost, with their indices, which are negative before the first value.
+    pub(super) fn each_with_ghosts(&self, mut f: impl FnMut([i64; 3], usize)) {
+        let ghosts = self.ghosts.map(|g| g as i64);
+        for at in 0..self.len() {
+            let [x, y, _] = self.size;
+            let i = [at % x, at / x % y, at / (x * y)];
+            f([0, 1, 2].map(|a| i[a] as i64 - ghosts[a]), at);
+        }
+    }
+
+    /// Calls `f` for every cell, with its indices, its number and where its lower faces stand.
+    pub(super) fn each_cell(&self, mut f: impl FnMut([usize; 3], usize, usize)) {
+        let [nx, ny, nz] = self.n;
+        let mut cell = 0;
+        for k in 0..nz {
+            for j in 0..ny {
+                let row = self.at([0, j, k]);
+                for i in 0..nx {
+                    f([i, j, k], cell, row + i);
+                    cell += 1;
+                }
+            }
+        }
+    }
+
+    /// Calls `f` for the first value (index 0) of every line along `axis`, ghosts of the other axes included.
+    pub(super) fn each_line(&self, axis: usize, mut f: impl FnMut(usize)) {
+        let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
+        let start = self.ghosts[axis] * self.stride[axis];
+        for v in 0..self.size[c] {
+            for u in 0..self.size[b] {
+                f(start + u * self.stride[b] + v * self.stride[c]);
+            }
+        }
+    }
+
+    /// The place of a value in cells from the box's lowest corner.
+    pub(super) fn place(&self, component: usize, i: [usize; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|a| i[a] as f32 + if a == component && !self.is_flat(a) { 0.0 } else { 0.5 })
+    }
+}

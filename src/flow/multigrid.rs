@@ -1,0 +1,277 @@
+//! Multigrid for the pressure: the same equation on ever coarser grids.
+//!
+//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others; so long cells become
+//! round before all axes are halved together. The opening of a coarse face is the mean of its fine ones. Odd numbers leave a coarse
+//! cell that is half closed. Residuals go down as means; corrections come up linearly between coarse cells.
+
+use std::mem::take;
+
+/// Sweeps before and after the coarser grid, and on the coarsest.
+const SWEEPS: usize = 2;
+const COARSEST_SWEEPS: usize = 24;
+/// A grid of so few cells is not coarsened.
+const FEW_CELLS: usize = 32;
+/// An axis is coarsened if its cells are at most so many times as long as the shortest that can be.
+const LONGER: f32 = 1.5;
+
+/// One grid of the equation: for each cell, the sum over its faces of coefficient times (neighbour - own) is the right-hand side.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Level {
+    pub n: [usize; 3],
+    h: [f32; 3],
+    /// Of the lower face of each cell along each axis: open share / h^2. The first one of a row joins its two ends.
+    pub lower: [Vec<f32>; 3],
+    /// Sum over the faces of a cell; 0: no air in it.
+    pub sum: Vec<f32>,
+    x: Vec<f32>,
+    b: Vec<f32>,
+    r: Vec<f32>,
+    /// Cells that a cell of the next level joins along each axis, 1 or 2.
+    join: [usize; 3],
+}
+
+/// Neighbours of a row of cells: starts of the four rows beside it, and of itself.
+struct Row {
+    own: usize,
+    beside: [usize; 4],
+}
+
+impl Level {
+    pub(super) fn new(n: [usize; 3], h: [f32; 3], lower: [Vec<f32>; 3]) -> Self {
+        let count = n.iter().product();
+        let mut level = Self { n, h, lower, join: [1; 3], ..Self::default() };
+        for values in [&mut level.sum, &mut level.x, &mut level.b, &mut level.r] {
+            values.resize(count, 0.0);
+        }
+        let mut sum = take(&mut level.sum);
+        level.each_row(|row, _| {
+            for i in 0..n[0] {
+                let [_, right] = level.across(row, i);
+                let at = row.own + i;
+                let x = level.lower[0][at] + level.lower[0][right];
+                let y = level.lower[1][at] + level.lower[1][row.beside[1] + i];
+                sum[at] = x + y + level.lower[2][at] + level.lower[2][row.beside[3] + i];
+            }
+        });
+        level.sum = sum;
+        level
+    }
+
+    fn each_row(&self, mut f: impl FnMut(&Row, usize)) {
+        let [nx, ny, nz] = self.n;
+        for k in 0..nz {
+            for j in 0..ny {
+                let start = |j: usize, k: usize| (k * ny + j) * nx;
+                let (before, after) = (start((j + ny - 1) % ny, k), start((j + 1) % ny, k));
+                let (below, above) = (start(j, (k + nz - 1) % nz), start(j, (k + 1) % nz));
+                f(&Row { own: start(j, k), beside: [before, after, below, above] }, j + k);
+            }
+        }
+    }
+
+    /// The neighbours of the cell `i` of a row, before and after it.
+    fn across(&self, row: &Row, i: usize) -> [usize; 2] {
+        let last = self.n[0] - 1;
+        [row.own + if i == 0 { last } else { i - 1 }, row.own + if i == last { 0 } else { i + 1 }]
+    }
+
+    /// The sum over a cell's faces of coefficient times neighbour.
+    #[inline]
+    fn neighbours(&self, x: &[f32], row: &Row, i: usize) -> f32 {
+        let [left, right] = self.across(row, i);
+        let at = row.own + i;
+        let [a, b, c, d] = row.beside.map(|start| start + i);
+        let [lx, ly, lz] = &self.lower;
+        lx[at] * x[left] + lx[right] * x[right] + ly[at] * x[a] + ly[b] * x[b] + lz[at] * x[c] + lz[d] * x[d]
+    }
+
+    /// Successive over-relaxation of the cells of one colour, as on a chessboard: 1 is Gauss and Seidel's.
+    pub(super) fn relax(&self, x: &mut [f32], b: &[f32], relaxation: f32, colour: usize) {
+        self.each_row(|row, parity| {
+            let mut i = (parity + colour) % 2;
+            while i < self.n[0] {
+                let at = row.own + i;
+                if self.sum[at] > 0.0 {
+                    let wanted = (self.neighbours(x, row, i) - b[at]) / self.sum[at];
+                    x[at] += relaxation * (wanted - x[at]);
+                }
+                i += 2;
+            }
+        });
+    }
+
+    /// What the equation leaves over: right-hand side less left-hand side.
+    pub(super) fn residual(&self, x: &[f32], b: &[f32], out: &mut [f32]) {
+        self.each_row(|row, _| {
+            for i in 0..self.n[0] {
+                let at = row.own + i;
+                out[at] = b[at] - (self.neighbours(x, row, i) - self.sum[at] * x[at]);
+            }
+        });
+    }
+
+    /// The left-hand side.
+    pub(super) fn apply(&self, x: &[f32], out: &mut [f32]) {
+        self.each_row(|row, _| {
+            for i in 0..self.n[0] {
+                let at = row.own + i;
+                out[at] = self.neighbours(x, row, i) - self.sum[at] * x[at];
+            }
+        });
+    }
+
+    /// Which axes the next level joins; none where this is the last.
+    fn joined(&self) -> [usize; 3] {
+        let can = |a: &usize| self.n[*a] > 2;
+        let shortest = (0..3).filter(can).map(|a| self.h[a]).fold(f32::INFINITY, f32::min);
+        [0, 1, 2].map(|a| if can(&a) && self.h[a] <= LONGER * shortest { 2 } else { 1 })
+    }
+
+    /// The next coarser level.
+    fn coarser(&self) -> Option<([usize; 3], Self)> {
+        let join = self.joined();
+        if join == [1; 3] || self.n.iter().product::<usize>() <= FEW_CELLS {
+            return None;
+        }
+        let n = [0, 1, 2].map(|a| self.n[a].div_ceil(join[a]));
+        let h = [0, 1, 2].map(|a| self.h[a] * join[a] as f32);
+        let mut lower = [0, 1, 2].map(|_| vec![0.0; n.iter().product()]);
+        let mut at = 0;
+        for k in 0..self.n[2] {
+            for j in 0..self.n[1] {
+                for i in 0..self.n[0] {
+                    let place = [i, j, k];
+                    let [x, y, z] = [0, 1, 2].map(|a| place[a] / join[a]);
+                    for a in (0..3).filter(|a| place[*a] % join[*a] == 0) {
+                        let others: usize = (0..3).filter(|o| *o != a).map(|o| join[o]).product();
+                        let share = 1.0 / (others * join[a] * join[a]) as f32;
+                        lower[a][(z * n[1] + y) * n[0] + x] += share * self.lower[a][at];
+                    }
+                    at += 1;
+                }
+            }
+        }
+        Some((join, Self::new(n, h, lower)))
+    }
+
+    /// The residual's mean over the cells that each coarse cell joins.
+    fn restrict(&self, coarse: &mut Self) {
+        coarse.b.fill(0.0);
+        let share = 1.0 / self.join.iter().product::<usize>() as f32;
+        let mut at = 0;
+        for k in 0..self.n[2] {
+            for j in 0..self.n[1] {
+                let start = ((k / self.join[2]) * coarse.n[1] + j / self.join[1]) * coarse.n[0];
+                for i in 0..self.n[0] {
+                    coarse.b[start + i / self.join[0]] += share * self.r[at];
+                    at += 1;
+                }
+            }
+        }
+    }
+
+    /// Adds the coarse correction, linearly between coarse cells: 3/4 of the own one and 1/4 of the nearest other, each axis;
+    /// where there is no other, the own one stands for it.
+    fn add_correction(&mut self, coarse: &Self) {
+        let taps = |a: usize, i: usize| -> [(usize, f32); 2] {
+            if self.join[a] == 1 {
+                return [(i, 1.0), (i, 0.0)];
+            }
+            let own = i / 2;
+            let last = coarse.n[a] - 1;
+            let (other, beyond) =
+                if i.is_multiple_of(2) { (own.wrapping_sub(1), own == 0) } else { (own + 1, own == last) };
+            [(own, 0.75), (if beyond { own } else { other }, 0.25)]
+        };
+        let rows: Vec<_> = (0..self.n[0]).map(|i| taps(0, i)).collect();
+        let mut x = take(&mut self.x);
+        let mut at = 0;
+        for k in 0..self.n[2] {
+            for j in 0..self.n[1] {
+                let (tk, tj) = (taps(2, k), taps(1, j));
+                for row in &rows {
+                    if self.sum[at] > 0.0 {
+                        let own = (tk[0].0 * coarse.n[1] + tj[0].0) * coarse.n[0] + row[0].0;
+                        let mut value = 0.0;
+                        for (z, wz) in tk.into_iter().filter(|t| t.1 > 0.0) {
+                            for (y, wy) in tj.into_iter().filter(|t| t.1 > 0.0) {
+                                let start = (z * coarse.n[1] + y) * coarse.n[0];
+                                for (i, wx) in row.iter().filter(|t| t.1 > 0.0) {
+                                    let from = start + i;
+                                    let from = if coarse.sum[from] > 0.0 { from } else { own };
+                                    value += wz * wy * wx * coarse.x[from];
+                                }
+                            }
+                        }
+                        x[at] += value;
+                    }
+                    at += 1;
+                }
+            }
+        }
+        self.x = x;
+    }
+}
+
+/// The equation on all grids, finest first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Levels(pub Vec<Level>);
+
+impl Levels {
+    pub(super) fn new(finest: Level) -> Self {
+        let mut levels = vec![finest];
+        while let Some((join, next)) = levels.last().and_then(Level::coarser) {
+            if let Some(last) = levels.last_mut() {
+                last.join = join;
+            }
+            levels.push(next);
+        }
+        Self(levels)
+    }
+
+    /// What one cycle costs in sweeps of the finest grid.
+    pub(super) fn cycle_work(&self) -> f64 {
+        let cells = |l: &Level| l.sum.len() as f64;
+        let all: f64 = self.0.iter().map(cells).sum();
+        // Sweeps down and up, the residual, and the way up.
+        all / self.0.first().map_or(1.0, cells) * (2 * SWEEPS + 2) as f64
+    }
+
+    /// One V-cycle from zero: roughly the solution for the right-hand side `b`.
+    pub(super) fn cycle(&mut self, b: &[f32], out: &mut [f32]) {
+        if let Some(finest) = self.0.first_mut() {
+            finest.b.copy_from_slice(b);
+        }
+        v_cycle(&mut self.0);
+        if let Some(finest) = self.0.first() {
+            out.copy_from_slice(&finest.x);
+        }
+    }
+}
+
+fn v_cycle(levels: &mut [Level]) {
+    let Some((fine, coarser)) = levels.split_first_mut() else { return };
+    let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));
+    x.fill(0.0);
+    let sweeps = if coarser.is_empty() { COARSEST_SWEEPS } else { SWEEPS };
+    for colour in [0, 1].into_iter().cycle().take(2 * sweeps) {
+        fine.relax(&mut x, &b, 1.0, colour);
+    }
+    let Some(next) = coarser.first_mut() else {
+        (fine.x, fine.b) = (x, b);
+        return;
+    };
+    let mut r = take(&mut fine.r);
+    fine.residual(&x, &b, &mut r);
+    (fine.x, fine.b, fine.r) = (x, b, r);
+    fine.restrict(next);
+    v_cycle(coarser);
+    if let Some(next) = coarser.first() {
+        fine.add_correction(next);
+    }
+    let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));
+    for colour in [1, 0].into_iter().cycle().take(2 * SWEEPS) {
+        fine.relax(&mut x, &b, 1.0, colour);
+    }
+    (fine.x, fine.b) = (x, b);
+}

@@ -1,0 +1,217 @@
+//! How much of each face is open, and what follows from that: the coefficients of the pressure, separate bodies of air, and the
+//! faces inside of things that need a velocity because paths lead there.
+
+use super::{
+    lattice::{Faces, Lattice},
+    multigrid::Level,
+    sides::{Role, Roles},
+};
+
+/// A face that is open for less than this share is closed: cells behind such slits would need very many iterations.
+const LEAST_OPEN: f32 = 0.03;
+/// So many layers of faces inside of things get the velocity of the air beside them.
+const LAYERS: u8 = 4;
+/// Of a face that no layer has reached, and of a ghost.
+const NO_LAYER: u8 = u8::MAX;
+/// Of a cell without air.
+const NO_BODY: u32 = u32::MAX;
+
+/// What is open, in a grid.
+#[derive(Clone, Debug)]
+pub(super) struct Openings {
+    /// Open share of each face, [0, 1].
+    pub open: Faces,
+    /// Body of air that each cell belongs to.
+    bodies: Vec<u32>,
+    body_count: usize,
+    /// Closed faces by layer, nearest the air first; for each component.
+    inside: [Vec<Vec<usize>>; 3],
+    layers: [Vec<u8>; 3],
+}
+
+/// A face of an open side.
+struct SideFace {
+    axis: usize,
+    at: usize,
+    body: usize,
+    /// 1 where the axis points outward, -1 where inward.
+    outward: f64,
+    open_m2: f64,
+    is_out: bool,
+}
+
+/// Air that leaves through the sides, for each body of air.
+#[derive(Clone, Copy, Default)]
+struct Passing {
+    outward: f64,
+    way_out: f64,
+}
+
+impl Openings {
+    /// From open shares of all faces.
+    pub(super) fn new(lattice: &Lattice, roles: &Roles, mut open: Faces) -> Self {
+        for v in open.iter_mut().flatten() {
+            *v = if *v < LEAST_OPEN { 0.0 } else { v.min(1.0) };
+        }
+        for a in lattice.axes().filter(|a| roles[*a][0] == Role::Periodic) {
+            let beyond = lattice.n[a] * lattice.stride[a];
+            lattice.each_line(a, |first| open[a][first + beyond] = open[a][first]);
+        }
+        let mut new =
+            Self { open, bodies: Vec::new(), body_count: 0, inside: Default::default(), layers: Default::default() };
+        new.find_bodies(lattice, roles);
+        new.close_dead_ends(lattice, roles);
+        new.find_layers(lattice);
+        new
+    }
+
+    /// The equation of the pressure.
+    pub(super) fn level(&self, lattice: &Lattice, roles: &Roles) -> Level {
+        let mut lower = [0, 1, 2].map(|_| vec![0.0; lattice.n.iter().product()]);
+        for a in lattice.axes() {
+            let share = 1.0 / (lattice.h[a] * lattice.h[a]);
+            lattice.each_cell(|i, cell, at| {
+                if i[a] > 0 || roles[a][0] == Role::Periodic {
+                    lower[a][cell] = share * self.open[a][at];
+                }
+            });
+        }
+        Level::new(lattice.n, lattice.h, lower)
+    }
+
+    /// Numbers bodies of air, by flood.
+    fn find_bodies(&mut self, lattice: &Lattice, roles: &Roles) {
+        let [nx, ny, _] = lattice.n;
+        let steps = [1, nx, nx * ny];
+        let count: usize = lattice.n.iter().product();
+        self.bodies = vec![NO_BODY; count];
+        let mut todo = Vec::new();
+        for start in 0..count {
+            if self.bodies[start] != NO_BODY {
+                continue;
+            }
+            let body = self.body_count as u32;
+            self.bodies[start] = body;
+            self.body_count += 1;
+            todo.push(start);
+            while let Some(cell) = todo.pop() {
+                let i = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+                let at = lattice.at(i);
+                for a in lattice.axes() {
+                    let (n, stride) = (lattice.n[a], lattice.stride[a]);
+                    let wraps = roles[a][0] == Role::Periodic;
+                    let ends = [(i[a] == 0, at, (n - 1) as isize), (i[a] == n - 1, at + stride, 1 - n as isize)];
+                    for (end, (is_last, face, round)) in ends.into_iter().enumerate() {
+                        if self.open[a][face] == 0.0 || (is_last && !wraps) {
+                            continue;
+                        }
+                        let along = if is_last { round } else { [-1, 1][end] };
+                        let next = (cell as isize + along * steps[a] as isize) as usize;
+                        if self.bodies[next] == NO_BODY {
+                            self.bodies[next] = body;
+                            todo.push(next);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Calls `f` for every face of open sides.
+    fn each_open_side(&self, lattice: &Lattice, roles: &Roles, mut f: impl FnMut(SideFace)) {
+        let size = lattice.h.map(f64::from);
+        for a in lattice.axes() {
+            let area: f64 = lattice.axes().filter(|o| *o != a).map(|o| size[o]).product();
+            lattice.each_cell(|i, cell, at| {
+                for (end, (is_last, at, outward)) in
+                    [(i[a] == 0, at, -1.0), (i[a] == lattice.n[a] - 1, at + lattice.stride[a], 1.0)]
+                        .into_iter()
+                        .enumerate()
+                {
+                    let role = roles[a][end];
+                    if is_last && (role == Role::In || role == Role::Out) {
+                        let open_m2 = f64::from(self.open[a][at]) * area;
+                        let body = self.bodies[cell] as usize;
+                        f(SideFace { axis: a, at, body, outward, open_m2, is_out: role == Role::Out });
+                    }
+                }
+            });
+        }
+    }
+
+    /// Closes sides where air comes into a body that it cannot leave.
+    fn close_dead_ends(&mut self, lattice: &Lattice, roles: &Roles) {
+        let mut way_out = vec![0.0; self.body_count];
+        self.each_open_side(lattice, roles, |f| way_out[f.body] += if f.is_out { f.open_m2 } else { 0.0 });
+        let mut dead = Vec::new();
+        self.each_open_side(lattice, roles, |f| {
+            if way_out[f.body] == 0.0 {
+                dead.push((f.axis, f.at));
+            }
+        });
+        for (axis, at) in dead {
+            self.open[axis][at] = 0.0;
+        }
+    }
+
+    /// Makes as much air leave each body as comes into it, by the same change of speed on all of its outflow.
+    pub(super) fn balance(&self, lattice: &Lattice, roles: &Roles, velocity: &mut Faces) {
+        let mut all = vec![Passing::default(); self.body_count];
+        self.each_open_side(lattice, roles, |f| {
+            all[f.body].outward += f.outward * f.open_m2 * f64::from(velocity[f.axis][f.at]);
+            all[f.body].way_out += if f.is_out { f.open_m2 } else { 0.0 };
+        });
+        self.each_open_side(lattice, roles, |f| {
+            if f.is_out && f.open_m2 > 0.0 {
+                velocity[f.axis][f.at] -= (f.outward * all[f.body].outward / all[f.body].way_out) as f32;
+            }
+        });
+    }
+
+    fn find_layers(&mut self, lattice: &Lattice) {
+        for c in lattice.axes() {
+            let mut layers = vec![NO_LAYER; lattice.len()];
+            let mut closed = Vec::new();
+            lattice.each(c, |_, at| {
+                if self.open[c][at] > 0.0 {
+                    layers[at] = 0;
+                } else {
+                    closed.push(at);
+                }
+            });
+            for layer in 1..=LAYERS {
+                let reached = |at: &usize| {
+                    lattice.axes().any(|a| {
+                        let s = lattice.stride[a];
+                        layers[at - s] < layer || layers[at + s] < layer
+                    })
+                };
+                let (now, later): (Vec<_>, Vec<_>) = closed.into_iter().partition(reached);
+                now.iter().for_each(|at| layers[*at] = layer);
+                self.inside[c].push(now);
+                closed = later;
+            }
+            self.inside[c].push(closed);
+            self.layers[c] = layers;
+        }
+    }
+
+    /// Gives closed faces a velocity: zero, or if air slides along things that of the air beside them, layer by layer.
+    pub(super) fn fill_inside(&self, lattice: &Lattice, slides: bool, component: usize, values: &mut [f32]) {
+        let layers = &self.layers[component];
+        for (depth, faces) in (1..).zip(&self.inside[component]) {
+            for &at in faces {
+                let (mut sum, mut count) = (0.0, 0.0);
+                for s in lattice.axes().map(|a| lattice.stride[a]) {
+                    for beside in [at - s, at + s] {
+                        if layers[beside] < depth {
+                            sum += values[beside];
+                            count += 1.0;
+                        }
+                    }
+                }
+                values[at] = if slides && depth <= LAYERS && count > 0.0 { sum / count } else { 0.0 };
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The pressure that makes the air's flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
+//!
+//! Two ways to solve it. Successive over-relaxation (Young 1954) in two colours, as on a chessboard: each cell's value moves toward what its
+//! neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is refused. And multigrid: each V-cycle is
+//! a step of a conjugate gradient (Hestenes and Stiefel 1952, with Polak and Ribiere's update, since the cycle is not symmetric), so that
+//! thin walls and small openings, which coarse grids blur, cost some cycles and never convergence.
+//!
+//! The residual of the equation is the divergence that stays. Both stop by it.
+
+use super::multigrid::{Level, Levels};
+use crate::error::{Error, Result, check_range};
+
+/// How the pressure is solved for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressureMethod {
+    /// V-cycles that lead conjugate gradients.
+    Multigrid {
+        /// At most so many, 1 to 1000.
+        max_cycles: u32,
+    },
+    /// Red-black over-relaxation.
+    Sor {
+        /// Relaxation of the first iteration and of the last possible one, in (0, 2) both; between them it changes linearly.
+        relaxation: [f32; 2],
+        /// At most so many, 1 to 1,000,000.
+        max_iterations: u32,
+    },
+}
+
+impl PressureMethod {
+    /// The snow simulator of the sources: 5 iterations, the relaxation falling from 1.7 to 1.1.
+    pub const FIVE_SWEEPS: Self = Self::Sor { relaxation: [1.7, 1.1], max_iterations: 5 };
+
+    /// The relaxation that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 + sin(pi / n)) (Young 1954).
+    pub fn best_relaxation(n: u32) -> f32 {
+        (2.0 / (1.0 + libm::sin(std::f64::consts::PI / f64::from(n.max(2))))) as f32
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        match *self {
+            Self::Multigrid { max_cycles } => {
+                check_range("flow.pressure.max_cycles", f64::from(max_cycles), 1.0, 1e3, "")
+            }
+            Self::Sor { relaxation, max_iterations } => {
+                for (i, v) in relaxation.into_iter().enumerate() {
+                    if !(v > 0.0 && v < 2.0) {
+                        return Err(Error::range(&format!("flow.pressure.relaxation[{i}]"), "in (0, 2)", v));
+                    }
+                }
+                check_range("flow.pressure.max_iterations", f64::from(max_iterations), 1.0, 1e6, "")
+            }
+        }
+    }
+}
+
+/// What a solution cost and how good it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// V-cycles or iterations.
+    pub iterations: u32,
+    /// Work in sweeps over the finest grid.
+    pub work: f64,
+    /// The largest residual, of the right-hand side's unit (1/s: the divergence that stays).
+    pub residual: f32,
+}
+
+impl Solved {
+    /// This one, and `next` on what it left.
+    pub(super) fn then(self, next: Self) -> Self {
+        Self { iterations: self.iterations + next.iterations, work: self.work + next.work, residual: next.residual }
+    }
+}
+
+/// The equation of a grid, and room to solve it in.
+#[derive(Clone, Debug)]
+pub(super) struct Pressure {
+    levels: Levels,
+    r: Vec<f32>,
+    before: Vec<f32>,
+    z: Vec<f32>,
+    p: Vec<f32>,
+    q: Vec<f32>,
+}
+
+fn largest(v: &[f32]) -> f32 {
+    v.iter().fold(0.0, |most, r| most.max(r.abs()))
+}
+
+fn dot(a: &[f32], b: &[f32]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
+}
+
+fn add(x: &mut [f32], a: f64, y: &[f32]) {
+    let a = a as f32;
+    x.iter_mut().zip(y).for_each(|(x, y)| *x += a * y);
+}
+
+impl Pressure {
+    pub(super) fn new(finest: Level) -> Self {
+        let count = finest.sum.len();
+        let [r, before, z, p, q] = [0; 5].map(|_| vec![0.0; count]);
+        Self { levels: Levels::new(finest), r, before, z, p, q }
+    }
+
+    fn finest(&self) -> Option<&Level> {
+        self.levels.0.first()
+    }
+
+    /// Whether air is in a cell.
+    pub(super) fn has_air(&self, cell: usize) -> bool {
+        self.finest().is_some_and(|l| l.sum[cell] > 0.0)
+    }
+
+    /// Makes `x` solve the equation for `b` until no residual is over `tolerance`; `x` is where it begins.
+    pub(super) fn solve(&mut self, method: PressureMethod, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
+        match method {
+            PressureMethod::Multigrid { max_cycles } => self.multigrid(max_cycles, x, b, tolerance),
+            PressureMethod::Sor { relaxation, max_iterations } => self.sor(relaxation, max_iterations, x, b, tolerance),
+        }
+    }
+
+    fn sor(&mut self, [first, last]: [f32; 2], most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
+        let Some(level) = self.levels.0.first() else { return Solved::default() };
+        // Looking at the residual costs as much as an iteration: it is done after every eighth of those before it.
+        let (mut iterations, mut looks, mut next) = (0, 0, most.min(8));
+        loop {
+            while iterations < next {
+                let share = iterations as f32 / (most - 1).max(1) as f32;
+                let relaxation = first + (last - first) * share;
+                level.relax(x, b, relaxation, 0);
+                level.relax(x, b, relaxation, 1);
+                iterations += 1;
+            }
+            level.residual(x, b, &mut self.r);
+            looks += 1;
+            let residual = largest(&self.r);
+            if residual <= tolerance || iterations >= most {
+                return Solved { iterations, work: f64::from(iterations + looks), residual };
+            }
+            next = (iterations + (iterations / 8).max(1)).min(most);
+        }
+    }
+
+    fn multigrid(&mut self, most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
+        let Self { levels, r, before, z, p, q } = self;
+        let Some(level) = levels.0.first() else { return Solved::default() };
+        level.residual(x, b, r);
+        let mut solved = Solved { iterations: 0, work: 1.0, residual: largest(r) };
+        let work = levels.cycle_work() + 1.0;
+        let mut along = 0.0;
+        while solved.residual > tolerance && solved.iterations < most {
+            levels.cycle(r, z);
+            if solved.iterations == 0 {
+                p.copy_from_slice(z);
+                along = dot(r, z);
+            } else {
+                let now = dot(r, z);
+                let turn = (now - dot(before, z)) / along;
+                p.iter_mut().zip(z.iter()).for_each(|(p, z)| *p = z + turn as f32 * *p);
+                along = now;
+            }
+            let Some(level) = levels.0.first() else { break };
+            level.apply(p, q);
+            let step = dot(r, p) / dot(p, q);
+            if !step.is_finite() {
+                break;
+            }
+            add(x, step, p);
+            before.copy_from_slice(r);
+            add(r, -step, q);
+            solved.iterations += 1;
+            solved.work += work;
+            solved.residual = largest(r);
+        }
+        solved
+    }
+}

@@ -1,0 +1,89 @@
+//! Flows whose answers others have published, as CSV: `probe cavity`, `probe taylor-green`; and `probe wind`, the wind in a scene.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+use glam::DVec3;
+
+pub use super::scene::wind_csv;
+use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
+use crate::error::{Error, Result, Status, check_range};
+
+/// The cavity's flow rests where in the time in which the lid passes it nothing changes by more than this share of the lid's speed.
+const REST: f64 = 2e-4;
+/// After so many such times it is not waited for any longer.
+const MOST_TIMES: u32 = 500;
+
+/// The flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves with 1 m/s, once it rests, at Reynolds number `re`.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] for `re` not in \[1, 10,000\] and `n` not in \[8, 1024\].
+pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
+    check_range("re", re, 1.0, 1e4, "")?;
+    check_range("n", f64::from(n), 8.0, 1024.0, "")?;
+    let wall = Side::NoSlip([0.0; 3]);
+    let settings = FlowSettings {
+        cells: [n, n, 1],
+        cell_m: DVec3::splat(1.0 / f64::from(n)),
+        sides: [[wall, wall], [wall, Side::NoSlip([1.0, 0.0, 0.0])], [Side::Periodic; 2]],
+        viscosity_m2_s: 1.0 / re,
+        tolerance: 1e-5,
+        ..FlowSettings::default()
+    };
+    let mut field = FlowField::new(&settings, &FlowObstacles::default(), |_| DVec3::ZERO)?;
+    // From rest the lid alone moves: the first step is as long as it takes to pass one cell.
+    field.step(1.0 / f64::from(n))?;
+    if field.settle(1.0, REST, MOST_TIMES)? {
+        return Ok(field);
+    }
+    Err(Error::new(Status::Unsupported, format!("the flow in the cavity does not rest at a Reynolds number of {re}")))
+}
+
+/// [`cavity`] as CSV: `y,u`, m and m/s, from the floor to the lid on the vertical centre line.
+///
+/// # Errors
+/// As [`cavity`].
+pub fn cavity_csv(re: f64, n: u32) -> Result<String> {
+    let field = cavity(re, n)?;
+    let mut out = String::from("y,u\n");
+    let middles = (0..n).map(|j| (f64::from(j) + 0.5) / f64::from(n));
+    for y in std::iter::once(0.0).chain(middles).chain([1.0]) {
+        let u = field.velocity_at(DVec3::new(0.5, y, 0.0)).x;
+        let _ = writeln!(out, "{y},{u}");
+    }
+    Ok(out)
+}
+
+/// Whirls without viscosity (Taylor and Green 1937), which stand still for ever: the share of their kinetic energy that is left after
+/// they have turned for 2 pi seconds, on `n` by `n` cells, in steps in which the fastest air passes `cfl` cells.
+///
+/// # Errors
+/// [`Status::InvalidArgument`] for `n` not in \[8, 1024\] and `cfl` not in \[0.01, 64\].
+pub fn taylor_green(n: u32, cfl: f64, scheme: Scheme) -> Result<f64> {
+    check_range("n", f64::from(n), 8.0, 1024.0, "")?;
+    check_range("cfl", cfl, 0.01, 64.0, "")?;
+    let h = TAU / f64::from(n);
+    let settings = FlowSettings {
+        cells: [n, n, 1],
+        cell_m: DVec3::splat(h),
+        sides: [[Side::Periodic; 2]; 3],
+        scheme,
+        ..FlowSettings::default()
+    };
+    let whirls = |p: DVec3| DVec3::new(libm::sin(p.x) * libm::cos(p.y), -libm::cos(p.x) * libm::sin(p.y), 0.0);
+    let mut field = FlowField::new(&settings, &FlowObstacles::default(), whirls)?;
+    let before = field.kinetic_energy();
+    let steps = (TAU / (cfl * h)).round().max(1.0);
+    for _ in 0..steps as u32 {
+        field.step(TAU / steps)?;
+    }
+    Ok(field.kinetic_energy() / before)
+}
+
+/// [`taylor_green`] as CSV: `kinetic_energy_kept`.
+///
+/// # Errors
+/// As [`taylor_green`].
+pub fn taylor_green_csv(n: u32, cfl: f64, scheme: Scheme) -> Result<String> {
+    Ok(format!("kinetic_energy_kept\n{}\n", taylor_green(n, cfl, scheme)?))
+}

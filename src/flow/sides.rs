@@ -1,0 +1,124 @@
+//! The six sides of the box: what the ghost values beyond them are, and how much air passes them.
+
+use super::lattice::{Faces, Lattice};
+
+/// What a side of the box is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Side {
+    /// Air passes. Where the outer wind blows in over the side as a whole, it is the inflow; where it blows out, the air leaves as
+    /// it was carried there, and the flux alone is balanced: nothing is reflected by pressure. Where it does neither, the
+    /// side is a slip wall.
+    #[default]
+    Open,
+    /// A wall along which air slides without friction.
+    Slip,
+    /// A wall at which air has the wall's velocity, m/s; its part through the wall is ignored.
+    NoSlip([f32; 3]),
+    /// What leaves here comes in on the opposite side, which must be periodic too.
+    Periodic,
+}
+
+/// What a side does to the air now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    Periodic,
+    Slip,
+    NoSlip([f32; 3]),
+    In,
+    Out,
+}
+
+/// Low and high side of each axis.
+pub(super) type Roles = [[Role; 2]; 3];
+
+/// The share of the wind's speed that must pass a side before it is open, in the mean.
+const LEAST_THROUGH: f64 = 1e-4;
+
+/// Roles of the sides in an outer wind that stands in `outer`.
+pub(super) fn roles(lattice: &Lattice, sides: &[[Side; 2]; 3], outer: &Faces) -> Roles {
+    let mut roles = [[Role::Periodic; 2]; 3];
+    let fastest = fastest(lattice, outer);
+    for axis in 0..3 {
+        for end in 0..2 {
+            roles[axis][end] = match sides[axis][end] {
+                _ if lattice.is_flat(axis) => Role::Periodic,
+                Side::Periodic => Role::Periodic,
+                Side::Slip => Role::Slip,
+                Side::NoSlip(v) => Role::NoSlip(v),
+                Side::Open => {
+                    let outward = mean_through(lattice, outer, axis, end) * if end == 0 { -1.0 } else { 1.0 };
+                    match outward {
+                        v if v < -LEAST_THROUGH * fastest => Role::In,
+                        v if v > LEAST_THROUGH * fastest => Role::Out,
+                        _ => Role::Slip,
+                    }
+                }
+            };
+        }
+    }
+    roles
+}
+
+/// The largest component of any face, m/s.
+pub(super) fn fastest(lattice: &Lattice, faces: &Faces) -> f64 {
+    let mut most = 0.0_f32;
+    for c in lattice.axes() {
+        lattice.each(c, |_, at| most = most.max(faces[c][at].abs()));
+    }
+    most.into()
+}
+
+fn mean_through(lattice: &Lattice, outer: &Faces, axis: usize, end: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    let face = if end == 0 { 0 } else { lattice.n[axis] };
+    lattice.each(axis, |i, at| {
+        if i[axis] == face {
+            sum += f64::from(outer[axis][at]);
+            count += 1.0;
+        }
+    });
+    sum / count
+}
+
+/// Fills the ghosts of a component, and its faces on the sides.
+pub(super) fn fill(lattice: &Lattice, roles: &Roles, outer: &Faces, component: usize, values: &mut [f32]) {
+    for axis in lattice.axes() {
+        let n = lattice.n[axis] as isize;
+        let stride = lattice.stride[axis] as isize;
+        let outer = &outer[component];
+        let across = component == axis;
+        lattice.each_line(axis, |first| {
+            let at = |i: isize| (first as isize + i * stride) as usize;
+            for (end, role) in roles[axis].into_iter().enumerate() {
+                // Counted from the side inward: faces from 0, values between faces from 0 too.
+                let edge = if across { n } else { n - 1 };
+                let inward = |i: isize| at(if end == 0 { i } else { edge - i });
+                match role {
+                    Role::Periodic => {
+                        if across && end == 1 {
+                            values[at(n)] = values[at(0)];
+                        }
+                        for g in 1..=2 {
+                            let from = if across { g } else { g - 1 };
+                            values[inward(-g)] = values[if end == 0 { at(n - g) } else { at(from % n) }];
+                        }
+                    }
+                    Role::Slip | Role::NoSlip(_) if across => {
+                        values[inward(0)] = 0.0;
+                        for g in 1..=2 {
+                            values[inward(-g)] = -values[inward(g.min(edge))];
+                        }
+                    }
+                    Role::Slip => (1..=2).for_each(|g| values[inward(-g)] = values[inward((g - 1).min(edge))]),
+                    Role::NoSlip(wall) => {
+                        (1..=2).for_each(|g| {
+                            values[inward(-g)] = 2.0 * wall[component] - values[inward((g - 1).min(edge))]
+                        });
+                    }
+                    Role::In => (if across { 0 } else { 1 }..=2).for_each(|g| values[inward(-g)] = outer[inward(-g)]),
+                    Role::Out => (1..=2).for_each(|g| values[inward(-g)] = values[inward(0)]),
+                }
+            }
+        });
+    }
+}
