@@ -75,7 +75,7 @@ fn scattering(@builtin(position) p: vec4f) -> @location(0) vec4f {
     let nu = mu * mu_s + sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0)) * cos(azimuth);
     var once = vec3f(0.0);
     if (RULE == 4u) {
-        let light = sky_march(air, dims, nothing, smp, ray, 0.0, ray.length, max(quad.n / 4u, 1u), mu_s, nu);
+        let light = sky_march(air, dims, nothing, sources_of(air), smp, ray, 0.0, ray.length, max(quad.n / 4u, 1u), mu_s, nu);
         once = light.gas * rayleigh_phase(nu) + light.haze * mie_phase(nu, air.asymmetry_g);
         return vec4f(once, 1.0);
     }
@@ -100,7 +100,7 @@ fn scattering(@builtin(position) p: vec4f) -> @location(0) vec4f {
         let sun_light = sun_transmittance(air, altitude, mu_s_here) * weight;
         let here = air.rayleigh_scattering * density.x * rayleigh_phase(nu) + air.mie_scattering * density.y * mie_phase(nu, air.asymmetry_g);
         // As the march does for every node, so that costs compare.
-        let more = more_scattered(air, dims, nothing, smp, altitude, mu_s_here, clamp((t_ray + distance) / r, -1.0, 1.0), nu);
+        let more = more_scattered(air, dims, nothing, sources_of(air), smp, altitude, mu_s_here, clamp((t_ray + distance) / r, -1.0, 1.0), nu);
         once += sun_light * here + weight * 0.0 * more;
     }
     return vec4f(once, 1.0);
