@@ -6,11 +6,11 @@ use welkin::{
     clouds::CloudModel,
     context::Context,
     frame::{FrameFlags, Shared},
-    gpu::{Device, DeviceOptions},
+    gpu::Device,
     weather::{CloudKind, CloudLayer, Weather},
 };
 
-use crate::copies::{Copying, ROUNDS, SIZE, Scene, level_ground, median, texture, world};
+use crate::copies::{Scene, measured, median, world};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -57,23 +57,9 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
 
 /// Prints the cost of each sky.
 pub fn run() -> Fallible<()> {
-    let device = Device::headless(&DeviceOptions::default())?;
-    let (color, depth) =
-        (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
-    level_ground(&device, &depth, PITCH_RAD);
-    let copying = Copying::new(&device)?;
-    let mut scenes = scenes(&device)?;
-    for scene in &mut scenes {
-        scene.settle(&device, &color, &depth)?;
-    }
-    for _ in 0..ROUNDS {
-        for scene in &mut scenes {
-            scene.measure(&device, &copying, &color, &depth)?;
-        }
-    }
-    println!("frames of {} x {}, {}:", SIZE.width, SIZE.height, device.caps().adapter_name);
+    let mut scenes = measured(PITCH_RAD, scenes)?;
     let clear = median(&mut scenes[0].copies);
-    for scene in &mut scenes {
+    for mut scene in scenes {
         let copies = median(&mut scene.copies);
         println!("  {}: {copies:.1} copies, {:.2} of a clear sky", scene.name, copies / clear);
     }

@@ -21,11 +21,11 @@ use crate::textures;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-pub const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
+const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 };
 /// Copies in one submission, so that a submission's own work is next to nothing beside them.
 const COPIES: u32 = 16;
 /// Rounds of all scenes; the median of each counts.
-pub const ROUNDS: usize = 9;
+const ROUNDS: usize = 9;
 /// Frames without work on tables after which there is none.
 const SETTLED: u32 = 12;
 
@@ -47,14 +47,14 @@ pub fn median(of: &mut [f64]) -> f64 {
 }
 
 /// The clock: a pass that loads a texel and writes it.
-pub struct Copying {
+struct Copying {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     target: wgpu::TextureView,
 }
 
 impl Copying {
-    pub fn new(device: &Device) -> Fallible<Self> {
+    fn new(device: &Device) -> Fallible<Self> {
         let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: None,
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -99,7 +99,7 @@ impl Copying {
     }
 }
 
-pub fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (SIZE.width, SIZE.height), format, 1)
 }
 
@@ -137,7 +137,7 @@ impl Scene {
     }
 
     /// Draws frames until the tables of the sky, which come in parts, stand.
-    pub fn settle(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<()> {
+    fn settle(&mut self, device: &Device, color: &wgpu::Texture, depth: &wgpu::Texture) -> Fallible<()> {
         let (mut since, mut frames) = (0, 0);
         while since < SETTLED && frames < 1000 {
             self.ns(device, color, depth)?;
@@ -148,7 +148,7 @@ impl Scene {
     }
 
     /// Measures one frame between two copies.
-    pub fn measure(
+    fn measure(
         &mut self,
         device: &Device,
         copying: &Copying,
@@ -221,7 +221,7 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
 }
 
 /// Writes the depth of level ground 2 m below an eye that looks `pitch_rad` up.
-pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
+fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
     let row = |y: u32| {
         let ahead = (179.5 - f64::from(y)) / 180.0 * 0.45f64.tan();
         0.1 * (-pitch_rad.sin() - ahead * pitch_rad.cos()).max(0.0) / 2.0
@@ -231,12 +231,12 @@ pub fn level_ground(device: &Device, depth: &wgpu::Texture, pitch_rad: f64) {
     device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, SIZE);
 }
 
-/// Prints the copies of each scene.
-pub fn run() -> Fallible<()> {
+/// Measures scenes beside copies in turn, over level ground seen by eyes that look `pitch_rad` up, and prints on what.
+pub fn measured(pitch_rad: f64, scenes: impl Fn(&Arc<Device>) -> Fallible<Vec<Scene>>) -> Fallible<Vec<Scene>> {
     let device = Device::headless(&DeviceOptions::default())?;
     let (color, depth) =
         (texture(&device, wgpu::TextureFormat::Rgba16Float), texture(&device, wgpu::TextureFormat::R32Float));
-    level_ground(&device, &depth, 0.0);
+    level_ground(&device, &depth, pitch_rad);
     let copying = Copying::new(&device)?;
     let mut scenes = scenes(&device)?;
     for scene in &mut scenes {
@@ -248,7 +248,12 @@ pub fn run() -> Fallible<()> {
         }
     }
     println!("frames of {} x {} in copies, {}:", SIZE.width, SIZE.height, device.caps().adapter_name);
-    for scene in &mut scenes {
+    Ok(scenes)
+}
+
+/// Prints the copies of each scene.
+pub fn run() -> Fallible<()> {
+    for mut scene in measured(0.0, scenes)? {
         println!("  {}: {:.1}", scene.name, median(&mut scene.copies));
     }
     Ok(())

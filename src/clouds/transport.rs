@@ -38,8 +38,8 @@ const AZIMUTHS: usize = 64;
 pub const THINNEST: f64 = 0.05;
 /// Slabs of a ladder, the one of no depth among them.
 pub const DEPTHS: usize = 28;
-/// Rates at which light leaves through the sides, per scaled depth, for which there are ladders: their roots, with which light falls off,
-/// are 0.03 (e^(k/4) - 1).
+/// Ladders, one a rate at which light leaves through the sides, per scaled depth. Light falls off with the root of the rate: the roots are
+/// 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
 const LEAK_ROOT: f64 = 0.03;
 

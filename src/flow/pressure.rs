@@ -1,9 +1,9 @@
 //! The pressure that makes the air's flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
 //!
 //! Two ways to solve it. Successive over-relaxation (Young 1954) in two colours, as on a chessboard: each cell's value moves toward what its
-//! neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is refused. And multigrid: each V-cycle is
-//! a step of a conjugate gradient (Hestenes and Stiefel 1952, with Polak and Ribiere's update, since the cycle is not symmetric), so that
-//! thin walls and small openings, which coarse grids blur, cost some cycles and never convergence.
+//! neighbours ask for, and beyond by the relaxation factor; with 2 or more it diverges, and is refused. And multigrid: a V-cycle
+//! preconditions each step of conjugate gradients (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not
+//! symmetric). Coarse grids blur thin walls and small openings: these cost more cycles, but it converges.
 //!
 //! The residual of the equation is the divergence that stays. Both stop by it.
 

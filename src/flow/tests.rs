@@ -193,7 +193,7 @@ fn a_whirl_drifts_with_the_wind() {
     }
 }
 
-/// A box `length` long, which a whirl leaves if it is 48 m long.
+/// A box `length` long with a whirl in it: of a box 48 m long the whirl leaves, of a longer one it does not.
 fn leaving(length: u32) -> FlowField {
     let sides = [[Side::Open; 2], [Side::Slip; 2], [Side::Periodic; 2]];
     let settings = FlowSettings { cells: [length, 32, 1], cell_m: DVec3::ONE, sides, ..Default::default() };

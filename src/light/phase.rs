@@ -81,8 +81,8 @@ impl PhaseLobes {
 /// phase function itself). From `versine`, not the cosine, because near the forward peak of droplets (1 - g = 0.007)
 /// the cosine has no digits left in f32.
 ///
-/// A Henyey-Greenstein lobe folded n times with itself is one of g^n. Of the blend, (1 - w)^n is left that met only
-/// that lobe; the rest met Draine's about n w times, which turns even: alpha falls with the square of that number.
+/// Light that meets a Henyey-Greenstein lobe n times is spread by a lobe of g^n. Of the blend, the share (1 - w)^n has met only that lobe.
+/// The rest has met Draine's about n w times and becomes more even: alpha falls with the square of that number.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
