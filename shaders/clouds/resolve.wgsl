@@ -51,9 +51,11 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     }
     let square = min(pixel / picture.side, textureDimensions(marched) - 1u);
     let to = textureLoad(back, square, 0).rg;
-    let uv = (in.position.xy + to) / vec2f(picture.size);
-    let lost = any(uv < vec2f(0.0)) || any(uv > vec2f(1.0));
-    let kept = textureSampleLevel(last, linear, uv, 0.0) * vec4f(vec3f(picture.exposed), 1.0);
+    let was = in.position.xy + to;
+    let size = vec2f(picture.size);
+    let lost = any(was < vec2f(0.0)) || any(was > size);
+    let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
+    let kept = textureSampleLevel(last, linear, within, 0.0) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, square, 0), textureLoad(most, square, 0));
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(held, now, lost || is_marched), reach);

@@ -7,7 +7,7 @@ const MAX_FLASHES: u32 = 8u;
 struct FlashSource {
     // Camera-relative, m.
     position: vec3f,
-    // What the face of the clouds sends of it, cd (lightning/glow.wgsl).
+    // What the face of the clouds sends of it, cd (between/flash.wgsl).
     clouds: f32,
     // Luminous intensity in the air, cd; 0 of what shines inside a cloud.
     air: f32,
@@ -73,6 +73,9 @@ struct FrameUniform {
     flashes: array<FlashSource, MAX_FLASHES>,
     // Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
     cloud_shadow: vec4f,
+    // Pixels of the picture.
+    picture: vec2f,
+    pad: vec2f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

@@ -41,20 +41,21 @@ fn log10(x: f32) -> f32 {
     return log2(x) * 0.30103;
 }
 
-// Of all air and fog between the eye and what is seen, what drops hide among it.
+// Of all air, clouds and fog between the eye and what is seen, what drops hide among it.
 fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let air = Veil(vec3f(0.0), exp(-sky_path(ray.direction, seen.range).depth));
-    let through = with_fog(ray, seen.range, seen.plane, air).transmittance;
+    let through = veil_before(ray, seen.range, seen.plane, air, hung_in(seen.pixel, seen.range)).transmittance;
     return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
 }
 
 // Relative change of luminance over a hundredth of white by what the plan leaves out of air, fog and clear sky.
 fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
+    let hung = hung_in(seen.pixel, seen.range);
     drawn = vec4f(1.0, 1.0, 1.0, frame.drawn.w);
-    let all = exposed(host, weather_over(ray, seen.range, seen.plane));
+    let all = exposed(host, weather_over(ray, seen.range, seen.plane, hung));
     drawn = frame.drawn;
-    let planned = exposed(host, weather_over(ray, seen.range, seen.plane));
+    let planned = exposed(host, weather_over(ray, seen.range, seen.plane, hung));
     return abs(planned - all) / (all + 0.01);
 }
 
@@ -84,7 +85,6 @@ fn measured(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
 @fragment
 fn diagnose(in: FullscreenVarying) -> @location(0) vec4f {
     let pixel = vec2i(in.position.xy);
-    layer_pixel = pixel;
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
     var seen = Seen(pixel, 0, ndc, 0.0, RANGE_SKY, RANGE_SKY, 0.0);
     if HAS_DEPTH {

@@ -1,5 +1,5 @@
 // One face of the cube map of what stands around the camera, for reflections in the host's own things: the sky of the composition, its
-// fog and the planet's ground, without the discs of sun and moon and without stars.
+// clouds and fog and the planet's ground, without the discs of sun and moon and without stars.
 //!include "frame/composite.wgsl"
 
 struct EnvironmentFace {
@@ -27,7 +27,7 @@ fn environment(in: FullscreenVarying) -> EnvironmentTexel {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let at = in.uv * 2.0 - 1.0;
     let direction = normalize(face.forward + at.x * face.right + at.y * face.down);
-    let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY).light;
+    let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY, hung_toward(direction)).light;
     // Half floats end at 65504.
     let texel = vec4f(min(light * face.scale, vec3f(65504.0)), 1.0);
     return EnvironmentTexel(texel, texel);

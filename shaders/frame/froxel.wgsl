@@ -31,11 +31,18 @@ fn froxel_place(position: vec2f) -> FroxelPlace {
     return FroxelPlace(ndc, FROXEL_NEAR * (exp(slice / 31.0 * FROXEL_LOG) - 1.0));
 }
 
-// Air and fog before a place.
+// The picture's pixel that a ray goes through.
+fn picture_pixel(ndc: vec2f) -> vec2i {
+    let uv = vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y * frame.y_sign);
+    return vec2i(clamp(uv * frame.picture, vec2f(0.0), frame.picture - 1.0));
+}
+
+// Air, clouds and fog before a place.
 fn froxel_veil(at: FroxelPlace) -> Veil {
     drawn = frame.drawn;
     let ray = view_ray(frame.depth, at.ndc);
-    return veil_between(ray, at.distance, at.distance / ray.slant * frame.depth.plane_scale);
+    let hung = hung_in(picture_pixel(at.ndc), at.distance);
+    return veil_between(ray, at.distance, at.distance / ray.slant * frame.depth.plane_scale, hung);
 }
 
 fn froxel_of(veil: Veil) -> Froxel {

@@ -12,7 +12,7 @@ fn froxels(in: FullscreenVarying) -> Froxel {
             // The rest is not in the picture.
             break;
         }
-        let column = shaft_veil(shaft.order[k / 4u][k % 4u], at.ndc, at.distance);
+        let column = shaft_veil(shaft.order[k / 4u][k % 4u], picture_pixel(at.ndc), at.ndc, at.distance);
         let clear = max(1.0 - column.a, 0.0);
         veil = Veil(veil.light * clear + column.rgb / frame.exposure, veil.transmittance * clear);
     }

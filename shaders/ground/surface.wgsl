@@ -1,5 +1,5 @@
 // A wet surface seen by the camera: the host's colour x through + light, before air and fog.
-//!include "between/veil.wgsl"
+//!include "between/sky.wgsl"
 //!include "ground/binding.wgsl"
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
@@ -11,21 +11,12 @@
 override SHELTER: bool = false;
 override LAMPS: bool = false;
 
-// The sky without its lamps, as it stands behind what lies on the ground.
-fn sky_without_lamps(d: vec3f) -> vec3f {
-    var clear = frame.night_floor;
-    if CLEAR_SKY && !DECK_CLOSED && drawn.z > 0.0 && frame.deck_cover < 1.0 {
-        clear += color_of(sky_radiance_above(d)) * drawn.z;
-    }
-    return mix(clear, frame.deck * overcast_gradation(d.z), frame.deck_cover);
-}
-
 // What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if it
 // faces down.
 fn mirrored_light(d: vec3f) -> vec3f {
     let up = normalize(vec3f(d.xy, max(d.z, 1e-3)));
     let through = exp(-ground.fog_depth / max(up.z, 0.02));
-    let sky = sky_without_lamps(up) * through + ground.fog_light * (1.0 - through);
+    let sky = sky_toward(up) * through + ground.fog_light * (1.0 - through);
     return mix(ground.ground_light, sky, smoothstep(-0.1, 0.02, d.z));
 }
 

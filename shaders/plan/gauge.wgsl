@@ -12,6 +12,7 @@ struct Looked {
     plane: f32,
     ndc: vec2f,
     mask: f32,
+    hung: Hung,
 }
 
 // The upper halves of two numbers: eight bits of each are enough.
@@ -27,7 +28,7 @@ fn gauged(p: Looked) -> vec4u {
     for (var k = 0u; k < frame.compositions; k++) {
         drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
         behind_share = frame.behind.y * drawn.z;
-        shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane));
+        shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, p.hung));
     }
     // The measure of error of the whole of Welkin: relative luminance over a hundredth of white.
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));

@@ -202,14 +202,14 @@ fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
 }
 
 // The veil of a column before the pixel at `ndc`, premultiplied, in the drops' units.
-fn shaft_veil(i: u32, ndc: vec2f, range: f32) -> vec4f {
+fn shaft_veil(i: u32, pixel: vec2i, ndc: vec2f, range: f32) -> vec4f {
     drawn = frame.drawn;
     let ray = view_ray(frame.depth, ndc);
     let met = column_met(i, ray.origin, ray.direction, range);
     let through = exp(-met.depth);
     let far = met.first + (met.last - met.first) * mean_place(met.depth);
     let at = max(far, 1.0);
-    let before = veil_between(ray, at, at / ray.slant * frame.depth.plane_scale);
+    let before = veil_between(ray, at, at / ray.slant * frame.depth.plane_scale, hung_in(pixel, at));
     let own = column_light(i, ray.origin + ray.direction * at, ray.direction) * mix(1.0, met.front, FRONT_SHARE);
     let taken = select(0.0, 1.0 - through, met.last > met.first);
     return vec4f((before.light + before.transmittance * own) * (taken * frame.exposure), taken);

@@ -12,5 +12,5 @@ fn shaft_fragment(in: ShaftVarying) -> @location(0) vec4f {
     if HAS_DEPTH {
         range = view_range(frame.depth, textureLoad(host_depth, vec2i(in.position.xy), 0).r, in.ndc);
     }
-    return shaft_veil(in.column, in.ndc, range);
+    return shaft_veil(in.column, vec2i(in.position.xy), in.ndc, range);
 }

@@ -28,7 +28,7 @@ const SOLID_MEAN: f64 = 0.47;
 const SOLID_GAIN: f64 = 2.2;
 
 /// Most that the solid noise adds to the excess, over how far it frays: nearly all of it.
-const MOST_FRAYED: f64 = 0.8;
+pub(super) const MOST_FRAYED: f64 = 0.8;
 
 /// How the clouds of one layer are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,6 +129,18 @@ impl Field<'_> {
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
+    /// What the solid noise adds to the excess at a place.
+    pub(super) fn frays(&self, position_m: DVec3) -> f64 {
+        let s = &self.shape;
+        let at = (position_m - s.drift_m.extend(s.base_m)) / (s.scale_m * SOLID_CELLS);
+        s.rough * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
+    }
+
+    /// Extinction, 1/m, of a frayed excess over threshold and dome.
+    pub(super) fn dense(&self, excess: f64) -> f64 {
+        self.shape.extinction_per_m * (excess / self.shape.soft).clamp(0.0, 1.0)
+    }
+
     /// Extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
     pub fn extinction_per_m(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
@@ -140,9 +152,7 @@ impl Field<'_> {
         if excess < -MOST_FRAYED * s.rough {
             return 0.0;
         }
-        let at = (position_m - s.drift_m.extend(s.base_m)) / (s.scale_m * SOLID_CELLS);
-        let frayed = excess + s.rough * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN);
-        s.extinction_per_m * (frayed / s.soft).clamp(0.0, 1.0)
+        self.dense(excess + self.frays(position_m))
     }
 }
 
@@ -161,7 +171,7 @@ pub struct About {
 }
 
 /// Height, of 1, of full extinction below a height in a column of this excess.
-fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
+pub(super) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
     let d = shape.dome.max(1e-3);
     let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);
     let (full, end) = (reach(excess - shape.soft), reach(excess));

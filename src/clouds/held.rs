@@ -1,13 +1,17 @@
 //! What a context holds of the clouds: how they are drawn, and where they grow, for questions.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{
     CloudModel,
     field::{Map, Shape, Solid},
+    light::Sources,
+    march::CloudRays,
+    overhead::Overhead,
     shadow::sun_share,
+    tables::{SUN_MOVED, media},
 };
 use crate::{
     error::Result,
@@ -20,7 +24,44 @@ use crate::{
 pub(crate) struct HeldClouds {
     pub model: CloudModel,
     /// What clouds are cut out of: made when it is first asked for.
-    grown: Arc<OnceLock<(Map, Solid)>>,
+    grown: Arc<OnceLock<Grown>>,
+}
+
+/// What clouds are cut out of, and the light in them that was asked for last.
+pub(super) struct Grown {
+    pub map: Map,
+    pub solid: Solid,
+    lit: Mutex<Option<(f64, DVec3, [Arc<Sources>; 2])>>,
+}
+
+impl Grown {
+    fn new(seed: u64) -> Result<Self> {
+        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Mutex::new(None) })
+    }
+
+    /// Light in droplets of a diameter and in ice, under a sun.
+    pub fn sources(&self, liquid_um: f64, to_sun: DVec3) -> [Arc<Sources>; 2] {
+        // After a panic elsewhere the light is made anew.
+        let mut lit = self.lit.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some((um, sun, sources)) = &*lit
+            && *um == liquid_um
+            && sun.distance(to_sun) < SUN_MOVED
+        {
+            return sources.clone();
+        }
+        let sources = media(liquid_um).map(|medium| {
+            let (cosine, sine) = (to_sun.z.clamp(-1.0, 1.0).abs(), to_sun.truncate().length());
+            Arc::new(Sources {
+                top: medium.under_beam(cosine),
+                side: medium.under_beam(sine),
+                sky: medium.under_sky(),
+                scattering: medium.scattering,
+                to_sun,
+            })
+        });
+        *lit = Some((liquid_um, to_sun, sources.clone()));
+        sources
+    }
 }
 
 /// Where they are in a saved state.
@@ -49,15 +90,34 @@ impl HeldClouds {
         if self.model == CloudModel::Deck {
             return Ok(scene.brighter().direct_share);
         }
-        let (map, solid) = match self.grown.get() {
-            Some(grown) => grown,
-            None => {
-                let grown = (Map::new(seed), Solid::new(seed)?);
-                self.grown.get_or_init(|| grown)
-            }
-        };
+        let grown = self.grown(seed)?;
         let slabs = c.cloud_slabs().filter(|s| s.cover > 0.0);
-        Ok(sun_share(slabs.map(|slab| Shape::new(c, slab, drift_m, time_s)), map, solid, scene))
+        Ok(sun_share(slabs.map(|slab| Shape::new(c, slab, drift_m, time_s)), &grown.map, &grown.solid, scene))
+    }
+
+    /// What clouds are cut out of.
+    fn grown(&self, seed: u64) -> Result<&Grown> {
+        if let Some(grown) = self.grown.get() {
+            return Ok(grown);
+        }
+        let grown = Grown::new(seed)?;
+        Ok(self.grown.get_or_init(|| grown))
+    }
+
+    /// The clouds about a scene's place, where the model draws them as a volume. The wind at 10 m has carried the air `drift_m` by
+    /// `time_s`.
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn rays(
+        &self,
+        seed: u64,
+        scene: &Scene,
+        (drift_m, time_s): (DVec2, f64),
+        radius_m: f64,
+    ) -> Result<Option<CloudRays<'_>>> {
+        let Some(overhead) = Overhead::new(self.model, scene, (drift_m, time_s)) else { return Ok(None) };
+        Ok(Some(CloudRays::new(&overhead, self.grown(seed)?, scene, radius_m.min(1e9))))
     }
 }
 

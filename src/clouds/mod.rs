@@ -6,6 +6,7 @@
 //! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box of the depths about
 //!   a place. [`mod@reference`] follows photons.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
+//! * What mirrors and cube maps show of it: `round`, a small map of all directions.
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures.
 //!
 //! The deck is drawn by the composition itself (`shaders/frame/composite.wgsl`).
@@ -22,10 +23,14 @@ pub mod field;
 mod held;
 pub mod light;
 pub mod map;
+mod march;
+mod overhead;
 mod passes;
 mod picture;
 pub mod probe;
 pub mod reference;
+mod round;
+mod rows;
 pub mod shadow;
 mod shadow_map;
 mod shape;
@@ -37,6 +42,7 @@ mod view;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use held::HeldClouds;
+pub(crate) use march::CloudRays;
 pub(crate) use view::CloudsView;
 
 /// How clouds are drawn.
@@ -47,7 +53,7 @@ pub enum CloudModel {
     /// cheapest.
     #[default]
     Deck,
-    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck. Wet ground and the cube map mirror a deck.
+    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck.
     Volume,
 }
 

@@ -1,10 +1,11 @@
 //! The passes of a picture's clouds: some pixels are marched, each square of them is followed back to the last frame, and the whole picture is
-//! made of both.
+//! made of both. Beside it the clouds of all directions are made, where anything shows them.
 
 use std::sync::Arc;
 
 use super::{
     picture::{BEHIND, PAIR, Picture, SEEN},
+    round::{Around, Round},
     shadow_map::{ShadowMap, Standing},
     tables::CloudTables,
     uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
@@ -32,11 +33,12 @@ struct Resolve {
 /// The pipelines, and the layouts of their groups: of the march, of the passes after it, and of what shadows fall on by whether that has
 /// several samples a pixel.
 struct Pipelines {
-    march_layout: wgpu::BindGroupLayout,
     picture_layout: wgpu::BindGroupLayout,
     shadow_layouts: [wgpu::BindGroupLayout; 2],
     march: wgpu::RenderPipeline,
     follow: wgpu::RenderPipeline,
+    /// Those of the march and of the sky, which the clouds of all directions are marched with too.
+    march_layouts: [wgpu::BindGroupLayout; 2],
     resolve: Vec<(Resolve, wgpu::RenderPipeline)>,
 }
 
@@ -88,9 +90,9 @@ impl Pipelines {
         let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
             march: make(device, march, &[&march_layout, sky], &[SEEN, PAIR], &[])?,
+            march_layouts: [march_layout, sky.clone()],
             follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
             resolve: Vec::new(),
-            march_layout,
             picture_layout,
             shadow_layouts,
         })
@@ -123,6 +125,7 @@ pub(super) struct CloudPasses {
     /// What the march is bound to, and with which tables of the sky.
     marched_of: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
+    round: Option<Round>,
     /// What shadows fall on, and of which of the host's depth images that is.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
@@ -133,12 +136,21 @@ pub(super) struct CloudPasses {
 pub(super) struct Shaded<'a> {
     pub lie: (Standing, ShadowUniform),
     pub depth: Layer<'a>,
-    /// The frame is a pure function of view and time: all of the map is made.
-    pub is_pure: bool,
+}
+
+/// What of a frame is to be made, beside what an earlier call of it has made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Wanted {
+    /// An earlier call has begun the frame.
+    pub is_begun: bool,
+    pub march: bool,
+    pub resolve: bool,
+    pub round: bool,
 }
 
 /// What the passes draw from.
 pub(super) struct CloudFrame<'a> {
+    pub wanted: Wanted,
     pub clouds: CloudsUniform,
     pub picture: PictureUniform,
     /// The frame's block, and the sky's tables with their layout.
@@ -147,6 +159,10 @@ pub(super) struct CloudFrame<'a> {
     /// What stands behind the sky's own light.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
+    /// What the clouds of all directions are made of.
+    pub around: Around,
+    /// The frame is a pure function of view and time.
+    pub is_pure: bool,
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
@@ -161,10 +177,10 @@ fn attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachmen
     })
 }
 
-/// Runs one pass over all of its targets.
+/// Runs one pass over its targets, or over a part of them from their first corner.
 fn run(
     encoder: &mut wgpu::CommandEncoder,
-    targets: &[&wgpu::TextureView],
+    (targets, part): (&[&wgpu::TextureView], Option<(u32, u32)>),
     pipeline: &wgpu::RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
@@ -174,6 +190,9 @@ fn run(
         color_attachments: &attachments[..targets.len()],
         ..Default::default()
     });
+    if let Some((width, height)) = part {
+        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+    }
     pass.set_pipeline(pipeline);
     for (i, group) in groups.iter().enumerate() {
         pass.set_bind_group(i as u32, *group, &[]);
@@ -191,6 +210,7 @@ impl CloudPasses {
             picture: None,
             marched_of: None,
             shadows: None,
+            round: None,
             shaded: None,
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             no_block: bind::block(&device.device, "no shadows of clouds", size_of::<ShadowUniform>()),
@@ -211,25 +231,33 @@ impl CloudPasses {
         self.picture = None;
     }
 
-    /// The picture that will hold the clouds once they are drawn.
-    pub fn next(&self) -> Option<wgpu::TextureView> {
-        self.picture.as_ref().map(|p| p.next().layers.clone())
+    /// The picture that will hold the clouds once what is wanted is made.
+    pub fn layers(&self, wanted: &Wanted) -> Option<wgpu::TextureView> {
+        let picture = self.picture.as_ref()?;
+        let which = if wanted.resolve { picture.to_make(wanted.is_begun) } else { picture.newest };
+        Some(picture.whole[which].layers.clone())
     }
 
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
         let shadows = self.shadows.as_ref().map_or(0, |_| ShadowMap::BYTES);
-        CloudTables::BYTES + shadows + self.picture.as_ref().map_or(0, Picture::bytes)
+        let round = self.round.as_ref().map_or(0, |_| Round::BYTES);
+        CloudTables::BYTES + shadows + round + self.picture.as_ref().map_or(0, Picture::bytes)
     }
 
     /// What the march is bound to.
-    fn march_group(&self, device: &Device, layout: &wgpu::BindGroupLayout, frame: &wgpu::Buffer) -> wgpu::BindGroup {
+    fn march_group(&mut self, device: &Device, layout: &wgpu::BindGroupLayout, of: &CloudFrame<'_>) -> wgpu::BindGroup {
+        if let Some((sky, group)) = &self.marched_of
+            && sky == of.sky.1
+        {
+            return group.clone();
+        }
         let (solid, light) = (self.tables.solid.view(), self.tables.light.view());
-        device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("clouds marched"),
             layout,
             entries: &[
-                bind::buffer(0, frame),
+                bind::buffer(0, of.frame),
                 bind::buffer(1, &self.block),
                 bind::view(2, &self.tables.map),
                 bind::view(3, &solid),
@@ -238,7 +266,9 @@ impl CloudPasses {
                 bind::sampler(6, &self.tables.clamping),
                 bind::buffer(7, &self.picture_block),
             ],
-        })
+        });
+        self.marched_of = Some((of.sky.1.clone(), group.clone()));
+        group
     }
 
     /// What the passes after the march are bound to: the one that follows squares, and the one that makes a whole picture of each of the two
@@ -278,13 +308,13 @@ impl CloudPasses {
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         layout: &wgpu::BindGroupLayout,
-        shaded: Option<&Shaded<'_>>,
+        (shaded, is_pure): (Option<&Shaded<'_>>, bool),
     ) -> Result<wgpu::BindGroup> {
         if shaded.is_some() && self.shadows.is_none() {
             (self.shadows, self.shaded) = (Some(ShadowMap::new(device)?), None);
         }
         if let (Some(of), Some(shadows)) = (shaded, &mut self.shadows) {
-            shadows.draw(device, encoder, &self.tables, &self.block, of.lie, of.is_pure);
+            shadows.draw(device, encoder, &self.tables, &self.block, of.lie, is_pure);
         }
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
         if let Some((made, group)) = &self.shaded
@@ -308,53 +338,81 @@ impl CloudPasses {
         Ok(group)
     }
 
-    /// Marches a frame's pixels and makes the picture of them. Answers the passes that it took.
+    /// Makes what is wanted of a frame. Answers the passes that it took.
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
             None => Pipelines::new(device, of.sky.0)?,
         };
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
+        let group = self.march_group(device, &pipelines.march_layouts[0], of);
+        let mut passes = 0;
+        if of.wanted.march || of.wanted.resolve {
+            passes += self.draw_picture(device, encoder, of, (&mut pipelines, &mut picture), &group)?;
+        }
+        let made = &picture.whole[picture.newest].texture;
+        if let Some(behind) = of.behind {
+            copy_layer(encoder, behind, made);
+        }
+        if of.wanted.round {
+            let [march, sky] = &pipelines.march_layouts;
+            let round = match &mut self.round {
+                Some(round) => round,
+                none => none.insert(Round::new(device, &[march, sky])?),
+            };
+            passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.is_pure);
+            round.copy(encoder, made, picture.of.0.1);
+        }
+        (self.picture, self.pipelines) = (Some(picture), Some(pipelines));
+        Ok(passes)
+    }
+
+    /// Marches a frame's pixels, and makes the picture of them.
+    fn draw_picture(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        of: &CloudFrame<'_>,
+        (pipelines, picture): (&mut Pipelines, &mut Picture),
+        group: &wgpu::BindGroup,
+    ) -> Result<u32> {
         let has_history = of.picture.exposed > 0.0;
         let has_shadows = of.shaded.is_some();
         let is_multisampled = has_shadows && of.is_multisampled;
         let kind = Resolve { has_history, has_shadows, is_multisampled, depth_kinds: of.depth_kinds };
         let resolve = pipelines.resolve(device, kind)?;
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
         device.queue.write_buffer(&self.picture_block, 0, bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
-        let shaded = self.shade(device, encoder, layout, of.shaded.as_ref())?;
-        let marched = match &self.marched_of {
-            Some((sky, group)) if sky == of.sky.1 => group.clone(),
-            _ => self.march_group(device, &pipelines.march_layout, of.frame),
-        };
-        self.marched_of = Some((of.sky.1.clone(), marched.clone()));
+        let shaded = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.is_pure))?;
         let groups = match &picture.groups {
             Some(groups) => groups.clone(),
-            None => self.picture_groups(device, &pipelines.picture_layout, of.frame, &picture),
+            None => self.picture_groups(device, &pipelines.picture_layout, of.frame, picture),
         };
-        let [seen, reach] = &picture.marched;
-        run(encoder, &[seen, reach], &pipelines.march, &[&marched, of.sky.1]);
-        if has_history {
+        let mut passes = 1 + u32::from(has_shadows);
+        if of.wanted.march {
+            let [seen, reach] = &picture.marched;
+            run(encoder, (&[seen, reach], None), &pipelines.march, &[group, of.sky.1]);
+            passes += 1;
+        }
+        if of.wanted.march && has_history {
             let [least, most, back] = &picture.followed;
-            run(encoder, &[least, most, back], &pipelines.follow, &[&groups[0]]);
+            run(encoder, (&[least, most, back], None), &pipelines.follow, &[&groups[0]]);
+            passes += 1;
         }
-        let [seen, reach] = &picture.next().written;
-        run(encoder, &[seen, reach], &resolve, &[&groups[1 + picture.newest], &shaded]);
-        if let Some(behind) = of.behind {
-            copy_layer(encoder, behind, &picture.next().texture);
-        }
-        picture.newest = 1 - picture.newest;
+        let made = picture.to_make(of.wanted.is_begun);
+        let [seen, reach] = &picture.whole[made].written;
+        run(encoder, (&[seen, reach], Some(picture.of.0)), &resolve, &[&groups[1 + (1 - made)], &shaded]);
+        picture.newest = made;
         picture.groups = Some(groups);
-        (self.picture, self.pipelines) = (Some(picture), Some(pipelines));
-        Ok(2 + u32::from(has_history) + u32::from(has_shadows))
+        Ok(passes)
     }
 }
 
 /// Copies what stands behind the sky's own light into its layer.
 fn copy_layer(encoder: &mut wgpu::CommandEncoder, from: &wgpu::Texture, to: &wgpu::Texture) {
     let origin = wgpu::Origin3d { x: 0, y: 0, z: BEHIND };
-    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..to.size() };
+    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..from.size() };
     encoder.copy_texture_to_texture(
         from.as_image_copy(),
         wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() },

@@ -1,12 +1,14 @@
 //! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them and of the last.
 
+use super::round;
 use crate::gpu::{Device, bind};
 
 /// Of what is seen of clouds.
 pub(super) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Of two numbers of a place in the picture.
 pub(super) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's own light.
+/// Layers of the whole picture: what is seen of clouds and how far they reach, and what else stands behind the sky's own light. Below the
+/// picture there is room for the clouds of all directions.
 pub(super) const LAYERS: u32 = 3;
 /// The last of them.
 pub(super) const BEHIND: u32 = 2;
@@ -26,6 +28,11 @@ fn texture(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFo
     })
 }
 
+/// Texels of the whole picture with the clouds of all directions below it.
+fn with_round((width, height): (u32, u32)) -> (u32, u32) {
+    (width.max(round::SIDE), height + round::SIDE)
+}
+
 /// The whole picture as one frame left it.
 pub(super) struct Whole {
     pub texture: wgpu::Texture,
@@ -37,7 +44,7 @@ pub(super) struct Whole {
 
 impl Whole {
     fn new(device: &Device, size: (u32, u32)) -> Self {
-        let texture = texture(device, size, SEEN, LAYERS);
+        let texture = texture(device, with_round(size), SEEN, LAYERS);
         let layers = bind::as_layers(&texture);
         let layer = |base_array_layer| {
             texture.create_view(&wgpu::TextureViewDescriptor {
@@ -61,7 +68,7 @@ pub(super) struct Picture {
     /// Of each square the least and the most that is seen about it, and where it was in the last frame.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
-    /// Which of the two was written last.
+    /// Which of the two is of the last frame that was drawn.
     pub newest: usize,
     /// What the passes after the march are bound to.
     pub groups: Option<[wgpu::BindGroup; 3]>,
@@ -81,15 +88,16 @@ impl Picture {
         }
     }
 
-    /// The one that this frame makes.
-    pub fn next(&self) -> &Whole {
-        &self.whole[1 - self.newest]
+    /// Which of the two the next draw makes: the newest once more where that is of the same frame.
+    pub fn to_make(&self, is_begun: bool) -> usize {
+        if is_begun { self.newest } else { 1 - self.newest }
     }
 
     /// Bytes of GPU memory.
     pub fn bytes(&self) -> u64 {
         let ((width, height), side) = self.of;
         let low = u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));
-        2 * 8 * u64::from(LAYERS) * u64::from(width) * u64::from(height) + (3 * 8 + 2 * 4) * low
+        let whole = with_round((width, height));
+        2 * 8 * u64::from(LAYERS) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low
     }
 }

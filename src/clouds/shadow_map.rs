@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{field::Shape, shadow::LOWEST, tables::CloudTables, uniforms::ShadowUniform};
+use super::{field::Shape, rows::Rows, shadow::LOWEST, tables::CloudTables, uniforms::ShadowUniform};
 use crate::{
     error::Result,
     gpu::{
@@ -29,10 +29,10 @@ const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 /// What the map is made of.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Standing {
-    time_s: f64,
-    to_light: DVec3,
-    threshold_sum: f64,
-    camera_m: DVec2,
+    pub time_s: f64,
+    pub to_light: DVec3,
+    pub threshold_sum: f64,
+    pub camera_m: DVec2,
 }
 
 /// The map and the pass that makes it.
@@ -42,24 +42,22 @@ pub(super) struct ShadowMap {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
     standing: Option<Standing>,
-    row: u32,
-    /// Rows made since anything changed: with all of them made there is nothing left to do.
-    made: u32,
+    rows: Rows,
 }
 
 /// What the map is made of for a frame, how it lies, and where the camera stands in it.
-pub(super) fn lie(now: &Moment<'_>, shapes: &[Shape]) -> (Standing, ShadowUniform) {
+pub(super) fn lie<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> + Clone) -> (Standing, ShadowUniform) {
     let scene = &now.scene;
     let plane_m = scene.conditions.air.station_altitude_m;
     let light = scene.brighter();
-    let drift_m = shapes.first().map_or(DVec2::ZERO, |s| s.drift_m);
+    let drift_m = shapes.clone().next().map_or(DVec2::ZERO, |s| s.drift_m);
     let period_m = TEXEL_M * f64::from(TEXELS);
     let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
-    let lowest_m = shapes.iter().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
+    let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
     let standing = Standing {
         time_s: now.time_s,
         to_light: light.direction,
-        threshold_sum: shapes.iter().map(|s| s.threshold + s.base_m / 1000.0).sum(),
+        threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
         camera_m: DVec2::from_array(scene.map_m),
     };
     let uniform = ShadowUniform {
@@ -111,8 +109,7 @@ impl ShadowMap {
             pipeline: pass::fullscreen(device, &desc)?,
             layout,
             standing: None,
-            row: 0,
-            made: 0,
+            rows: Rows::default(),
         })
     }
 
@@ -131,14 +128,9 @@ impl ShadowMap {
     ) {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
         let rests = self.standing == Some(here);
-        if rests && self.made >= TEXELS {
-            return;
-        }
         let holds = self.standing.is_some_and(|b| !is_pure && !here.leaps_from(&b));
         self.standing = Some(here);
-        let (first, rows) = if holds { (self.row, ROWS) } else { (0, TEXELS) };
-        self.row = (first + rows) % TEXELS;
-        self.made = if rests && holds { self.made + rows } else { rows };
+        let Some((first, rows)) = self.rows.due(TEXELS, ROWS, rests, holds) else { return };
         let solid = tables.solid.view();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadows of clouds"),
@@ -169,7 +161,8 @@ impl ShadowMap {
 }
 
 impl Standing {
-    fn leaps_from(&self, before: &Self) -> bool {
+    /// Whether nothing of a map of what stood before holds.
+    pub fn leaps_from(&self, before: &Self) -> bool {
         let (time_s, turn, threshold) = LEAPS;
         (self.time_s - before.time_s).abs() > time_s
             || self.to_light.dot(before.to_light) < turn.cos()

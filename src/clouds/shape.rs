@@ -2,8 +2,14 @@
 
 use glam::DVec2;
 
-use super::{cover::threshold, field::Shape};
-use crate::weather::{CloudSlab, Conditions};
+use super::{
+    cover::threshold,
+    field::{Shape, filled_below},
+};
+use crate::{
+    chance::normal_quantile,
+    weather::{CloudSlab, Conditions},
+};
 
 /// Speed of the wind that carries clouds over that at 10 m: at 100 m over open land it is 1.4 times as fast (log law, roughness 0.03 m),
 /// and above the friction layer 1.3 times as fast as there (Stull 1988, chapter 1). One number for all weathers: clouds are where the air
@@ -14,6 +20,20 @@ const LIFE_S: f64 = 1200.0;
 
 fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
+}
+
+/// Columns whose mean stands for all.
+const COLUMNS: usize = 32;
+
+/// How much of its thickness a cloudy column of a layer fills on the mean: the tops of most are below the layer's. The map's number is spread
+/// normally, edges are taken unfrayed.
+fn filled_share(of: &Shape) -> f64 {
+    let below = 0.5 * libm::erfc(-of.threshold * std::f64::consts::FRAC_1_SQRT_2);
+    let one = |i: usize| {
+        let rank = below + (1.0 - below) * (i as f64 + 0.5) / COLUMNS as f64;
+        filled_below(of, normal_quantile(rank) - of.threshold, 1.0)
+    };
+    (0..COLUMNS).map(one).sum::<f64>() / COLUMNS as f64
 }
 
 impl Shape {
@@ -31,7 +51,7 @@ impl Shape {
     pub(super) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
         let sheet = mix(mix(0.35, 1.4, slab.cellular), 1.5, heaps);
-        Self {
+        let shape = Self {
             base_m: slab.base_m,
             thickness_m: slab.thickness_m,
             scale_m: slab.scale_m,
@@ -43,6 +63,41 @@ impl Shape {
             cellular: slab.cellular,
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
+        };
+        // The layer's optical depth is that of its clouds on the mean.
+        Self { extinction_per_m: shape.extinction_per_m / filled_share(&shape), ..shape }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        clouds::{
+            cover::{field, typical},
+            field::{Map, Solid},
+        },
+        weather::CloudKind,
+    };
+
+    #[test]
+    fn columns_with_cloud_have_the_optical_depth_of_their_layer_on_the_mean() {
+        let grown = (Map::new(3), Solid::new(3).unwrap());
+        for kind in [CloudKind::Cumulus, CloudKind::ToweringCumulus, CloudKind::Stratocumulus, CloudKind::Stratus] {
+            for cover in [0.25, 0.5, 0.75, 1.0] {
+                let slab = typical(kind, cover).unwrap();
+                let field = field(&slab, &grown, threshold(&slab));
+                let step_m = slab.thickness_m / 64.0;
+                let column = |i: usize| {
+                    let at = DVec2::new((i % 63) as f64 * 0.7135, (i / 63) as f64 * 0.6131) * slab.scale_m;
+                    let height = |k: usize| slab.base_m + (k as f64 + 0.5) * step_m;
+                    (0..64).map(|k| field.extinction_per_m(at.extend(height(k)))).sum::<f64>() * step_m
+                };
+                let cloudy: Vec<f64> = (0..4000).map(column).filter(|depth| *depth > 0.1).collect();
+                let mean = cloudy.iter().sum::<f64>() / cloudy.len() as f64 / slab.optical_depth;
+                println!("{kind:?} at {cover}: {mean:.2} of the layer's optical depth");
+                assert!((mean - 1.0).abs() < 0.2, "{kind:?} at {cover}: {mean}");
+            }
         }
     }
 }

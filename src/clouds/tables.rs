@@ -19,7 +19,7 @@ use crate::{
 /// Format of the map and of the tables of light.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Change of the sun's cosine after which the tables under its beam are made anew.
-const SUN_MOVED: f64 = 2e-3;
+pub(super) const SUN_MOVED: f64 = 2e-3;
 /// Asymmetry of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
 const ICE_ASYMMETRY: f64 = 0.77;
 
@@ -119,14 +119,18 @@ fn medium(phase: Phase) -> Transport {
     Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0))
 }
 
+/// Droplets of a diameter, and ice.
+pub(super) fn media(liquid_um: f64) -> [Transport; 2] {
+    [Phase::Droplets { diameter_um: liquid_um }, Phase::HenyeyGreenstein { g: ICE_ASYMMETRY }].map(medium)
+}
+
 impl CloudTables {
     pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
         let side = MAP_SIZE as u32;
         let map = texture(device, "cloud map", (side, side));
         write_halves(device, &map, (0, 0), side, &Map::new(seed).0);
         let liquid_um = 20.0;
-        let media =
-            [Phase::Droplets { diameter_um: liquid_um }, Phase::HenyeyGreenstein { g: ICE_ASYMMETRY }].map(medium);
+        let media = media(liquid_um);
         Ok(Self {
             map: map.create_view(&Default::default()),
             solid: NoiseTexture::new(device, [SOLID_SIZE; 3], &[solid_settings(seed)])?,

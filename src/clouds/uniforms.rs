@@ -126,7 +126,7 @@ fn padded(v: [f64; 3], last: f64) -> [f32; 4] {
 }
 
 /// Width of a cloud from side to side, in cells.
-const WIDTH_CELLS: f64 = 0.6;
+pub(super) const WIDTH_CELLS: f64 = 0.6;
 
 #[cfg(test)]
 mod tests {

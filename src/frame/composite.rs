@@ -132,7 +132,7 @@ fn layout(device: &wgpu::Device, sampling: Sampling) -> wgpu::BindGroupLayout {
         (8, Slot::Texels),
         (9, Slot::Texels),
         (10, Slot::Texels),
-        (11, Slot::TexelsArray),
+        (11, Slot::FilteredArray),
     ];
     bind::layout(device, "frame", wgpu::ShaderStages::FRAGMENT, &slots)
 }

@@ -67,6 +67,7 @@ impl View {
         for effect in self.effects.each() {
             effect.compose(&shot, &mut composition)?;
         }
+        composition.looks_round |= self.environment.is_some();
         let variant = self.variant(&shot, &mut composition)?;
         self.hold_copy(color)?;
         self.bind(&shot, &composition)?;

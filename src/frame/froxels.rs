@@ -35,7 +35,7 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
 /// Shader, samples of the host's images, constants.
-type FroxelKind = (&'static str, Sampling, [Constant; 2]);
+type FroxelKind = (&'static str, Sampling, [Constant; 3]);
 
 /// Pipelines held for a view: with and without fog, and an effect's own, over one host's images.
 const MOST_PIPELINES: usize = 8;
@@ -87,7 +87,7 @@ impl Froxels {
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
         // The others would make a pipeline of many weathers.
-        let constants = ["FOG", "SKY_MARCH"].map(|name| (name, between.value(name)));
+        let constants = ["FOG", "SKY_MARCH", "CLOUDS"].map(|name| (name, between.value(name)));
         let device = to.device;
         let pipeline = self.pipelines.get_or_make(
             |made| *made == (shader, sampling, constants),

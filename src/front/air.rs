@@ -22,7 +22,7 @@ use crate::{
 };
 
 impl Context {
-    /// What air, fog, rain and snow between `from` and `to` leave of the light at simulation time `time_s`, rain areas on the mean
+    /// What air, fog, rain, snow and clouds drawn as a volume between `from` and `to` leave of the light at simulation time `time_s`, rain areas on the mean
     /// over their curtains.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Context {
 
     /// Slant visual range: how far a black object is seen from `position` along `direction`, a unit vector (east, north, up) there, at
     /// simulation time `time_s`, m. Its contrast with what lies behind it falls to 5 % where [`Context::between`] leaves 5 % of the light
-    /// of 550 nm: by air, fog, rain, snow and rain areas. Infinite where more is left at the end of the air or on the planet's ground.
+    /// of 550 nm: by air, fog, rain, snow, rain areas, and clouds that are drawn as a volume. Infinite where more is left at the end of the air or on the planet's ground.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is no place or the direction no unit vector; for times as
@@ -87,8 +87,9 @@ impl Context {
             let fog = transmittance_between(&layer, &view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
-        let areas = (-self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
-        Ok(through.map(|t| (t * areas).min(1.0)))
+        let clouds = self.cloud_rays(scene, time_s)?.map_or(0.0, |clouds| clouds.depth(offset));
+        let left = (-clouds - self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
+        Ok(through.map(|t| (t * left).min(1.0)))
     }
 
     /// The sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical harmonics of radiance, cd/m^2 a

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::air::unit_vector;
 use crate::{
+    clouds::CloudRays,
     context::{Context, Light, Scene},
     error::Result,
     fog::{FogModel, reference::fog_along},
@@ -23,7 +24,7 @@ const UNDER_DECK: f64 = 7.0 / 9.0;
 
 impl Context {
     /// Radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at simulation time `time_s`: cd/m^2
-    /// a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air, cloud deck, fog, what falls in
+    /// a channel of linear Rec. 709, as a picture shows it where the host drew nothing. Clear air, clouds, fog, what falls in
     /// the weather's fog layer, the night's glow, and below the horizon the planet's ground count. The discs of sun and moon, stars
     /// and planets, rain areas, and the host's objects do not.
     ///
@@ -45,7 +46,8 @@ impl Context {
         let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?;
         let fog_depth = fog.depth_above(scene.place.altitude_m);
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
-        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, night };
+        let clouds = self.cloud_rays(&scene, time_s)?;
+        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, night, clouds };
         units.into_iter().map(|d| Ok(seen.with_fog(d)?.to_array())).collect()
     }
 }
@@ -62,6 +64,8 @@ struct Seen<'a> {
     scene: &'a Scene,
     fog: FogModel,
     night: NightBehind,
+    /// Clouds that the model draws as a volume.
+    clouds: Option<CloudRays<'a>>,
 }
 
 impl Seen<'_> {
@@ -89,12 +93,29 @@ impl Seen<'_> {
         DVec3::from_array(color_of(&self.scene.color, spectrum)).max(DVec3::ZERO)
     }
 
-    /// The sky behind all fog: `sky_behind` of the composition.
+    /// How far the sky above is a deck.
+    fn deck_share(&self) -> f64 {
+        self.clouds.as_ref().map_or(self.scene.deck_cover, |clouds| f64::from(u8::from(clouds.has_deck)))
+    }
+
+    /// The sky behind all fog, with the clouds before it: `before_sky` of the composition.
     fn behind(&self, d: DVec3) -> Result<DVec3> {
-        let scene = self.scene;
+        let Some(clouds) = &self.clouds else { return self.open(d) };
+        let seen = clouds.seen(d, RANGE_SKY_M);
+        let open = self.open(d)? * seen.transmittance;
+        if seen.transmittance >= 1.0 {
+            return Ok(open);
+        }
+        let (air, through) = self.air(d, seen.distance_m)?;
+        Ok(open + seen.light * through + air * (1.0 - seen.transmittance))
+    }
+
+    /// The sky behind fog and clouds: `behind_all` of the composition.
+    fn open(&self, d: DVec3) -> Result<DVec3> {
+        let (scene, deck_share) = (self.scene, self.deck_share());
         let deck = DVec3::from_array(scene.deck_cd_m2);
         let above = deck * overcast_gradation(d.z);
-        if d.z >= 0.0 && scene.deck_cover >= 1.0 {
+        if d.z >= 0.0 && deck_share >= 1.0 {
             return Ok(above);
         }
         let mut spectrum = [0.0; 3];
@@ -107,7 +128,7 @@ impl Seen<'_> {
             let under_deck = deck * self.ground_under_deck(d)?;
             return Ok((clear * scene.medium_share).lerp(under_deck, scene.deck_cover) + night);
         }
-        Ok((clear + night).lerp(above, scene.deck_cover))
+        Ok((clear + night).lerp(above, deck_share))
     }
 
     /// Luminance of the ground and of the air before it over that of a closed deck's zenith: `ground_under_deck`.

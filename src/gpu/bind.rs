@@ -13,8 +13,6 @@ pub(crate) enum Slot {
     StorageRead(u64),
     /// A texture of floats, read texel by texel.
     Texels,
-    /// Layers of them.
-    TexelsArray,
     /// A texture with several samples a pixel.
     Samples,
     /// A texture of whole numbers.
@@ -56,7 +54,6 @@ impl Slot {
             Self::Storage(bytes) => buffer(B::Storage { read_only: false }, false, bytes),
             Self::StorageRead(bytes) => buffer(B::Storage { read_only: true }, false, bytes),
             Self::Texels => texture(float(false), D::D2, false),
-            Self::TexelsArray => texture(float(false), D::D2Array, false),
             Self::Samples => texture(float(false), D::D2, true),
             Self::Words => texture(T::Uint, D::D2, false),
             Self::Filtered => texture(float(true), D::D2, false),

@@ -81,6 +81,7 @@ impl DrawnEffect for GroundView {
         let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
         let terrain = yes(drawn.is_some() && self.has_terrain);
         to.constant("TERRAIN", terrain, terrain);
+        to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
             shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(block));
         }

@@ -1,4 +1,4 @@
-//! What a flash makes glow, in f64: the twin of `shaders/lightning/glow.wgsl`.
+//! What a flash makes glow, in f64: the twin of `shaders/between/flash.wgsl`.
 
 use std::f64::consts::PI;
 

@@ -12,7 +12,7 @@ use crate::{
         pass::{self, QuadsDesc},
         recent::Recent,
     },
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, yes},
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, yes},
 };
 
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -30,8 +30,9 @@ pub(super) struct ChannelPass {
     parts: wgpu::Buffer,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
+    no_layers: wgpu::TextureView,
     pipelines: Recent<(DepthKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    bound: Option<(Option<KeptLayer>, wgpu::Buffer, wgpu::BindGroup)>,
+    bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::Buffer, wgpu::BindGroup)>,
 }
 
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
@@ -41,6 +42,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
         (1, Slot::texels(multisampled)),
         (4, Slot::Uniform(0)),
         (7, Slot::Uniform(size_of::<ChannelUniform>())),
+        (11, Slot::FilteredArray),
     ];
     bind::layout(device, "flashes", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -53,11 +55,13 @@ impl ChannelPass {
             usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
             block: bind::block(&device.device, "flashes", size_of::<ChannelUniform>()),
             parts,
             layouts: [false, true].map(|multi| layout(&device.device, multi)),
-            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::as_layers(none.texture()),
+            none,
             pipelines: Recent::new(),
             bound: None,
         }
@@ -112,7 +116,12 @@ impl ChannelPass {
 
     fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
         let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
-        if self.bound.as_ref().is_some_and(|(d, b, _)| is_kept(depth, d.as_ref()) && b == between) {
+        let hung = with.composition.texture(Texture::Behind);
+        if self
+            .bound
+            .as_ref()
+            .is_some_and(|(d, h, b, _)| is_kept(depth, d.as_ref()) && h.as_ref() == hung && b == between)
+        {
             return;
         }
         let view = depth.map(Layer::view);
@@ -120,16 +129,14 @@ impl ChannelPass {
             label: Some("flashes"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: with.block.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(&self.none)),
-                },
-                wgpu::BindGroupEntry { binding: 4, resource: between.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 7, resource: self.block.as_entire_binding() },
+                bind::buffer(0, with.block),
+                bind::view(1, view.as_ref().unwrap_or(&self.none)),
+                bind::buffer(4, between),
+                bind::buffer(7, &self.block),
+                bind::view(11, hung.unwrap_or(&self.no_layers)),
             ],
         });
-        self.bound = Some((depth.map(Layer::kept), between.clone(), group));
+        self.bound = Some((depth.map(Layer::kept), hung.cloned(), between.clone(), group));
     }
 
     /// The pipeline for what is drawn, compiled at its first use.

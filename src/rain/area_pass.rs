@@ -16,7 +16,7 @@ use crate::{
         recent::Recent,
     },
     moment::Scene,
-    stage::{Block, Constant, Drawing, FrameUniform, Recording, yes},
+    stage::{Block, Constant, Drawing, FrameUniform, Recording, Texture, yes},
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -75,8 +75,9 @@ pub(super) struct AreaPass {
     blocks: wgpu::Buffer,
     layouts: [wgpu::BindGroupLayout; 2],
     none: wgpu::TextureView,
+    no_layers: wgpu::TextureView,
     pipelines: Recent<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
+    bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::BindGroup)>,
     counts: bool,
 }
 
@@ -88,6 +89,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
         (4, Slot::Uniform(0)),
         (7, Slot::Uniform(size_of::<ColumnsUniform>())),
         (8, Slot::Uniform(size_of::<ShaftUniform>())),
+        (11, Slot::FilteredArray),
     ];
     bind::layout(device, "rain areas", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -161,11 +163,13 @@ impl Columns<'_> {
 
 impl AreaPass {
     pub fn new(device: &Device, counts: bool) -> Self {
+        let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Self {
             counts,
             blocks: crate::gpu::bind::block(&device.device, "rain areas", size_of::<Blocks>()),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
-            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
+            no_layers: bind::as_layers(none.texture()),
+            none,
             pipelines: Recent::new(),
             bound: None,
         }
@@ -183,7 +187,7 @@ impl AreaPass {
         device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&blocks));
         let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, with, depth, multi);
-        self.bound.as_ref().map(|(_, group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
+        self.bound.as_ref().map(|(.., group)| (self.layouts[usize::from(multi)].clone(), group.clone()))
     }
 
     /// Draws the columns into the layer `target`, which is cleared first.
@@ -210,7 +214,7 @@ impl AreaPass {
         };
         self.bind(device, with, depth, kind.multi);
         let pipeline = self.pipeline(device, tables_layout, kind, composition.least.between.all())?;
-        let Some((_, group)) = &self.bound else { return Ok(()) };
+        let Some((.., group)) = &self.bound else { return Ok(()) };
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("rain areas"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -235,7 +239,8 @@ impl AreaPass {
 
     fn bind(&mut self, device: &Device, with: &Drawing<'_>, depth: Option<Layer<'_>>, multi: bool) {
         let Some(between) = &with.composition.blocks[Block::Between as usize] else { return };
-        if self.bound.as_ref().is_some_and(|(d, _)| is_kept(depth, d.as_ref())) {
+        let hung = with.composition.texture(Texture::Behind);
+        if self.bound.as_ref().is_some_and(|(d, h, _)| is_kept(depth, d.as_ref()) && h.as_ref() == hung) {
             return;
         }
         let view = depth.map(Layer::view);
@@ -251,17 +256,15 @@ impl AreaPass {
             label: Some("rain areas"),
             layout: &self.layouts[usize::from(multi)],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: with.block.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(view.as_ref().unwrap_or(&self.none)),
-                },
-                wgpu::BindGroupEntry { binding: 4, resource: between.as_entire_binding() },
+                bind::buffer(0, with.block),
+                bind::view(1, view.as_ref().unwrap_or(&self.none)),
+                bind::buffer(4, between),
+                bind::view(11, hung.unwrap_or(&self.no_layers)),
                 block(7, 0, size_of::<ColumnsUniform>()),
                 block(8, SHAFT_AT, size_of::<ShaftUniform>()),
             ],
         });
-        self.bound = Some((depth.map(Layer::kept), group));
+        self.bound = Some((depth.map(Layer::kept), hung.cloned(), group));
     }
 
     /// The pipeline for what is drawn, compiled at its first use.

@@ -66,7 +66,8 @@ pub(crate) enum Texture {
     /// Heights and classes of the host's terrain.
     Terrain = 2,
     /// Layers of the sky. The last is what stands behind the sky's own light: radiance over [`FrameUniform::behind`]. Before it may be
-    /// two of what hangs before the sky: light with the exposure on it and what it lets through, and how far away it is.
+    /// two of what hangs before the sky: light with the exposure on it and what it lets through, and how far away it is
+    /// (`shaders/between/hung.wgsl`).
     Behind = 3,
 }
 
@@ -111,6 +112,8 @@ pub(crate) struct Composition {
     pub textures: [Option<wgpu::TextureView>; 4],
     /// Look-up tables of what lies behind and between (group 1), and their layout.
     pub tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
+    /// Something shows what stands about the camera outside of the picture too: mirrors, a cube map.
+    pub looks_round: bool,
     /// Fall speed of the slowest of what is drawn near the camera, m/s, and how far off any of it is, m: for which shelters matter.
     pub near: (f64, f64),
 }
@@ -127,6 +130,7 @@ impl Composition {
             blocks: [const { None }; 2],
             textures: [const { None }; 4],
             tables: None,
+            looks_round: false,
             near: (1.0, 0.0),
         }
     }
@@ -146,6 +150,11 @@ impl Composition {
     /// Gives a block.
     pub fn set_block(&mut self, place: Block, buffer: &wgpu::Buffer) {
         self.blocks[place as usize] = Some(buffer.clone());
+    }
+
+    /// The texture at a place, if an effect has given one.
+    pub fn texture(&self, place: Texture) -> Option<&wgpu::TextureView> {
+        self.textures[place as usize].as_ref()
     }
 
     /// Gives a texture.

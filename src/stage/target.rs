@@ -58,7 +58,7 @@ impl Stages {
     }
 
     /// Both sets.
-    pub fn with(self, other: Self) -> Self {
+    pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 

@@ -58,6 +58,9 @@ pub(crate) struct FrameUniform {
     pub flashes: [FlashUniform; MAX_FLASH_LAMPS],
     /// Direct light over all light on level ground, a channel, over its share that clouds let through on the mean; that share.
     pub cloud_shadow: [f32; 4],
+    /// Pixels of the picture.
+    pub picture: [f32; 2],
+    pub pad: [f32; 2],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -116,6 +119,8 @@ pub(crate) fn uniform(
         flash_scattering: 0.0,
         flashes: [FlashUniform::default(); MAX_FLASH_LAMPS],
         cloud_shadow: [0.0; 4],
+        picture: [color.width() as f32, color.height() as f32],
+        pad: [0.0; 2],
     }
 }
 
@@ -159,7 +164,8 @@ mod tests {
                 flash_haze,
                 flash_scattering,
                 flashes,
-                cloud_shadow
+                cloud_shadow,
+                picture
             ]
         );
         shader::assert_layout!(

@@ -19,9 +19,10 @@ struct Substance {
 }
 
 /// Water and droplets of stratus and cumulus from Diem (1948) and aufm Kampe and Weickmann (1957) as commonly tabulated
-/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4); tall clouds are diluted by entrainment, so their mean is below the core's
-/// 2.5 g/m^3; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of stratocumulus are
-/// some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud atlas).
+/// (stratus 0.2 g/m^3, 7 um; fair cumulus 0.5, 4). Towering cumulus fills half of its layer with the 2.5 g/m^3 of its core; a
+/// cumulonimbus is diluted by entrainment; ice from Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud
+/// atlas). Cells of stratocumulus are some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO
+/// cloud atlas).
 fn substance(kind: CloudKind) -> Substance {
     let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
              convection,
@@ -40,7 +41,7 @@ fn substance(kind: CloudKind) -> Substance {
         CloudKind::Stratus | CloudKind::Unknown => s([300.0, 0.2, 7.0], 0.0, 0.0, [8.0, 0.0, 0.0]),
         CloudKind::Stratocumulus => s([400.0, 0.3, 8.0], 0.2, 0.0, [3.5, 0.7, 0.0]),
         CloudKind::Cumulus => s([500.0, 0.5, 4.0], 0.5, 0.0, [2.0, 0.0, 0.0]),
-        CloudKind::ToweringCumulus => s([3000.0, 1.0, 10.0], 0.8, 0.1, [1.5, 0.0, 0.0]),
+        CloudKind::ToweringCumulus => s([3000.0, 1.2, 10.0], 0.8, 0.1, [1.5, 0.0, 0.0]),
         CloudKind::Cumulonimbus => s([9000.0, 0.6, 15.0], 1.0, 0.5, [1.5, 0.0, 0.0]),
         CloudKind::Nimbostratus => s([3000.0, 0.3, 10.0], 0.0, 0.3, [3.0, 0.0, 0.0]),
         CloudKind::Altocumulus => s([400.0, 0.1, 8.0], 0.3, 0.0, [1.8, 1.0, 0.0]),

@@ -44,7 +44,7 @@ impl Sky {
     }
 
     /// The same along a direction, with a host's depth.
-    fn look(
+    pub fn look(
         &mut self,
         forward: DVec3,
         height_m: f64,
@@ -70,7 +70,7 @@ fn p95(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     all[all.len() * 95 / 100]
 }
 
-const BROKEN: &str = "LOWI 121150Z 00000KT 9999 SCT030 18/12 Q1015";
+pub const BROKEN: &str = "LOWI 121150Z 00000KT 9999 SCT030 18/12 Q1015";
 
 #[test]
 fn a_sky_without_clouds_is_the_same_in_both_models() {
@@ -141,7 +141,7 @@ fn a_closed_layer_hides_the_sky_from_below_and_the_ground_from_above() {
     assert!(below.iter().chain(&above).flatten().all(|v| v.is_finite() && *v >= 0.0));
 }
 
-const CLOSED: &str = "LOWI 121150Z 00000KT 9999 OVC030 18/12 Q1015";
+pub const CLOSED: &str = "LOWI 121150Z 00000KT 9999 OVC030 18/12 Q1015";
 
 fn mean(picture: &[[f64; 3]]) -> f64 {
     picture.iter().map(luminance).sum::<f64>() / picture.len() as f64

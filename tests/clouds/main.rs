@@ -1,6 +1,10 @@
 //! Clouds as a volume, drawn.
 
+mod asked;
 mod drawn;
+mod elsewhere;
+#[path = "../frame/lookup.rs"]
+mod lookup;
 mod shadows;
 #[path = "../support/textures.rs"]
 mod textures;

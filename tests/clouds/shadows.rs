@@ -66,7 +66,7 @@ fn the_shadow_on_each_pixel_is_that_of_its_place() {
     let dark = shares.iter().filter(|s| **s < 0.1).count() as f64 / shares.len() as f64;
     println!("shadows: off by {half:.4} in the median, {most:.3} at 95 %; {lit:.2} lit, {dark:.2} dark");
     assert!(lit > 0.1 && dark > 0.05, "the picture holds light and shadow: {lit} {dark}");
-    assert!(half < 0.02 && most < 0.12, "{half} {most}");
+    assert!(half < 0.02 && most < 0.16, "{half} {most}");
 }
 
 #[test]

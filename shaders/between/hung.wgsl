@@ -1,0 +1,76 @@
+// What hangs in the sky: clouds, and stars behind the sky's own light; in a pixel of the picture, or in any direction from the camera.
+//!include "between/air.wgsl"
+//!include "common/octahedron.wgsl"
+
+// Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
+// With clouds there are two before it (clouds/): their light with the exposure on it, and what they let through; log2 of the distances
+// between which they stand, m, with the share of direct light that they let through to what the host drew. Below the first one's picture
+// lie the clouds of all directions (clouds/round.wgsl).
+@group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
+
+override CLOUDS: bool = false;
+// A closed layer above them all is drawn as a deck.
+override DECK_BEHIND: bool = false;
+override STARS: bool = false;
+
+// Texels along a side of the clouds of all directions.
+const ROUND_SIDE: f32 = 96.0;
+
+struct Hung {
+    // Of clouds: their light, with the exposure on it, and what they let through.
+    clouds: vec4f,
+    // log2 of the distances between which they stand, m; the share of direct light at what the host drew.
+    reach: vec3f,
+    // cd/m^2, behind the sky's own light.
+    behind: vec3f,
+}
+
+// In a pixel of the picture, or one of its samples, where something is seen at this range.
+fn hung_in(pixel: vec2i, range: f32) -> Hung {
+    var hung = Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor);
+    if CLOUDS {
+        hung.clouds = textureLoad(sky_layers, pixel, 0, 0);
+    }
+    if CLOUDS && range < RANGE_SKY {
+        hung.reach = textureLoad(sky_layers, pixel, 1, 0).rgb;
+    }
+    if STARS {
+        hung.behind = textureLoad(sky_layers, pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
+    }
+    return hung;
+}
+
+// In a direction, in or outside of the picture: clouds without their distance, and no stars.
+fn hung_toward(d: vec3f) -> Hung {
+    var hung = Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor);
+    if CLOUDS {
+        let size = vec2f(textureDimensions(sky_layers));
+        let at = vec2f(0.5, size.y - ROUND_SIDE + 0.5) + octahedron_place(d) * (ROUND_SIDE - 1.0);
+        hung.clouds = textureSampleLevel(sky_layers, sky_sampler, at / size, 0, 0.0);
+    }
+    return hung;
+}
+
+// How far the sky is a deck.
+fn deck_share() -> f32 {
+    return select(frame.deck_cover, select(0.0, 1.0, DECK_BEHIND), CLOUDS);
+}
+
+// A deck hides all that is behind it.
+fn deck_hides_all() -> bool {
+    return DECK_CLOSED && (DECK_BEHIND || !CLOUDS);
+}
+
+// Clouds before something at this range; as many of them as stand before it.
+fn with_clouds(behind: Veil, hung: Hung, range: f32) -> Veil {
+    if !CLOUDS {
+        return behind;
+    }
+    var clouds = hung.clouds;
+    if range < RANGE_SKY {
+        let reach = exp2(hung.reach.xy);
+        let share = clamp((range - reach.x) / max(reach.y - reach.x, 1.0), 0.0, 1.0);
+        clouds = mix(vec4f(0.0, 0.0, 0.0, 1.0), clouds, share);
+    }
+    return Veil(behind.light * clouds.a + clouds.rgb / frame.exposure, behind.transmittance * clouds.a);
+}

@@ -1,0 +1,43 @@
+// The sky in a direction, fog left out: behind everything in the picture, in mirrors, in the cube map.
+//!include "between/hung.wgsl"
+//!include "between/flash.wgsl"
+
+// How much of what hangs behind the sky's own light stands in the night floor's place.
+var<private> behind_share: f32;
+
+fn night_light(hung: Hung) -> vec3f {
+    return mix(frame.night_floor, hung.behind, behind_share);
+}
+
+// Light of the sky's own air above the horizon, cd/m^2, without the discs of sun and moon.
+fn clear_sky_above(d: vec3f) -> vec3f {
+    if !CLEAR_SKY || deck_hides_all() || drawn.z == 0.0 {
+        return vec3f(0.0);
+    }
+    return color_of(sky_radiance_above(d));
+}
+
+// The sky above the horizon without what hangs before it: `clear` is its own light, with a disc that is seen in it.
+fn open_sky(d: vec3f, clear: vec3f, hung: Hung) -> vec3f {
+    return mix(clear * drawn.z + night_light(hung), frame.deck * overcast_gradation(d.z), deck_share());
+}
+
+// What is behind, with clouds before it, and what flashes make of them.
+fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
+    var light = with_clouds(Veil(behind, vec3f(0.0)), hung, RANGE_SKY).light;
+    if FLASH {
+        light += flash_on_clouds(d) * cloud_cover(hung);
+    }
+    return light;
+}
+
+// The sky above the horizon, fog left out, without the discs of sun and moon.
+fn sky_toward(d: vec3f) -> vec3f {
+    let hung = hung_toward(d);
+    return before_sky(open_sky(d, clear_sky_above(d), hung), d, hung);
+}
+
+// Share of what is behind that clouds hide.
+fn cloud_cover(hung: Hung) -> f32 {
+    return select(frame.flash_cover, 1.0 - hung.clouds.a * (1.0 - deck_share()), CLOUDS);
+}

@@ -1,0 +1,12 @@
+// Clouds in all directions from the camera, for what shows more than the picture: mirrors, cube maps.
+//!include "common/fullscreen.wgsl"
+//!include "between/hung.wgsl"
+//!include "clouds/march.wgsl"
+
+@fragment
+fn round(in: FullscreenVarying) -> @location(0) vec4f {
+    drawn = vec4f(1.0, 1.0, 1.0, 0.0);
+    let place = floor(in.position.xy) / (ROUND_SIDE - 1.0);
+    let seen = clouds_seen(octahedron_direction(place), RANGE_SKY, clouds.jitter);
+    return vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance);
+}

@@ -1,0 +1,137 @@
+//! What there is of clouds at a camera or a place that is asked about: layers as volumes, how much of them is a deck, and the light on them.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
+use super::{
+    CloudModel,
+    field::Shape,
+    uniforms::{LAYERS, LayerLight},
+};
+use crate::{
+    moment::Scene,
+    weather::{CloudSlab, smoothstep},
+    world::light_above_clouds,
+};
+
+/// Diameters of droplets for which tables are made, um.
+const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
+/// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
+const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
+/// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck shows none.
+const DISC_PALES: [f64; 2] = [12.0, 14.0];
+
+/// A layer of cloud, and how much of it is drawn as a volume: the rest is drawn as a deck.
+#[derive(Clone, Copy)]
+pub(super) struct Layer {
+    pub shape: Shape,
+    pub slab: CloudSlab,
+    pub share: f64,
+}
+
+/// What there is of clouds over a place.
+pub(super) struct Overhead {
+    layers: [Layer; LAYERS],
+    count: usize,
+    /// Some of what is above the place is drawn as a deck.
+    pub has_deck: bool,
+    /// East and north of the world's origin, m.
+    pub place_m: DVec2,
+    /// Diameter of the droplets, um, one of those for which tables are made.
+    pub liquid_um: f64,
+}
+
+/// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from further below, is a deck
+/// in the same light: nothing else is seen of it.
+fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
+    if lowest.cover < 1.0 || scene.deck_cover < 1.0 {
+        return 1.0;
+    }
+    let over_m = scene.conditions.air.station_altitude_m + lowest.base_m - scene.place.altitude_m;
+    let near = 1.0 - smoothstep(DECK_FROM_M[0], DECK_FROM_M[1], over_m);
+    let depth = lowest.optical_depth / scene.brighter().direction.z.max(0.01);
+    near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
+}
+
+/// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
+fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
+    let add = |(water, sum): (f64, f64), s: &CloudSlab| {
+        let liquid = s.cover * (1.0 - s.ice_fraction);
+        (water + liquid, sum + liquid * s.droplet_radius_um)
+    };
+    let (water, sum) = slabs.fold((0.0, 0.0), add);
+    let diameter = (2.0 * sum / water.max(1e-6)).max(1.0);
+    let off = |um: &f64| (um / diameter).ln().abs();
+    LIQUID_UM.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(diameter)
+}
+
+impl Overhead {
+    /// What a model draws at a scene's place, where the wind at 10 m has carried the air `drift_m` by `time_s`; `None` where that is no
+    /// volume.
+    pub fn new(model: CloudModel, scene: &Scene, (drift_m, time_s): (DVec2, f64)) -> Option<Self> {
+        let slabs = || scene.conditions.cloud_slabs().filter(|s| s.cover > 0.0).take(LAYERS);
+        if model == CloudModel::Deck || slabs().next().is_none() {
+            return None;
+        }
+        let (station_m, above_m) = (scene.conditions.air.station_altitude_m, scene.place.altitude_m);
+        let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
+        // What is above a deck is hidden by it.
+        let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
+        let layer = |slab: &CloudSlab| Layer {
+            shape: Shape::new(&scene.conditions, slab, drift_m, time_s),
+            slab: *slab,
+            share: if is_above(slab) { share } else { 1.0 },
+        };
+        let mut overhead = Self {
+            layers: [layer(&CloudSlab::NONE); LAYERS],
+            has_deck: share < 1.0,
+            count: 0,
+            place_m: DVec2::from_array(scene.map_m),
+            liquid_um: nearest_diameter(slabs()),
+        };
+        for layer in slabs().map(layer).filter(|l| l.share > 0.0) {
+            overhead.layers[overhead.count] = layer;
+            overhead.count += 1;
+        }
+        (overhead.count > 0).then_some(overhead)
+    }
+
+    /// Its layers, from below.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers[..self.count]
+    }
+
+    /// Whether some of it leaves gaps.
+    pub fn is_broken(&self) -> bool {
+        self.layers().iter().any(|layer| layer.slab.cover < 1.0)
+    }
+}
+
+impl Layer {
+    /// Which of two media it is made of: droplets, or ice.
+    pub fn medium(&self) -> usize {
+        usize::from(self.slab.ice_fraction > 0.5)
+    }
+}
+
+/// Light on a layer from sun, sky and the layers above it, and from the ground; times `exposure`.
+pub(super) fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
+    let light = scene.brighter();
+    let albedo = scene.planet.ground_albedo;
+    let top_m = shape.base_m + shape.thickness_m;
+    let over = scene.conditions.cloud_light_at(light.direction.z, albedo[1], top_m);
+    let (direct, sky) = light_above_clouds(scene, top_m);
+    let level = light.direction.z.max(0.0);
+    let ground = &scene.ground;
+    let total = |i: usize| {
+        let direct =
+            ground.sun_lux[i] * scene.sun.direction.z.max(0.0) + ground.moon_lux[i] * scene.moon.direction.z.max(0.0);
+        (direct + ground.sky_lux[i]) * albedo[i] / PI * exposure
+    };
+    LayerLight {
+        sun: direct.map(|v| v * over.direct * exposure),
+        above: [0, 1, 2].map(|i| (sky[i] * over.sky + direct[i] * level * over.diffuse) / PI * exposure),
+        below: [0, 1, 2].map(total),
+    }
+}

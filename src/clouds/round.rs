@@ -1,0 +1,128 @@
+//! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube map. A frame makes some
+//! rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first layer.
+
+use super::{picture::SEEN, rows::Rows, shadow_map::Standing};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        pass::{self, FullscreenDesc},
+    },
+};
+
+/// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
+pub(super) const SIDE: u32 = 96;
+/// Rows that a frame makes anew: all of them in 16 frames.
+const ROWS: u32 = 6;
+/// The camera's way between two frames, m, and the change of exposure after which nothing holds.
+const LEAPS: (f64, f64) = (100.0, 0.05);
+
+/// What they are made of.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Around {
+    pub standing: Standing,
+    pub altitude_m: f64,
+    pub exposure: f64,
+}
+
+/// The map and the pass that makes it.
+pub(super) struct Round {
+    pub texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    pipeline: wgpu::RenderPipeline,
+    around: Option<Around>,
+    rows: Rows,
+}
+
+impl Round {
+    /// With the layouts of the march.
+    pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout]) -> Result<Self> {
+        let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("clouds all round"),
+            size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: SEEN,
+            usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let desc = FullscreenDesc {
+            shader: "clouds/round.wgsl",
+            entry: "round",
+            layouts,
+            targets: &[SEEN.into()],
+            constants: &[],
+            samples: 1,
+        };
+        Ok(Self {
+            view: texture.create_view(&Default::default()),
+            pipeline: pass::fullscreen(device, &desc)?,
+            texture,
+            around: None,
+            rows: Rows::default(),
+        })
+    }
+
+    /// Bytes of GPU memory.
+    pub const BYTES: u64 = 8 * SIDE as u64 * SIDE as u64;
+
+    /// Makes some rows anew, or all of them; answers the passes that it took. `is_pure`: nothing of earlier frames may show.
+    pub fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &[&wgpu::BindGroup],
+        here: Around,
+        is_pure: bool,
+    ) -> u32 {
+        let rests = self.around == Some(here);
+        let holds = self.around.is_some_and(|before| !is_pure && !here.leaps_from(&before));
+        self.around = Some(here);
+        let Some((first, rows)) = self.rows.due(SIDE, ROWS, rests, holds) else { return 0 };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clouds all round"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_scissor_rect(0, first, SIDE, rows);
+        pass.set_pipeline(&self.pipeline);
+        for (i, group) in groups.iter().enumerate() {
+            pass.set_bind_group(i as u32, *group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+        1
+    }
+
+    /// Copies it below a picture of this height.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Texture, height: u32) {
+        let origin = wgpu::Origin3d { x: 0, y: height, z: 0 };
+        let to = wgpu::TexelCopyTextureInfo { origin, ..to.as_image_copy() };
+        encoder.copy_texture_to_texture(self.texture.as_image_copy(), to, self.texture.size());
+    }
+}
+
+impl Around {
+    fn leaps_from(&self, before: &Self) -> bool {
+        let (way_m, exposed) = LEAPS;
+        self.standing.leaps_from(&before.standing)
+            || self.standing.camera_m.distance(before.standing.camera_m) > way_m
+            || (self.altitude_m - before.altitude_m).abs() > way_m
+            || (self.exposure / before.exposure).ln().abs() > exposed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_knows_the_side() {
+        let text = crate::gpu::shader::assemble("between/hung.wgsl").unwrap();
+        assert!(text.contains(&format!("const ROUND_SIDE: f32 = {SIDE}.0;")));
+    }
+}

@@ -1,0 +1,39 @@
+//! Maps about the camera of which a frame makes some rows anew, and all of them where nothing of the map holds any more.
+
+/// How far a map has come.
+#[derive(Default)]
+pub(super) struct Rows {
+    next: u32,
+    /// Rows made since what the map is made of last changed: with all of them there is nothing left to do.
+    made: u32,
+}
+
+impl Rows {
+    /// The rows of `all` to make in a frame that makes `most`: the first of them and their number. `rests`: the map is made of the same as
+    /// in the last frame; `holds`: of something near enough.
+    pub fn due(&mut self, all: u32, most: u32, rests: bool, holds: bool) -> Option<(u32, u32)> {
+        if rests && self.made >= all {
+            return None;
+        }
+        let (first, rows) = if holds { (self.next, most.min(all - self.next)) } else { (0, all) };
+        self.next = (first + rows) % all;
+        self.made = if rests && holds { self.made + rows } else { rows };
+        Some((first, rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_is_made_at_once_then_by_rows_and_rests_when_all_are_made() {
+        let mut rows = Rows::default();
+        assert_eq!(rows.due(8, 3, false, false), Some((0, 8)), "nothing holds");
+        assert_eq!(rows.due(8, 3, true, true), None, "all made, and nothing changed");
+        let changed: Vec<_> = (0..4).map(|_| rows.due(8, 3, false, true)).collect();
+        assert_eq!(changed, [Some((0, 3)), Some((3, 3)), Some((6, 2)), Some((0, 3))], "it changes on");
+        let rests: Vec<_> = (0..3).map(|_| rows.due(8, 3, true, true)).collect();
+        assert_eq!(rests, [Some((3, 3)), Some((6, 2)), None], "at rest each row is made once more at most");
+    }
+}
