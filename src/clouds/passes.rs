@@ -145,7 +145,9 @@ pub(super) struct Wanted {
     pub is_begun: bool,
     pub march: bool,
     pub resolve: bool,
+    /// The clouds of all directions are to be made, and shown.
     pub round: bool,
+    pub shows_round: bool,
 }
 
 /// What the passes draw from.
@@ -355,13 +357,16 @@ impl CloudPasses {
         if let Some(behind) = of.behind {
             copy_layer(encoder, behind, made);
         }
-        if of.wanted.round {
+        if of.wanted.shows_round {
             let [march, sky] = &pipelines.march_layouts;
             let round = match &mut self.round {
                 Some(round) => round,
                 none => none.insert(Round::new(device, &[march, sky])?),
             };
-            passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.is_pure);
+            if of.wanted.round {
+                passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.is_pure);
+            }
+            // The pass over the picture has cleared what lies below it.
             round.copy(encoder, made, picture.of.0.1);
         }
         (self.picture, self.pipelines) = (Some(picture), Some(pipelines));

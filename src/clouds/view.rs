@@ -101,7 +101,7 @@ impl CloudsView {
             is_begun: made.is_some_and(|m| m.is_marched || m.is_shaded),
             march,
             resolve: march || shade,
-            round: false,
+            ..Wanted::default()
         }
     }
 }
@@ -218,7 +218,8 @@ impl DrawnEffect for CloudsView {
         let Some(mut wanted) = self.wanted.take() else { return Ok(()) };
         let casts_shadows = self.casts_shadows(shot, with.composition.asked);
         let earlier = self.made_of(shot.frame);
-        wanted.round = with.composition.looks_round && !earlier.is_some_and(|m| m.is_round);
+        wanted.shows_round = with.composition.looks_round;
+        wanted.round = wanted.shows_round && !earlier.is_some_and(|m| m.is_round);
         let (picture, here) = match earlier.filter(|_| !wanted.march) {
             Some(made) => (made.picture, None),
             None => {

@@ -155,7 +155,15 @@ fn a_picture_drawn_stage_by_stage_is_the_one_of_one_call() {
     write_depth(&sky, &depth, &camera);
     let (behind, surface, between) = (Stages::BACKGROUND, Stages::SURFACE, Stages::MEDIUM);
     let one = sky.draw(camera, Some(&depth), &[behind.with(surface).with(between)]);
-    for calls in [&[behind, surface, between][..], &[behind.with(surface), between]] {
+    for (calls, has_cube) in [
+        (&[behind, surface, between][..], false),
+        (&[behind.with(surface), between], false),
+        (&[behind, surface, between], true),
+    ] {
+        // A cube map asks for the clouds of all directions in the first call.
+        if has_cube {
+            sky.view.environment().unwrap();
+        }
         let apart = sky.draw(camera, Some(&depth), calls);
         let most = one
             .iter()
