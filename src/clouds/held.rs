@@ -31,7 +31,14 @@ pub(crate) struct HeldClouds {
 pub(super) struct Grown {
     pub map: Map,
     pub solid: Solid,
-    lit: Mutex<Option<(f64, DVec3, [Arc<Sources>; 2])>>,
+    lit: Mutex<Option<Lit>>,
+}
+
+/// Light in droplets of a diameter and in ice, under a sun.
+struct Lit {
+    liquid_um: f64,
+    to_sun: DVec3,
+    sources: [Arc<Sources>; 2],
 }
 
 impl Grown {
@@ -43,11 +50,9 @@ impl Grown {
     pub fn sources(&self, liquid_um: f64, to_sun: DVec3) -> [Arc<Sources>; 2] {
         // After a panic elsewhere the light is made anew.
         let mut lit = self.lit.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some((um, sun, sources)) = &*lit
-            && *um == liquid_um
-            && sun.distance(to_sun) < SUN_MOVED
-        {
-            return sources.clone();
+        let holds = |of: &&Lit| of.liquid_um == liquid_um && of.to_sun.distance(to_sun) < SUN_MOVED;
+        if let Some(of) = lit.as_ref().filter(holds) {
+            return of.sources.clone();
         }
         let sources = media(liquid_um).map(|medium| {
             let (cosine, sine) = (to_sun.z.clamp(-1.0, 1.0).abs(), to_sun.truncate().length());
@@ -59,7 +64,7 @@ impl Grown {
                 to_sun,
             })
         });
-        *lit = Some((liquid_um, to_sun, sources.clone()));
+        *lit = Some(Lit { liquid_um, to_sun, sources: sources.clone() });
         sources
     }
 }

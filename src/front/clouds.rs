@@ -4,9 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     clouds::{CloudModel, CloudRays},
-    context::Context,
+    context::{Context, Scene},
     error::Result,
-    moment::Scene,
 };
 
 impl Context {
