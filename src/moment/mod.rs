@@ -24,7 +24,7 @@ use crate::{
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
-/// What holds at a camera at a time, worked out once a view and call: every effect draws from it.
+/// What holds at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
 pub(crate) struct Moment<'a> {
     /// Place, lights, air and the weather there.
     pub scene: Scene,

@@ -7,6 +7,7 @@
 
 mod air;
 mod held;
+mod kept;
 mod lights;
 mod regions;
 mod saved;
@@ -25,6 +26,7 @@ use glam::{DMat3, DVec3};
 
 pub(crate) use air::planet_under;
 pub(crate) use held::{HeldEffect, Within};
+pub(crate) use kept::KeptScene;
 pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};
@@ -269,12 +271,13 @@ impl World {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }
 
-    /// What holds now at a camera that stands at `eye`, which the host calls `name`.
+    /// What holds now at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an earlier call, taken again
+    /// where nothing has changed since.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
-    pub fn moment(&self, name: &str, eye: DVec3) -> Result<Moment<'_>> {
-        let scene = self.scene_named(name, eye, self.time_s)?;
+    pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
+        let KeptScene { scene, here, .. } = self.scene_kept(name, eye, kept)?;
         let weather = self.over();
         Ok(Moment {
             eye,
@@ -284,7 +287,7 @@ impl World {
             exposure: self.exposure,
             planet_radius_m: self.set.planet.bottom_radius_m,
             weather,
-            here: weather.at_place(eye, self.time_s, scene.conditions),
+            here,
             falling: self.falling(&scene.conditions),
             shelters: &self.set.shelters,
             maps: self.maps.as_deref(),
