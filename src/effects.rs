@@ -74,8 +74,7 @@ impl Default for ContextDesc {
 }
 
 /// What the effects do to every world.
-pub(crate) const COUPLINGS: Couplings =
-    Couplings { dim: fog::dim, own_rain: fog::own_rain, night_lux: stars::night_lux };
+pub(crate) const COUPLINGS: Couplings = Couplings { dim: fog::dim, night_lux: stars::night_lux };
 
 /// What a context holds of the effects for all its views.
 pub(crate) struct Held {

@@ -11,13 +11,11 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    var f = fog_along(fog, ray.origin, ray.direction, range, plane);
+    // What drops near the eye hide is drawn as drops.
+    let hidden = drawn.w * frame.drops.x * min(range, frame.drops.y);
+    var f = fog_beside_drops(fog, ray.origin, ray.direction, range, plane, hidden);
     f.radiance *= drawn.y;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
-    // What drops near the eye hide is drawn as drops.
-    let thinner = min(f.transmittance * exp(drawn.w * frame.drops.x * min(range, frame.drops.y)), vec3f(1.0));
-    f.radiance *= (1.0 - thinner) / max(1.0 - f.transmittance, vec3f(1e-6));
-    f.transmittance = thinner;
     var before = Veil(vec3f(0.0), vec3f(1.0));
     if f.distance > 50.0 {
         before = air_between(ray.direction, f.distance);

@@ -15,6 +15,8 @@
 override FOG_KINDS: u32 = 63u;
 override FOG_ABSORBING: bool = true;
 override FOG_PATCHES: bool = true;
+// Something falls.
+override FOG_FALLING: bool = true;
 override FOG_CURTAINS: bool = true;
 // All channels have one extinction and one albedo (water).
 override FOG_NEUTRAL: bool = false;
@@ -34,6 +36,11 @@ fn fog_can(kind: u32) -> bool {
     return (FOG_KINDS & (1u << kind)) != 0u;
 }
 
+// Whether there may be a layer besides what falls.
+fn has_own_layer() -> bool {
+    return (FOG_KINDS & 6u) != 0u;
+}
+
 // colour * transmittance + radiance.
 struct Fog {
     radiance: vec3f,
@@ -48,8 +55,21 @@ struct LayerPath {
     depth: f32,
     first: f32,
     last: f32,
+}
+
+// Heights along a ray over the place where it is lowest: see the reference.
+struct RayCourse {
     end_altitude: f32,
     end_mu: f32,
+    level: f32,
+    passes: bool,
+    falls: bool,
+    low: f32,
+    low_mu: f32,
+    before: f32,
+    after: f32,
+    high: f32,
+    bend: f32,
 }
 
 // The phase function per steradian, at the angle whose 1 - cos is `versine`, for sunlight that has travelled the
@@ -80,7 +100,23 @@ fn layer_density(u: FogUniform, h: f32) -> f32 {
     return u.extinction * exp(min((u.knots.x - h) / u.knots.y, 60.0));
 }
 
+fn falling_depth_above(u: FogUniform, h: f32) -> f32 {
+    let f = u.falling;
+    let in_top = f.z - clamp(h, f.y, f.z);
+    return f.x * (in_top * in_top * 0.5 * f.w + f.y - min(h, f.y));
+}
+
 fn layer_depth_above(u: FogUniform, h: f32) -> f32 {
+    if !FOG_FALLING {
+        return own_depth_above(u, h);
+    }
+    if !has_own_layer() {
+        return falling_depth_above(u, h);
+    }
+    return own_depth_above(u, h) + falling_depth_above(u, h);
+}
+
+fn own_depth_above(u: FogUniform, h: f32) -> f32 {
     if fog_can(FOG_EXPONENTIAL) && u.kind == FOG_EXPONENTIAL {
         return layer_density(u, h) * u.knots.y;
     }
@@ -167,17 +203,11 @@ fn exponential_path(u: FogUniform, h0: f32, mu: f32, t: f32, end_altitude: f32, 
         * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low));
 }
 
-fn layer_path(u: FogUniform, h0: f32, mu: f32, t: f32) -> LayerPath {
+fn ray_course(u: FogUniform, h0: f32, mu: f32, t: f32) -> RayCourse {
     let k = u.curvature;
     let end_rise = layer_rise(k, mu, t);
     let end_altitude = h0 + end_rise;
     let end_mu = clamp((mu + k * t) / (1.0 + k * end_rise), -1.0, 1.0);
-    if fog_can(FOG_EXPONENTIAL) && u.kind == FOG_EXPONENTIAL {
-        let depth = exponential_path(u, h0, mu, t, end_altitude, end_mu);
-        let length = min(depth / max(layer_density(u, min(h0, end_altitude)), 1e-20), t);
-        let first = select(0.0, t - length, end_altitude < h0);
-        return LayerPath(depth, first, first + length, end_altitude, end_mu);
-    }
     let level = -mu * u.radius;
     let passes = mu < 0.0 && t > level;
     let falls = mu < 0.0 && !passes;
@@ -186,20 +216,58 @@ fn layer_path(u: FogUniform, h0: f32, mu: f32, t: f32) -> LayerPath {
     let low_mu = select(select(mu, max(-end_mu, 0.0), falls), 0.0, passes);
     let before = select(t, level, passes);
     let after = select(0.0, t - level, passes);
+    let high = select(max(h0, end_altitude), h0, passes);
     let bend = k * (1.0 - mu * mu);
+    return RayCourse(end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend);
+}
+
+// Where a ray enters and leaves a slab whose lower and upper end it meets after `reach`, counted from its lowest place.
+fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
+    let near = min(reach.x, c.before);
+    let far = min(reach.y, c.before);
+    let first = select(select(near, t - far, c.falls), c.level - far, c.passes);
+    let last = select(select(far, t - near, c.falls), c.level + min(reach.y, c.after), c.passes);
+    return vec2f(first, last);
+}
+
+// Optical depth over extinction of a part of a ray through what falls, which it is above all the way.
+fn falling_part(u: FogUniform, bend: f32, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
+    let t = min(top, vec2f(length));
+    let upper = flank(bend, t, u.falling.yz, u.falling.w, low, high);
+    return t.x + upper.x * (1.0 - upper.y);
+}
+
+fn falling_path(u: FogUniform, c: RayCourse, t: f32) -> LayerPath {
+    let top = layer_reach(u.curvature, c.low_mu, u.falling.yz - c.low);
+    let length = falling_part(u, c.bend, top, c.before, c.low, max(c.high, c.low))
+        + falling_part(u, c.bend, top, c.after, c.low, max(c.end_altitude, c.low));
+    let ends = slab_ends(c, t, vec2f(0.0, top.y));
+    return LayerPath(u.falling.x * length, ends.x, ends.y);
+}
+
+fn layer_path(u: FogUniform, c: RayCourse, h0: f32, mu: f32, t: f32) -> LayerPath {
+    if fog_can(FOG_EXPONENTIAL) && u.kind == FOG_EXPONENTIAL {
+        let depth = exponential_path(u, h0, mu, t, c.end_altitude, c.end_mu);
+        let length = min(depth / max(layer_density(u, min(h0, c.end_altitude)), 1e-20), t);
+        let first = select(0.0, t - length, c.end_altitude < h0);
+        return LayerPath(depth, first, first + length);
+    }
     var base = vec2f(0.0);
     if FOG_LIFTED {
-        base = layer_reach(k, low_mu, u.knots.xy - low);
+        base = layer_reach(u.curvature, c.low_mu, u.knots.xy - c.low);
     }
-    let top = layer_reach(k, low_mu, u.knots.zw - low);
-    let high = select(max(h0, end_altitude), h0, passes);
-    let length = slab_part(u, bend, base, top, before, low, max(high, low))
-        + slab_part(u, bend, base, top, after, low, max(end_altitude, low));
-    let near = min(base.x, before);
-    let far = min(top.y, before);
-    let first = select(select(near, t - far, falls), level - far, passes);
-    let last = select(select(far, t - near, falls), level + min(top.y, after), passes);
-    return LayerPath(u.extinction * length, first, last, end_altitude, end_mu);
+    let top = layer_reach(u.curvature, c.low_mu, u.knots.zw - c.low);
+    let length = slab_part(u, c.bend, base, top, c.before, c.low, max(c.high, c.low))
+        + slab_part(u, c.bend, base, top, c.after, c.low, max(c.end_altitude, c.low));
+    let ends = slab_ends(c, t, vec2f(base.x, top.y));
+    return LayerPath(u.extinction * length, ends.x, ends.y);
+}
+
+// A ray's way through two media: the optical depth of both, and between their ends by what each has of it.
+fn both_paths(fog: LayerPath, falling: LayerPath) -> LayerPath {
+    let depth = fog.depth + falling.depth;
+    let share = select(1.0, falling.depth / max(depth, 1e-30), fog.depth > 0.0);
+    return LayerPath(depth, mix(fog.first, falling.first, share), mix(fog.last, falling.last, share));
 }
 
 // 1 - e^-x, given e^-x.
@@ -337,7 +405,7 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return max(l + aureole, vec3f(0.0));
 }
 
-fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog {
+fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden: f32) -> Fog {
     let mu = clamp(direction.z, -1.0, 1.0);
     let lift = origin.z;
     let h0 = u.altitude + lift + 0.5 * u.curvature * (dot(origin, origin) - lift * lift);
@@ -346,16 +414,26 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> Fog 
     let disc = mu * mu - u.curvature * c;
     let meets_ground = range >= RANGE_SKY && mu < 0.0 && d > 0.0 && disc > 0.0;
     let t = select(range, c / (sqrt(max(disc, 0.0)) - mu), meets_ground);
-    let path = layer_path(u, h0, mu, t);
-    var depth = path.depth;
-    if FOG_PATCHES && u.patch_amount > 0.0 {
-        depth *= patch_mean(origin, direction, path.first, path.last);
+    let course = ray_course(u, h0, mu, t);
+    var path = LayerPath(0.0, 0.0, 0.0);
+    if has_own_layer() {
+        path = layer_path(u, course, h0, mu, t);
+        if FOG_PATCHES && u.patch_amount > 0.0 {
+            path.depth *= patch_mean(origin, direction, path.first, path.last);
+        }
     }
-    if FOG_CURTAINS && u.curtain_amount > 0.0 {
-        let curtains = curtain_mean(origin, direction, path.first, path.last);
-        depth = max(depth * (1.0 + curtains.x), 0.0) + 0.5 * depth * depth * curtains.y;
+    if FOG_FALLING && u.falling.x > 0.0 {
+        var falling = falling_path(u, course, t);
+        if FOG_CURTAINS && u.curtain_amount > 0.0 {
+            let curtains = curtain_mean(origin, direction, falling.first, falling.last);
+            let even = falling.depth;
+            falling.depth = max(even * (1.0 + curtains.x), 0.0) + 0.5 * even * even * curtains.y;
+        }
+        falling.depth = max(falling.depth - hidden, 0.0);
+        path = both_paths(path, falling);
     }
-    let ends = vec2f(layer_depth_above(u, h0), layer_depth_above(u, path.end_altitude));
+    let depth = path.depth;
+    let ends = vec2f(layer_depth_above(u, h0), layer_depth_above(u, course.end_altitude));
     let to_sun = direction - u.to_sun;
     var fog: Fog;
     let entry_mu = clamp(mu + u.curvature * path.first, -1.0, 1.0);
@@ -388,11 +466,17 @@ fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fo
 // What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction` (unit), with an
 // object at `range` metres, `plane` from the camera's plane; RANGE_SKY for sky.
 fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32) -> Fog {
+    return fog_beside_drops(u, origin, direction, range, plane, 0.0);
+}
+
+// As fog_along, where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it is left
+// out, and never more than all of it.
+fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32, hidden: f32) -> Fog {
     var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0);
-    if FOG_KINDS == 2u || FOG_KINDS == 4u {
-        fog = fog_layer(u, origin, direction, range);
-    } else if (FOG_KINDS & 6u) != 0u && (u.kind == FOG_SLAB || u.kind == FOG_EXPONENTIAL) {
-        fog = fog_layer(u, origin, direction, range);
+    // A pipeline for one fog alone asks nothing.
+    let is_layer = FOG_KINDS == 2u || FOG_KINDS == 4u || (FOG_KINDS == 1u && FOG_FALLING);
+    if is_layer || ((FOG_KINDS & 7u) != 0u && u.kind <= FOG_EXPONENTIAL && (u.kind != FOG_CLEAR || u.falling.x > 0.0)) {
+        fog = fog_layer(u, origin, direction, range, hidden);
     } else if (FOG_KINDS & 56u) != 0u && u.kind >= FOG_LINEAR_LAW {
         fog = fog_compatible(u, direction, range, plane);
     }

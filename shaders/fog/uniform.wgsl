@@ -53,9 +53,11 @@ struct FogUniform {
     patch_waves: array<vec4f, 6>,
     // Of the curtains of rain (src/fog/patterns.rs), likewise.
     curtain_waves: array<vec4f, 8>,
+    // What falls: extinction at 550 nm, 1/m; altitudes between which it falls off to nothing, m; 1/their distance, 1/m.
+    falling: vec4f,
     // Share of the light above the layer that reaches the camera: that of the air inside it.
     lit: f32,
-    // Amplitude of each wave of the curtains over the layer's extinction.
+    // Amplitude of each wave of the curtains over the extinction of what falls.
     curtain_amount: f32,
     // Waves of the patches and of the curtains, 0 where there are none.
     waves: vec2u,

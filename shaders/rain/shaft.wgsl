@@ -17,7 +17,7 @@ const FRONT_SHARE: f32 = 0.3;
 struct ShaftUniform {
     // Of the sky and of the ground on the mean, cd/m^2 a channel.
     above: vec3f,
-    // Of the weather's own rain in the fog: extinction, 1/m.
+    // Of the weather's own rain, which the fog's pass draws: extinction, 1/m.
     own: f32,
     below: vec3f,
     // Its upper end, camera-relative, m, and the depth below it within which it sets in.
@@ -174,8 +174,8 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
     fell *= mix(rest, front, (cut - begin) / (end - begin));
     var own = shaft.own;
-    if FOG && FOG_CURTAINS && own > 0.0 && fog.curtain_amount > 0.0 {
-        own += fog.extinction * curtain_mean(origin, d, begin, end).x;
+    if FOG && FOG_FALLING && FOG_CURTAINS && own > 0.0 && fog.curtain_amount > 0.0 {
+        own += fog.falling.x * curtain_mean(origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;
     // What drops near the eye hide is drawn as drops.

@@ -219,7 +219,7 @@ impl wk_conditions {
             freezing: c.precipitation.freezing,
             showers: c.precipitation.showers,
             thunder: c.precipitation.thunder,
-            precipitation_extinction_per_m: c.precipitation.extinction_per_m,
+            precipitation_extinction_per_m: c.precipitation.extinction_per_m(),
             wind_east_m_s: c.wind.east_m_s,
             wind_north_m_s: c.wind.north_m_s,
             wind_gust_m_s: c.wind.gust_m_s,

@@ -26,7 +26,7 @@ use crate::{
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
     weather::{Conditions, Overrides, Weather, derive, derive_with},
-    world::{Made, Settings, World},
+    world::{KeptScene, Made, Settings, World},
 };
 
 /// Light at a place.
@@ -287,12 +287,13 @@ impl Context {
         self.world.over().check_time(time_s)
     }
 
-    /// What holds now at a camera that stands at `eye`, which the host calls `name`.
+    /// What holds now at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an earlier call, taken again
+    /// where nothing has changed since.
     ///
     /// # Errors
     /// As [`Context::scene_at`].
-    pub(crate) fn moment(&self, name: &str, eye: DVec3) -> Result<Moment<'_>> {
-        self.world.moment(name, eye)
+    pub(crate) fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
+        self.world.moment(name, eye, kept)
     }
 
     /// What a camera at `position` draws from at simulation time `time_s`, past or to come. Closed form: no device is

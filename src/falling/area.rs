@@ -145,7 +145,8 @@ impl RainArea {
             freezing: 0.0,
             showers: only(AreaRain::Showers, 1.0),
             thunder: 0.0,
-            extinction_per_m: extinction,
+            liquid_extinction_per_m: extinction,
+            solid_extinction_per_m: 0.0,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The pattern of curtains in rain: steep waves that fall as the drops do, so that a ray's mean over them is a closed form and
-//! nothing flickers far away. Columns of rain areas have one each ([`crate::rain`]), the weather's own rain another, in the fog
-//! that is its extinction ([`crate::fog::patterns`]).
+//! nothing flickers far away. Columns of rain areas have one each ([`crate::rain`]), the weather's own rain another
+//! ([`crate::fog::patterns`]).
 
 use std::f64::consts::TAU;
 

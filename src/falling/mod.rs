@@ -9,7 +9,7 @@ pub mod drops;
 pub mod ice;
 pub mod sizes;
 
-use crate::weather::{Falling, hydrometeors};
+use crate::weather::Conditions;
 
 /// Most rain areas at a time, and so most rains that fall at one place.
 pub const MAX_AREAS: usize = 16;
@@ -27,13 +27,38 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// Share of the extinction of all that falls that is rain's and drizzle's.
-pub(crate) fn liquid_share(f: &Falling) -> f64 {
-    let [steady, showers] =
-        [hydrometeors::rain_extinction_per_m, hydrometeors::shower_extinction_per_m].map(|law| law(f.rain_mm_h));
-    let liquid = steady + (showers - steady) * f.showers + hydrometeors::drizzle_extinction_per_m(f.drizzle_mm_h);
-    let solid = hydrometeors::snow_extinction_per_m(f.snow_mm_h)
-        + hydrometeors::ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
-        + hydrometeors::hail_extinction_per_m(f.hail_mm_h);
-    if liquid > 0.0 { liquid / (liquid + solid) } else { 0.0 }
+/// Depth over which what falls sets in below its cloud, m: half of it above the cloud's base, half below.
+pub(crate) const ONSET_M: f64 = 100.0;
+
+/// Extinction of what falls outside of all rain areas, by species: the same everywhere below the cloud that it falls from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FallingLayer {
+    /// Of rain and drizzle, at 550 nm, 1/m.
+    pub liquid_per_m: f64,
+    /// Of snow, ice pellets and hail, at 550 nm, 1/m.
+    pub solid_per_m: f64,
+    /// Altitude above which nothing falls, m.
+    pub top_m: f64,
+    /// Depth below it over which the extinction rises evenly from nothing to all, m.
+    pub soft_m: f64,
+}
+
+impl FallingLayer {
+    /// Where nothing falls.
+    pub const NONE: Self = Self { liquid_per_m: 0.0, solid_per_m: 0.0, top_m: 0.0, soft_m: ONSET_M };
+
+    /// What falls in a weather.
+    pub(crate) fn new(c: &Conditions) -> Self {
+        Self {
+            liquid_per_m: c.precipitation.liquid_extinction_per_m,
+            solid_per_m: c.precipitation.solid_extinction_per_m,
+            top_m: c.falling_top_m() + 0.5 * ONSET_M,
+            soft_m: ONSET_M,
+        }
+    }
+
+    /// Of both, 1/m.
+    pub fn extinction_per_m(&self) -> f64 {
+        self.liquid_per_m + self.solid_per_m
+    }
 }

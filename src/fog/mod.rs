@@ -3,12 +3,14 @@
 //! # Model
 //! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
 //! contrast at 550 nm, so the **total** extinction at the station is -ln(0.05)/V = 2.996/V (Koschmieder 1924; WMO-No. 8,
-//! 2018, chapter 9). Air, tall haze and precipitation have their own rooms; what they leave is a
+//! 2018, chapter 9). Air and tall haze have their own room; what they leave is a
 //! **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or thinning exponentially
-//! ([`Profile::Exponential`]), on a flat or curved planet.
+//! ([`Profile::Exponential`]), and what **falls** through it from the clouds ([`FallingLayer`]), on a flat or curved planet.
 //!
 //! * Transmittance along a ray is closed form: path lengths between the layer's altitudes on a sphere
 //!   ([`reference::layer_path`]), exact to f32.
+//! * Fog and what falls have heights and an optical depth of their own. What is drawn as drops, flakes or stones near the camera is left
+//!   out of the latter ([`reference::fog_beside_drops`]).
 //! * Light: the layer is lit by the direct sun and the sky above and the ground below. Multiple scattering is the
 //!   delta-Eddington solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame
 //!   ([`light`]); the first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated
@@ -32,7 +34,7 @@
 //!
 //! # What it needs of others
 //! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude of the
-//! camera, planet and ground. Extinctions of air, haze and precipitation at the station.
+//! camera, planet and ground. Extinctions of air, haze and what falls, by species, at the station.
 
 pub mod candidates;
 mod held;
@@ -52,18 +54,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
-pub use crate::{light::Phase, moment::MAX_EXTINCTION_PER_M};
+pub use crate::{falling::FallingLayer, light::Phase, moment::MAX_EXTINCTION_PER_M};
 pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
 pub use probe::{probe, probe_csv};
 pub use queries::{
     Between, extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between,
     vertical_visibility_m, visibility_between_m,
 };
-pub use reference::{FogKind, FogModel, FogSample};
+pub use reference::{FallingModel, FogKind, FogModel, FogSample};
 pub use uniforms::{FogUniform, FogVariant};
 
 pub(crate) use held::HeldFog;
-pub(crate) use of_weather::{dim, fog_layer, own_rain};
+pub(crate) use of_weather::{LowAir, dim};
 pub(crate) use view::FogView;
 
 /// Contrast left at the meteorological optical range (WMO-No. 8).

@@ -1,4 +1,4 @@
-//! The fog of a scene: the weather's low layer, or one of the older laws if the host asked for it.
+//! The fog of a scene: the weather's low layer and what falls, or one of the older laws if the host asked for it.
 
 use std::f64::consts::TAU;
 
@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::{curtain, liquid_share},
-    moment::{GroundLight, Light, OwnRain, Scene},
+    falling::{FallingLayer, curtain},
+    moment::{GroundLight, Light, Scene},
     scene::Place,
     weather::{Conditions, lifting, smoothstep},
 };
@@ -20,63 +20,36 @@ use crate::{
 /// Least change of the optical depth of the longest curtain that shows.
 const LEAST_SHOWN: f64 = 1e-3;
 
-/// What the fog draws: the weather's low layer, and what falls from the clouds as long as nothing else draws it.
-/// Altitudes above the sea.
-///
-/// One layer holds both, so that a reported visibility is the drawn one at the station: rain or snow alone fills the air
-/// up to the lowest cloud; with fog, the denser of the two gives the shape, and both where they are about as dense. Patches go with
-/// the air: `drift_m` is how far the wind has carried it (east, north).
-pub(crate) fn fog_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
-    let falling = c.precipitation.extinction_per_m;
-    let rain = (falling > 0.0).then(|| FogLayer {
-        // Under the deck that it falls from, light comes from all sides: where the drops send it does not show.
-        phase: Phase::HenyeyGreenstein { g: 0.0 },
-        ..FogLayer::ground_fog(falling.min(MAX_EXTINCTION_PER_M), c.falling_top_m(), 100.0)
-    });
-    match (ground_layer(c, seed, drift_m), rain) {
-        (Some(fog), Some(rain)) => Some(together(&fog, &rain)),
-        (fog, rain) => fog.or(rain),
-    }
+/// What a weather has in the air near the ground: its low layer of fog, mist or dust, and what falls outside of rain areas. Each has
+/// an extinction and heights of its own; a reported visibility at the station is that through both.
+pub(crate) struct LowAir {
+    layer: Option<FogLayer>,
+    falling: FallingLayer,
 }
 
-/// Fog and what falls as one layer: its extinction and what it absorbs are those of both, its shape that of the denser one; between
-/// the two as long as neither has twice the other's extinction, so that it never jumps.
-fn together(fog: &FogLayer, rain: &FogLayer) -> FogLayer {
-    let whole = fog.extinction_per_m + rain.extinction_per_m;
-    let part = rain.extinction_per_m / whole;
-    let shape = smoothstep(1.0 / 3.0, 2.0 / 3.0, part);
-    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-    let profile = match (fog.profile, rain.profile) {
-        (
-            Profile::Slab { base_m, top_m, base_softness_m, top_softness_m },
-            Profile::Slab { base_m: base, top_m: top, base_softness_m: base_softness, top_softness_m: top_softness },
-        ) => Profile::Slab {
-            base_m: mix(base_m, base, shape),
-            top_m: mix(top_m, top, shape),
-            base_softness_m: mix(base_softness_m, base_softness, shape),
-            top_softness_m: mix(top_softness_m, top_softness, shape),
-        },
-        (profile, _) => profile,
-    };
-    let patches = fog.patches.map(|p| Patches { amount: p.amount * (1.0 - shape), ..p });
-    FogLayer {
-        extinction_per_m: whole.min(MAX_EXTINCTION_PER_M),
-        angstrom: mix(fog.angstrom, rain.angstrom, part),
-        albedo: [0, 1, 2].map(|i| mix(fog.albedo[i], rain.albedo[i], part)),
-        profile,
-        phase: toward_even(fog.phase, shape),
-        patches: patches.filter(|p| p.amount > 0.0),
+impl LowAir {
+    /// Of a weather. Patches of fog go with the air: `drift_m` is how far the wind has carried it (east, north).
+    pub fn new(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Self {
+        Self { layer: ground_layer(c, seed, drift_m), falling: FallingLayer::new(c) }
     }
-}
 
-/// A phase function so far on the way to one that scatters to all sides alike.
-fn toward_even(phase: Phase, share: f64) -> Phase {
-    match phase {
-        Phase::HenyeyGreenstein { g } => Phase::HenyeyGreenstein { g: g * (1.0 - share) },
-        Phase::Droplets { diameter_um } => Phase::Between { diameter_um, g: 0.0, share },
-        Phase::Between { diameter_um, g, share: there } => {
-            Phase::Between { diameter_um, g: g * (1.0 - share), share: there + (1.0 - there) * share }
-        }
+    /// The same without patches.
+    pub fn even(c: &Conditions) -> Self {
+        let air = Self::new(c, 0, [0.0; 2]);
+        Self { layer: air.layer.map(|layer| FogLayer { patches: None, ..layer }), ..air }
+    }
+
+    /// Whether nothing is there that takes light.
+    pub fn is_clear(&self) -> bool {
+        self.layer.is_none() && self.falling.extinction_per_m() <= 0.0
+    }
+
+    /// As shaders draw it and queries count it, but for the curtains of rain.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn model(&self, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
+        FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)
     }
 }
 
@@ -149,18 +122,6 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// What the low layer's extinction has of the weather's rain.
-pub(crate) fn own_rain(c: &Conditions) -> OwnRain {
-    match fog_layer(c, 0, [0.0; 2]).map(|l| l.profile) {
-        Some(Profile::Slab { top_m, top_softness_m, .. }) => OwnRain {
-            extinction_per_m: c.precipitation.extinction_per_m * liquid_share(&c.precipitation),
-            top_m: top_m + 0.5 * top_softness_m,
-            soft_m: top_softness_m.max(1.0),
-        },
-        _ => OwnRain::NONE,
-    }
-}
-
 /// What the weather's low layer leaves of the light `above` it: sun, moon, and all else on level ground, lux.
 fn through_fog(
     c: &Conditions,
@@ -169,11 +130,13 @@ fn through_fog(
     above: ([[f64; 3]; 3], [f64; 3]),
 ) -> Result<[[f64; 3]; 3]> {
     let ([sun_lux, moon_lux, sky_lux], ground_albedo) = above;
-    let Some(layer) = fog_layer(c, 0, [0.0; 2]) else { return Ok(above.0) };
-    let law = Law::Layer(FogLayer { patches: None, ..layer });
+    let air = LowAir::even(c);
+    if air.is_clear() {
+        return Ok(above.0);
+    }
     let view = viewpoint(place, c, [0.0; 2], f64::INFINITY);
     let under = |light: &Light, sun_irradiance, sky_irradiance| -> Result<FogModel> {
-        FogModel::new(&law, &FogLight { to_sun: light.direction, sun_irradiance, sky_irradiance, ground_albedo }, &view)
+        air.model(&FogLight { to_sun: light.direction, sun_irradiance, sky_irradiance, ground_albedo }, &view)
     };
     let model = under(sun, sun_lux, sky_lux)?;
     let [sun_under, mut sky_under] = model.light_at(place.altitude_m).unwrap_or([sun_lux, sky_lux]);
@@ -193,7 +156,6 @@ impl Scene {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
-        let own = fog_layer(&self.conditions, seed, self.drift_m).map_or(Law::Clear, Law::Layer);
         let light = self.brighter();
         let lux = if light == &self.sun { self.above_fog.sun_lux } else { self.above_fog.moon_lux };
         let light = FogLight {
@@ -203,21 +165,22 @@ impl Scene {
             ground_albedo: self.planet.ground_albedo,
         };
         let view = viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m);
-        let mut model = FogModel::new(law.unwrap_or(&own), &light, &view)?;
-        if let (None, Law::Layer(layer)) = (law, &own) {
-            model.curtains = self.curtains(layer, seed);
+        if let Some(law) = law {
+            return FogModel::new(law, &light, &view);
         }
+        let mut model = LowAir::new(&self.conditions, seed, self.drift_m).model(&light, &view)?;
+        model.falling.curtains = self.curtains(seed);
         Ok(model)
     }
 
-    /// The curtains of the weather's own rain in the layer that holds it.
-    fn curtains(&self, layer: &FogLayer, seed: u64) -> Curtains {
+    /// The curtains of the weather's own rain among all that falls.
+    fn curtains(&self, seed: u64) -> Curtains {
         let falling = &self.conditions.precipitation;
         let variation = curtain::variation(falling);
-        let rain_per_m = falling.extinction_per_m * liquid_share(falling);
+        let rain_per_m = falling.liquid_extinction_per_m;
         // In so thin a rain they would not show.
         let shown = variation * rain_per_m * curtain::OWN_LENGTHS_M[1];
-        if shown < LEAST_SHOWN || layer.extinction_per_m <= 0.0 {
+        if shown < LEAST_SHOWN {
             return Curtains::NONE;
         }
         // The variance of a cosine is a half.
@@ -227,7 +190,7 @@ impl Scene {
         let phased = |k: DVec3, phase: f64| (k, (k.dot(at) + phase).rem_euclid(TAU));
         let waves = curtain::waves::<CURTAIN_WAVES>(seed as u32, curtain::OWN_LENGTHS_M)
             .map(|[x, y, z, phase]| phased(DVec3::new(x, y, z), phase));
-        Curtains { amount: each * rain_per_m / layer.extinction_per_m, waves }
+        Curtains { amount: each * rain_per_m / falling.extinction_per_m(), waves }
     }
 }
 
@@ -235,10 +198,9 @@ impl FogModel {
     /// Optical depth straight up from an altitude. The older laws have no height: what they say of the light above the ground is
     /// nothing.
     pub(crate) fn depth_above(&self, altitude_m: f64) -> f64 {
-        if matches!(self.kind, FogKind::Slab | FogKind::Exponential) {
-            layer_depth_above(self, altitude_m)
-        } else {
-            0.0
+        match self.kind {
+            FogKind::Clear | FogKind::Slab | FogKind::Exponential => layer_depth_above(self, altitude_m),
+            _ => 0.0,
         }
     }
 }
@@ -248,7 +210,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::fog::{patterns::patch_mean, transmittance_between};
+    use crate::fog::patterns::patch_mean;
     use crate::weather::{FogKind, PrecipitationKind, Weather, derive};
 
     /// A reported visibility is total: what air, haze, rain and the drawn layer each take makes 5 % at that distance.
@@ -271,8 +233,7 @@ mod tests {
                 let c = derive(&w).unwrap();
                 let eye = Viewpoint::flat(c.air.station_altitude_m + 0.5);
                 let level = DVec3::X * visibility;
-                let layer =
-                    fog_layer(&c, 1, [0.0; 2]).map_or(1.0, |l| transmittance_between(&l, &eye, level).unwrap()[1]);
+                let layer = LowAir::new(&c, 1, [0.0; 2]).transmittance(&eye, level).unwrap()[1];
                 let others = c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m;
                 let contrast = layer * (-others * visibility).exp();
                 assert!((contrast - 0.05).abs() < 1e-6, "{kind:?} {visibility} m {fall:?}: {contrast}");

@@ -17,10 +17,10 @@ pub const CURTAIN_WAVES: usize = 8;
 /// `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
-/// Curtains of rain in a layer: its extinction is that of even rain times 1 + `amount` times the sum of the waves' cosines.
+/// Curtains of rain: the extinction of what falls is that of even rain times 1 + `amount` times the sum of the waves' cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curtains {
-    /// Amplitude of each wave over the layer's whole extinction; 0 for none.
+    /// Amplitude of each wave over the extinction of all that falls; 0 for none.
     pub amount: f64,
     /// Wave vectors (east, north, up), 1/m, and phases at the camera, rad.
     pub waves: [(DVec3, f64); CURTAIN_WAVES],

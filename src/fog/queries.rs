@@ -13,7 +13,7 @@ pub struct Between {
     /// like this part of it; infinite where nothing stops light.
     pub visibility_m: f64,
 }
-use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, Viewpoint};
+use super::{CONTRAST_THRESHOLD, FogLayer, FogLight, Law, LowAir, Viewpoint};
 use crate::error::{Error, Result, check_range};
 
 /// Light that plays no part where only extinction is asked for.
@@ -26,15 +26,34 @@ const NO_LIGHT: FogLight =
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
 pub fn transmittance_between(layer: &FogLayer, from: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
-    if !offset.is_finite() {
-        return Err(Error::range("offset", "finite, in metres", offset));
+    check_offset(offset)?;
+    Ok(FogModel::new(&Law::Layer(*layer), &NO_LIGHT, from)?.transmittance_over(offset))
+}
+
+fn check_offset(offset: DVec3) -> Result<()> {
+    if offset.is_finite() { Ok(()) } else { Err(Error::range("offset", "finite, in metres", offset)) }
+}
+
+impl FogModel {
+    /// Share of light that is left after `offset` metres from the viewpoint, per channel.
+    fn transmittance_over(&self, offset: DVec3) -> [f64; 3] {
+        let range = offset.length();
+        if range == 0.0 {
+            return [1.0; 3];
+        }
+        fog_along(self, DVec3::ZERO, offset / range, range, range).transmittance.to_array()
     }
-    let m = FogModel::new(&Law::Layer(*layer), &NO_LIGHT, from)?;
-    let range = offset.length();
-    if range == 0.0 {
-        return Ok([1.0; 3]);
+}
+
+impl LowAir {
+    /// As [`transmittance_between`], of fog and of what falls on the mean over its curtains.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn transmittance(&self, from: &Viewpoint, offset: DVec3) -> Result<[f64; 3]> {
+        check_offset(offset)?;
+        Ok(self.model(&NO_LIGHT, from)?.transmittance_over(offset))
     }
-    Ok(fog_along(&m, DVec3::ZERO, offset / range, range, range).transmittance.to_array())
 }
 
 /// Visibility along the line from the viewpoint to the point `offset` metres away, m: the meteorological optical range

@@ -140,8 +140,26 @@ pub struct FogModel {
     pub patch_amount: f64,
     /// See `patch_amount`.
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
-    /// Curtains of the rain in it.
+    /// What falls through it and above it.
+    pub falling: FallingModel,
+}
+
+/// What falls, as a medium of its own: the same everywhere below the altitude where it begins, and in curtains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FallingModel {
+    /// Extinction at 550 nm, 1/m; 0 where nothing falls.
+    pub extinction: f64,
+    /// Altitudes between which it falls off to nothing, m.
+    pub top: [f64; 2],
+    /// 1/their distance, 1/m.
+    pub inverse_flank: f64,
+    /// Curtains of the rain among it.
     pub curtains: Curtains,
+}
+
+impl FallingModel {
+    /// Nothing falls.
+    pub const NONE: Self = Self { extinction: 0.0, top: [0.0; 2], inverse_flank: 1.0, curtains: Curtains::NONE };
 }
 
 /// What fog does to one pixel: `colour * transmittance + radiance`.
@@ -179,8 +197,20 @@ pub fn layer_rise(curvature: f64, mu: f64, t: f64) -> f64 {
     q / (1.0 + (1.0 + curvature * q).max(0.0).sqrt())
 }
 
-/// Depth at 550 nm of the layer above altitude `h`.
+/// Depth at 550 nm of the layer and of what falls above altitude `h`.
 pub fn layer_depth_above(m: &FogModel, h: f64) -> f64 {
+    own_depth_above(m, h) + falling_depth_above(m, h)
+}
+
+/// Depth at 550 nm of what falls above altitude `h`.
+pub fn falling_depth_above(m: &FogModel, h: f64) -> f64 {
+    let f = &m.falling;
+    let in_top = f.top[1] - h.clamp(f.top[0], f.top[1]);
+    f.extinction * (in_top * in_top * 0.5 * f.inverse_flank + f.top[0] - h.min(f.top[0]))
+}
+
+/// Depth at 550 nm of the layer alone above altitude `h`.
+fn own_depth_above(m: &FogModel, h: f64) -> f64 {
     if m.kind == FogKind::Exponential {
         return m.extinction * ((m.knots[0] - h) / m.knots[1]).min(60.0).exp() * m.knots[1];
     }
@@ -212,19 +242,30 @@ fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, hi
     (r[1] - r[0]) * share(0) + (r[2] - r[1]) + (r[3] - r[2]) * (1.0 - share(2))
 }
 
-/// The way of a ray from altitude `h0` with cosine `mu` through the layer, `t` metres long.
-pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
+/// Heights along a ray from altitude `h0` with cosine `mu`, `t` metres long, over the place where it is lowest.
+struct RayCourse {
+    /// Altitude of its end, m, and its cosine with the vertical there.
+    end_altitude: f64,
+    end_mu: f64,
+    /// Distance at which it is level, m; whether it is within its length, and whether the ray only falls.
+    level: f64,
+    passes: bool,
+    falls: bool,
+    /// Lowest altitude, m, and the cosine with which both parts rise from there.
+    low: f64,
+    low_mu: f64,
+    /// Lengths of the parts on either side of the lowest place, m, and the altitude at which the first begins.
+    before: f64,
+    after: f64,
+    high: f64,
+    /// Curvature of altitude along the ray, 1/m.
+    bend: f64,
+}
+
+fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     let k = m.curvature;
     let end_altitude = h0 + layer_rise(k, mu, t);
     let end_mu = ((mu + k * t) / (1.0 + k * (end_altitude - h0))).clamp(-1.0, 1.0);
-    if m.kind == FogKind::Exponential {
-        let depth = exponential_path(m, h0, mu, t, end_altitude, end_mu);
-        // Where the weight lies: beside the denser end.
-        let dense = m.extinction * ((m.knots[0] - h0.min(end_altitude)) / m.knots[1]).min(60.0).exp();
-        let length = (depth / dense.max(1e-20)).min(t);
-        let first = if end_altitude < h0 { t - length } else { 0.0 };
-        return LayerPath { depth, first, last: first + length, end_altitude, end_mu };
-    }
     let level = -mu / k.max(1e-30);
     let passes = mu < 0.0 && t > level;
     let falls = mu < 0.0 && !passes;
@@ -237,19 +278,57 @@ pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
         (h0, mu)
     };
     let (before, after) = if passes { (level, t - level) } else { (t, 0.0) };
-    let bend = k * (1.0 - mu * mu);
-    let reach = m.knots.map(|h| layer_reach(k, low_mu, h - low));
     let high = if passes { h0 } else { h0.max(end_altitude) };
-    let length = slab_part(m, bend, reach, before, low, high.max(low))
-        + slab_part(m, bend, reach, after, low, end_altitude.max(low));
-    let [near, far] = [reach[0], reach[3]].map(|x| x.min(before));
-    let (first, last) = if passes {
-        (level - far, level + reach[3].min(after))
-    } else if falls {
+    let bend = k * (1.0 - mu * mu);
+    RayCourse { end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend }
+}
+
+/// Where a ray enters and leaves a slab whose lower and upper end it meets after `reach`, counted from its lowest place.
+fn slab_ends(c: &RayCourse, t: f64, reach: [f64; 2]) -> (f64, f64) {
+    let [near, far] = reach.map(|x| x.min(c.before));
+    if c.passes {
+        (c.level - far, c.level + reach[1].min(c.after))
+    } else if c.falls {
         (t - far, t - near)
     } else {
         (near, far)
+    }
+}
+
+/// The way of a ray from altitude `h0` with cosine `mu` through what falls, `t` metres long.
+pub fn falling_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
+    let c = ray_course(m, h0, mu, t);
+    let f = &m.falling;
+    let reach = f.top.map(|h| layer_reach(m.curvature, c.low_mu, h - c.low));
+    // It falls to the ground, wherever that is: the ray never is below it.
+    let part = |length: f64, high: f64| {
+        let r = reach.map(|x| x.min(length));
+        let [h0, h1] = f.top.map(|k| k.clamp(c.low, high));
+        let l = r[1] - r[0];
+        let mean = 0.5 * (h0 + h1) - c.bend * l * l / 12.0;
+        r[0] + l * (1.0 - ((mean - f.top[0]) * f.inverse_flank).clamp(0.0, 1.0))
     };
+    let length = part(c.before, c.high.max(c.low)) + part(c.after, c.end_altitude.max(c.low));
+    let (first, last) = slab_ends(&c, t, [0.0, reach[1]]);
+    LayerPath { depth: f.extinction * length, first, last, end_altitude: c.end_altitude, end_mu: c.end_mu }
+}
+
+/// The way of a ray from altitude `h0` with cosine `mu` through the layer, `t` metres long.
+pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
+    let c = ray_course(m, h0, mu, t);
+    let RayCourse { end_altitude, end_mu, .. } = c;
+    if m.kind == FogKind::Exponential {
+        let depth = exponential_path(m, h0, mu, t, end_altitude, end_mu);
+        // Where the weight lies: beside the denser end.
+        let dense = m.extinction * ((m.knots[0] - h0.min(end_altitude)) / m.knots[1]).min(60.0).exp();
+        let length = (depth / dense.max(1e-20)).min(t);
+        let first = if end_altitude < h0 { t - length } else { 0.0 };
+        return LayerPath { depth, first, last: first + length, end_altitude, end_mu };
+    }
+    let reach = m.knots.map(|h| layer_reach(m.curvature, c.low_mu, h - c.low));
+    let length = slab_part(m, c.bend, reach, c.before, c.low, c.high.max(c.low))
+        + slab_part(m, c.bend, reach, c.after, c.low, end_altitude.max(c.low));
+    let (first, last) = slab_ends(&c, t, [reach[0], reach[3]]);
     LayerPath { depth: m.extinction * length, first, last, end_altitude, end_mu }
 }
 
@@ -428,14 +507,38 @@ fn grazing_light(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: f64, 
 /// What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction`, with an object
 /// at `range` metres, or `plane` from the camera's plane; [`RANGE_SKY_M`] for sky.
 pub fn fog_along(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, plane: f64) -> FogSample {
+    fog_beside_drops(m, origin, direction, range, plane, 0.0)
+}
+
+/// As [`fog_along`], where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it is
+/// left out, and never more than all of it.
+pub fn fog_beside_drops(
+    m: &FogModel,
+    origin: DVec3,
+    direction: DVec3,
+    range: f64,
+    plane: f64,
+    hidden: f64,
+) -> FogSample {
     match m.kind {
-        FogKind::Clear => FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0, shade: 1.0 },
-        FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range),
+        FogKind::Clear if m.falling.extinction <= 0.0 => {
+            FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0, shade: 1.0 }
+        }
+        FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, hidden),
         _ => fog_compatible(m, direction, range, plane),
     }
 }
 
-fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSample {
+/// A ray's way through two media: the optical depth of both, and between their ends by what each has of it.
+fn both_paths(fog: &LayerPath, falling: &LayerPath) -> LayerPath {
+    let depth = fog.depth + falling.depth;
+    let share = if fog.depth > 0.0 { falling.depth / depth } else { 1.0 };
+    let mix = |a: f64, b: f64| a + (b - a) * share;
+    LayerPath { depth, first: mix(fog.first, falling.first), last: mix(fog.last, falling.last), ..*falling }
+}
+
+/// What the layer and what falls show and let through: each has an optical depth of its own, both share their light.
+fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: f64) -> FogSample {
     let mu = direction.z.clamp(-1.0, 1.0);
     let lift = origin.z;
     let h0 = m.altitude + lift + 0.5 * m.curvature * (origin.length_squared() - lift * lift);
@@ -449,14 +552,21 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> FogSa
             t = c / (disc.sqrt() - mu);
         }
     }
-    let path = layer_path(m, h0, mu, t);
-    let mut depth = path.depth;
+    let mut path = layer_path(m, h0, mu, t);
     if m.patch_amount > 0.0 {
-        depth *= patch_mean(m, origin, direction, path.first, path.last);
+        path.depth *= patch_mean(m, origin, direction, path.first, path.last);
     }
-    if m.curtains.amount > 0.0 {
-        depth = m.curtains.depth(depth, m.curtains.mean(origin, direction, path.first, path.last));
+    if m.falling.extinction > 0.0 {
+        let mut falling = falling_path(m, h0, mu, t);
+        let curtains = &m.falling.curtains;
+        if curtains.amount > 0.0 {
+            let mean = curtains.mean(origin, direction, falling.first, falling.last);
+            falling.depth = curtains.depth(falling.depth, mean);
+        }
+        falling.depth = (falling.depth - hidden).max(0.0);
+        path = both_paths(&path, &falling);
     }
+    let depth = path.depth;
     let ends = [h0, path.end_altitude].map(|h| layer_depth_above(m, h));
     let versine = 0.5 * (direction - m.to_sun).length_squared();
     let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);

@@ -5,9 +5,14 @@ use glam::DVec3;
 use super::laws::{Curve, DistanceKind};
 use super::light::{Slab, Solution, delta_scaling};
 use super::patterns::{CURTAIN_WAVES, Curtains, PATCH_WAVES};
-use super::reference::{FORWARD_SPREAD, FogKind, FogModel, Term, layer_depth_above};
-use super::{FogLayer, FogLight, Law, Patches, Phase, Profile, Viewpoint};
-use crate::{error::Result, light::PhaseLobes};
+use super::reference::{FORWARD_SPREAD, FallingModel, FogKind, FogModel, Term, falling_depth_above, layer_depth_above};
+use super::{FogLayer, FogLight, Law, MAX_EXTINCTION_PER_M, Patches, Phase, Profile, Viewpoint};
+use crate::{
+    error::{Result, check_range},
+    falling::FallingLayer,
+    light::PhaseLobes,
+    weather::smoothstep,
+};
 
 /// Wavelengths of the channels, nm: those at which the sky's three-channel tables stand; green is Koschmieder's 550.
 const WAVELENGTHS_NM: [f64; 3] = crate::light::EARTH_WAVELENGTHS_NM;
@@ -22,6 +27,45 @@ const MARGIN_M: f64 = 2000.0;
 /// Diffusion exponent times depth below which a channel's two exponentials are drawn as a straight line, whose error
 /// is an eighth of the square.
 const LINEAR_DIFFUSION: f64 = 0.05;
+
+/// How a medium scatters; see [`FogLayer`] for the fields.
+struct Scattering {
+    angstrom: f64,
+    albedo: [f64; 3],
+    phase: Phase,
+}
+
+impl Scattering {
+    /// Under the deck that it falls from, light comes from all sides: where drops and flakes send it does not show.
+    const OF_FALLING: Self = Self { angstrom: 0.0, albedo: [1.0; 3], phase: Phase::HenyeyGreenstein { g: 0.0 } };
+
+    fn of(layer: &FogLayer) -> Self {
+        Self { angstrom: layer.angstrom, albedo: layer.albedo, phase: layer.phase }
+    }
+
+    /// With what falls, of which a share of the optical depth is: phase functions mix as long as neither has twice the other's.
+    fn with_falling(&self, share: f64) -> Self {
+        let mix = |a: f64, b: f64| a + (b - a) * share;
+        let falling = Self::OF_FALLING;
+        Self {
+            angstrom: mix(self.angstrom, falling.angstrom),
+            albedo: [0, 1, 2].map(|i| mix(self.albedo[i], falling.albedo[i])),
+            phase: toward_even(self.phase, smoothstep(1.0 / 3.0, 2.0 / 3.0, share)),
+        }
+    }
+}
+
+/// A phase function so far on the way to one that scatters to all sides alike.
+fn toward_even(phase: Phase, share: f64) -> Phase {
+    match phase {
+        same if share <= 0.0 => same,
+        Phase::HenyeyGreenstein { g } => Phase::HenyeyGreenstein { g: g * (1.0 - share) },
+        Phase::Droplets { diameter_um } => Phase::Between { diameter_um, g: 0.0, share },
+        Phase::Between { diameter_um, g, share: there } => {
+            Phase::Between { diameter_um, g: g * (1.0 - share), share: there + (1.0 - there) * share }
+        }
+    }
+}
 
 impl FogModel {
     /// Prepares the fog of one view and frame.
@@ -90,11 +134,67 @@ impl FogModel {
             lit: 1.0,
             patch_amount: 0.0,
             patch_waves: [(DVec3::ZERO, 0.0); PATCH_WAVES],
-            curtains: Curtains::NONE,
+            falling: FallingModel::NONE,
         }
     }
 
+    /// Prepares what a weather has in the air near the ground: its `layer` of fog, if there is any, and what falls.
+    ///
+    /// Both have heights and an extinction of their own. They are lit as one medium, whose optical depth is that of both and which
+    /// scatters as they do on the mean.
+    ///
+    /// # Errors
+    /// As [`FogModel::new`].
+    pub fn of_weather(
+        layer: Option<&FogLayer>,
+        falling: &FallingLayer,
+        light: &FogLight,
+        view: &Viewpoint,
+    ) -> Result<Self> {
+        light.validate()?;
+        view.validate()?;
+        let mut m = Self::clear(light, view);
+        if let Some(layer) = layer {
+            layer.validate()?;
+            m.set_shape(layer);
+        }
+        m.set_falling(falling)?;
+        if let Some(layer) = layer {
+            let whole = layer_depth_above(&m, view.ground_m);
+            let share = if whole > 0.0 { falling_depth_above(&m, view.ground_m) / whole } else { 0.0 };
+            m.set_light(&Scattering::of(layer).with_falling(share), light, view);
+        } else if m.falling.extinction > 0.0 {
+            m.set_light(&Scattering::OF_FALLING, light, view);
+        }
+        if let Some(patches) = layer.and_then(|l| l.patches.as_ref()) {
+            m.set_patches(patches, view);
+        }
+        Ok(m)
+    }
+
+    fn set_falling(&mut self, falling: &FallingLayer) -> Result<()> {
+        check_range("falling.liquid_per_m", falling.liquid_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
+        check_range("falling.solid_per_m", falling.solid_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
+        check_range("falling.top_m", falling.top_m, -1e5, 1e6, "m")?;
+        check_range("falling.soft_m", falling.soft_m, 1e-3, 1e5, "m")?;
+        self.falling = FallingModel {
+            extinction: falling.extinction_per_m().min(MAX_EXTINCTION_PER_M),
+            top: [falling.top_m - falling.soft_m, falling.top_m],
+            inverse_flank: 1.0 / falling.soft_m,
+            curtains: Curtains::NONE,
+        };
+        Ok(())
+    }
+
     fn set_layer(&mut self, layer: &FogLayer, light: &FogLight, view: &Viewpoint) {
+        self.set_shape(layer);
+        self.set_light(&Scattering::of(layer), light, view);
+        if let Some(patches) = &layer.patches {
+            self.set_patches(patches, view);
+        }
+    }
+
+    fn set_shape(&mut self, layer: &FogLayer) {
         self.extinction = layer.extinction_per_m;
         (self.kind, self.knots) = match layer.profile {
             Profile::Slab { base_m, top_m, base_softness_m, top_softness_m } => {
@@ -110,13 +210,16 @@ impl FogModel {
             let [b0, b1, t0, t1] = self.knots;
             self.inverse_flanks = [b1 - b0, t1 - t0].map(|h| 1.0 / h.max(1e-3));
         }
+    }
+
+    fn set_light(&mut self, scattering: &Scattering, light: &FogLight, view: &Viewpoint) {
         self.depth_total = layer_depth_above(self, view.ground_m);
-        self.lobes = PhaseLobes::new(&layer.phase);
+        self.lobes = PhaseLobes::new(&scattering.phase);
         (self.forward, _, self.smooth) = delta_scaling(1.0, self.lobes.moments());
         let solutions = [0, 1, 2].map(|i| {
             let nm = WAVELENGTHS_NM[i];
-            self.ratio[i] = (nm / WAVELENGTHS_NM[1]).powf(-layer.angstrom);
-            let (wf, albedo, asymmetry) = delta_scaling(layer.albedo[i], self.lobes.moments());
+            self.ratio[i] = (nm / WAVELENGTHS_NM[1]).powf(-scattering.angstrom);
+            let (wf, albedo, asymmetry) = delta_scaling(scattering.albedo[i], self.lobes.moments());
             self.scaling[i] = self.ratio[i] * (1.0 - wf);
             let slab = Slab {
                 depth: self.scaling[i] * self.depth_total,
@@ -129,14 +232,11 @@ impl FogModel {
             };
             // What shaders add up in f32 keeps farther from the solution's pole than what queries answer by.
             self.set_source(i, &slab.solve_beside(1e-4));
-            self.first[i] = layer.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
+            self.first[i] = scattering.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
             slab.solve()
         });
         self.solutions = Some(solutions);
         self.lit = self.share_at(view.altitude_m);
-        if let Some(patches) = &layer.patches {
-            self.set_patches(patches, view);
-        }
     }
 
     /// Light at an altitude under or in the layer, per channel: the sun's on a surface facing it (its aureole, the forward
@@ -225,7 +325,8 @@ impl FogModel {
             kinds: 1 << self.kind as u32,
             absorbing: self.absorbing,
             patches: self.patch_amount > 0.0,
-            curtains: self.curtains.amount > 0.0,
+            curtains: self.falling.curtains.amount > 0.0,
+            falling: self.falling.extinction > 0.0,
             neutral: even(self.ratio) && even(self.scaling) && even(self.k),
             lifted: self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M,
         }
@@ -268,10 +369,12 @@ impl FogModel {
             rise: term(&self.rise),
             fall: term(&self.fall),
             patch_waves: self.patch_waves.map(wave),
-            curtain_waves: self.curtains.waves.map(wave),
+            curtain_waves: self.falling.curtains.waves.map(wave),
+            falling: [self.falling.extinction, self.falling.top[0], self.falling.top[1], self.falling.inverse_flank]
+                .map(|k| k as f32),
             lit: self.lit as f32,
-            curtain_amount: self.curtains.amount as f32,
-            waves: [(self.patch_amount > 0.0, PATCH_WAVES), (self.curtains.amount > 0.0, CURTAIN_WAVES)]
+            curtain_amount: self.falling.curtains.amount as f32,
+            waves: [(self.patch_amount > 0.0, PATCH_WAVES), (self.falling.curtains.amount > 0.0, CURTAIN_WAVES)]
                 .map(|(any, count)| if any { count as u32 } else { 0 }),
         }
     }
@@ -288,7 +391,9 @@ pub struct FogVariant {
     pub absorbing: bool,
     /// Layers in patches.
     pub patches: bool,
-    /// Curtains of rain in them.
+    /// What falls.
+    pub falling: bool,
+    /// Curtains of rain among it.
     pub curtains: bool,
     /// Only layers whose channels are alike.
     pub neutral: bool,
@@ -299,15 +404,16 @@ pub struct FogVariant {
 impl FogVariant {
     /// Everything.
     pub const ALL: Self =
-        Self { kinds: 63, absorbing: true, patches: true, curtains: true, neutral: false, lifted: true };
+        Self { kinds: 63, absorbing: true, patches: true, falling: true, curtains: true, neutral: false, lifted: true };
 
     /// Values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 6] {
+    pub fn constants(&self) -> [(&'static str, f64); 7] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
             ("FOG_KINDS", f64::from(self.kinds)),
             ("FOG_ABSORBING", flag(self.absorbing)),
             ("FOG_PATCHES", flag(self.patches)),
+            ("FOG_FALLING", flag(self.falling)),
             ("FOG_CURTAINS", flag(self.curtains)),
             ("FOG_NEUTRAL", flag(self.neutral)),
             ("FOG_LIFTED", flag(self.lifted)),
@@ -370,6 +476,7 @@ pub struct FogUniform {
     pub fall: [[f32; 4]; 2],
     pub patch_waves: [[f32; 4]; PATCH_WAVES],
     pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
+    pub falling: [f32; 4],
     pub lit: f32,
     pub curtain_amount: f32,
     pub waves: [u32; 2],

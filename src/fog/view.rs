@@ -31,8 +31,8 @@ impl FogView {
     pub fn gather(&mut self, now: &Moment<'_>, law: Option<&Law>) -> Result<()> {
         let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?;
         // A GPU keeps one pipeline for all fogs: exchanging it would cost a hitch when the weather changes.
-        self.variant =
-            (model.kind != FogKind::Clear).then(|| if self.software { model.variant() } else { FogVariant::ALL });
+        self.variant = (model.kind != FogKind::Clear || model.falling.extinction > 0.0)
+            .then(|| if self.software { model.variant() } else { FogVariant::ALL });
         self.model = Some(model);
         Ok(())
     }

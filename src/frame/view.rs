@@ -27,6 +27,7 @@ use crate::{
         can_copy,
     },
     surroundings::SurroundingsBlock,
+    world::KeptScene,
 };
 
 /// One camera or projector channel. Exclusive: one thread at a time.
@@ -48,6 +49,8 @@ pub struct View {
     pub(super) unit: UnitWatch,
     pub(super) recorded: Stages,
     pub(super) report: Report,
+    /// The scene of the last call, for the next calls of the frame.
+    pub(crate) scene: Option<Box<KeptScene>>,
     /// What the last measured call took, its wait for earlier work included.
     pub(super) last_call: Option<Duration>,
 }
@@ -85,6 +88,7 @@ impl View {
             unit: UnitWatch::default(),
             recorded: Stages(0),
             report: Report { frame_id: u64::MAX, ..Default::default() },
+            scene: None,
             last_call: None,
         })
     }
@@ -232,7 +236,7 @@ impl View {
         stages: Stages,
         to: &mut Recording<'_>,
     ) -> Result<()> {
-        let now = context.moment("frame.camera.position", frame.camera.position)?;
+        let now = context.moment("frame.camera.position", frame.camera.position, &mut self.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
         self.effects.gather((&self.device, &context.held), (&context.world, &now), frame, stages)?;
         // What is not there is not drawn.

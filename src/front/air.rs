@@ -10,10 +10,7 @@ use glam::DVec3;
 use crate::{
     context::{Context, Light, Scene},
     error::{Error, Result, Status},
-    fog::{
-        Between, CONTRAST_THRESHOLD, FogLayer, Law, Viewpoint, fog_layer, koschmieder_visibility_m,
-        transmittance_between,
-    },
+    fog::{Between, CONTRAST_THRESHOLD, Law, LowAir, Viewpoint, koschmieder_visibility_m},
     sky::{
         FollowedSky, LightTable, Planet, Sh9, SkyLibrary, SkySettings,
         reference::{medium::Medium, ray::Ray},
@@ -77,14 +74,15 @@ impl Context {
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
-        if let Some(layer) = fog_layer(&scene.conditions, self.world.seed, scene.drift_m) {
+        let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m);
+        if !low.is_clear() {
             let view = Viewpoint {
                 altitude_m: scene.place.altitude_m,
                 map_m: scene.map_m,
                 planet_radius_m: scene.planet.bottom_radius_m,
                 ..Viewpoint::flat(0.0)
             };
-            let fog = transmittance_between(&layer, &view, offset)?;
+            let fog = low.transmittance(&view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
         let clouds = self.cloud_rays(scene, time_s)?.map_or(0.0, |clouds| clouds.depth(offset));
@@ -114,12 +112,11 @@ impl Context {
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
         // Clouds and fog turn the clear sky's pattern into an even one of the light that they let through.
-        let through = match fog_layer(&scene.conditions, 0, scene.drift_m) {
-            Some(layer) if scene.ground != scene.above_fog => {
-                let layer = FogLayer { patches: None, ..layer };
-                transmittance_between(&layer, &Viewpoint::flat(scene.place.altitude_m), DVec3::Z * 1e5)?[1]
-            }
-            _ => 1.0,
+        let through = if scene.ground != scene.above_fog {
+            let above = Viewpoint::flat(scene.place.altitude_m);
+            LowAir::even(&scene.conditions).transmittance(&above, DVec3::Z * 1e5)?[1]
+        } else {
+            1.0
         };
         let cover = 1.0 - (1.0 - scene.deck_cover as f32) * through as f32;
         let even = scene.ground.sky_lux.map(|e| (e / std::f64::consts::PI) as f32);

@@ -58,7 +58,7 @@ impl Context {
         let field = AreaField::new(
             over.shafts_at(time_s, c)?,
             (position, &local.world_to_enu, local.place.altitude_m),
-            &world.own_rain(c),
+            &world.falling(c),
             0.0,
         );
         let range = offset.length();

@@ -232,7 +232,7 @@ fn scattering_per_m(c: &Conditions, altitude_m: f64, clouds: Option<CloudSpan>) 
     let in_fog = (c.fog.base_m..c.fog.top_m).contains(&height.max(0.0));
     let fog = if in_fog { c.fog.extinction_per_m * c.fog.coverage } else { 0.0 };
     let falls = clouds.is_none_or(|span| altitude_m < span.base_m);
-    air + haze + fog + if falls { c.precipitation.extinction_per_m } else { 0.0 }
+    air + haze + fog + if falls { c.precipitation.extinction_per_m() } else { 0.0 }
 }
 
 impl Lit {

@@ -12,6 +12,7 @@ pub(crate) use regions::{Region, WeatherOver};
 
 use crate::{
     error::Result,
+    falling::FallingLayer,
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS, Place},
@@ -23,7 +24,7 @@ use crate::{
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
-/// What holds at a camera at a time, worked out once a view and call: every effect draws from it.
+/// What holds at a camera at a time: every effect draws from it. Its scene is worked out once for all calls of a frame.
 pub(crate) struct Moment<'a> {
     /// Place, lights, air and the weather there.
     pub scene: Scene,
@@ -43,8 +44,8 @@ pub(crate) struct Moment<'a> {
     pub weather: WeatherOver<'a>,
     /// That at the camera, with what falls in its region.
     pub here: Conditions,
-    /// What the fog's extinction has of the weather's rain.
-    pub own_rain: OwnRain,
+    /// Extinction of what falls outside of all regions.
+    pub falling: FallingLayer,
     /// What keeps rain off: the host's boxes, and its maps if there are any.
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
@@ -117,21 +118,6 @@ impl<'a> Moment<'a> {
     pub fn is_sheltered(&self) -> bool {
         !self.shelters.is_empty() || self.has_maps()
     }
-}
-
-/// What the fog's extinction has of the weather's own rain: how much, and its soft upper end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OwnRain {
-    pub extinction_per_m: f64,
-    /// Altitude above which there is none, m.
-    pub top_m: f64,
-    /// Depth below it within which it sets in, m.
-    pub soft_m: f64,
-}
-
-impl OwnRain {
-    /// Where there is none.
-    pub const NONE: Self = Self { extinction_per_m: 0.0, top_m: 0.0, soft_m: 1.0 };
 }
 
 /// The sun or the moon as it stands over a place. Vectors are (east, north, up) there.

@@ -8,7 +8,6 @@ use crate::{
     falling::{
         area::{AreaMotion, RainArea, Shaft},
         drops::factor_in,
-        liquid_share,
         sizes::DropSizes,
     },
     scene::WorldFrame,
@@ -148,15 +147,12 @@ impl<'a> WeatherOver<'a> {
         let local = self.world.frame_at(position);
         let Ok(shafts) = self.shafts_at(time_s, &c) else { return c };
         let mut falling = c.precipitation;
-        let mut liquid_per_m = falling.extinction_per_m * liquid_share(&falling);
-        let solid_per_m = falling.extinction_per_m - liquid_per_m;
         for shaft in shafts {
             let share = shaft.share_at(position, &local.world_to_enu, local.place.altitude_m);
             let begun = shaft.begun(local.place.altitude_m);
             falling = covered(&falling, &shaft.falling, share, begun);
-            liquid_per_m = liquid_per_m * (1.0 - share) + shaft.falling.extinction_per_m * share * begun;
         }
-        with_falling(c, Falling { extinction_per_m: solid_per_m + liquid_per_m, ..falling })
+        with_falling(c, falling)
     }
 
     /// The weather `c` of a time as it is at a place: what falls is what falls there, in regions as by [`WeatherOver::at_place`], and
@@ -170,7 +166,8 @@ impl<'a> WeatherOver<'a> {
                 snow_mm_h: 0.0,
                 ice_pellets_mm_h: 0.0,
                 hail_mm_h: 0.0,
-                extinction_per_m: 0.0,
+                liquid_extinction_per_m: 0.0,
+                solid_extinction_per_m: 0.0,
                 ..c.precipitation
             };
             with_falling(c, none)
@@ -183,13 +180,13 @@ impl<'a> WeatherOver<'a> {
 
 /// The weather with something else that falls, and the total extinction to match.
 fn with_falling(c: Conditions, falling: Falling) -> Conditions {
-    let changed = falling.extinction_per_m - c.precipitation.extinction_per_m;
+    let changed = falling.extinction_per_m() - c.precipitation.extinction_per_m();
     // The least is the clear air's, whatever rounding leaves.
     let extinction_per_m = (c.extinction_per_m + changed).max(c.air.rayleigh_extinction_per_m);
     Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
-/// Rates where `over` lies with a share over `falling`, of which the share `begun` has left its cloud.
+/// Rates and extinction of drops where `over` lies with a share over `falling`, of which the share `begun` has left its cloud.
 fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
     let rain = falling.rain_mm_h * kept + over.rain_mm_h * come;
@@ -198,6 +195,7 @@ fn covered(falling: &Falling, over: &Falling, share: f64, begun: f64) -> Falling
         rain_mm_h: rain,
         drizzle_mm_h: falling.drizzle_mm_h * kept + over.drizzle_mm_h * come,
         showers: if rain > 0.0 { (showers / rain).min(1.0) } else { falling.showers },
+        liquid_extinction_per_m: falling.liquid_extinction_per_m * kept + over.liquid_extinction_per_m * come,
         ..*falling
     }
 }

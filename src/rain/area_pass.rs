@@ -138,7 +138,7 @@ impl Columns<'_> {
         let v = |d: DVec3| d.as_vec3().to_array();
         let s = &mut blocks.shaft;
         (s.above, s.below, s.sun, s.to_sun) = (v(light.above), v(light.below), v(light.sun), v(light.to_sun));
-        (s.own, s.own_soft) = (field.own.extinction_per_m as f32, field.own.soft_m as f32);
+        (s.own, s.own_soft) = (field.own.liquid_per_m as f32, field.own.soft_m as f32);
         (s.own_top, s.own_near) = (field.own_top as f32, field.own_near as f32);
         if !self.veiled {
             (s.own, s.own_near) = (0.0, 0.0);

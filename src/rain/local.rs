@@ -169,8 +169,8 @@ mod tests {
 
     use super::*;
     use crate::{
+        falling::FallingLayer,
         gpu::shader,
-        moment::OwnRain,
         rain::{AreaShape, RainArea, Shaft},
     };
 
@@ -207,7 +207,7 @@ mod tests {
         let at = |x: f64| {
             let shaft = Shaft::new(&area, 0, (DVec3::ZERO, 0.0), (6.0, Default::default()), 0.0);
             let eye = (DVec3::X * x, &DMat3::IDENTITY, 0.0);
-            let own = OwnRain::NONE;
+            let own = FallingLayer::NONE;
             let field = AreaField::new(std::iter::once(shaft), eye, &own, 0.0);
             let local = Local::new(&dry, &field, eye, 4.0);
             (local, local.falls(&field))

@@ -4,7 +4,7 @@
 //! found exactly (an ellipse or a convex polygon in the plan, two levels in height) and cut where the rim and the soft top end;
 //! on each of the four pieces what falls is integrated by Gauss's four points. The pattern of curtains, a sum of waves that fall
 //! as the drops do, multiplies it by its exact mean, of the first half kilometre and of the rest. Columns count by how much more they take than the weather's own
-//! rain, which is in the fog.
+//! rain, which is drawn with the fog.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -14,11 +14,11 @@ use super::{
 };
 use crate::{
     falling::{
+        FallingLayer,
         area::{MAX_CORNERS, Outline, Shaft},
         curtain::{AMOUNT, PATTERN_M, PERIOD_M, WAVES},
     },
     light::sinc,
-    moment::OwnRain,
     scene::depth::RANGE_SKY_M,
 };
 
@@ -102,8 +102,8 @@ pub(crate) struct Column {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AreaField {
     pub columns: Vec<Column>,
-    pub own: OwnRain,
-    /// The own rain's upper end over the camera, m, and what its drops hide near it, 1/m.
+    pub own: FallingLayer,
+    /// Upper end of what falls outside of them over the camera, m, and what its drops hide near it, 1/m.
     pub own_top: f64,
     pub own_near: f64,
     /// Distance up to which drops or cones are drawn in place of the veil, m.
@@ -126,7 +126,12 @@ fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
 }
 
 impl Column {
-    fn new(shaft: Shaft, (eye, to_enu, altitude_m): (DVec3, &DMat3, f64), own: &OwnRain, time_s: f64) -> Option<Self> {
+    fn new(
+        shaft: Shaft,
+        (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
+        own: &FallingLayer,
+        time_s: f64,
+    ) -> Option<Self> {
         let away = to_enu * (shaft.center - eye);
         let distance = away.length() - shaft.radius_m;
         // Nothing of it shows from so far away; it goes without a jump.
@@ -144,7 +149,7 @@ impl Column {
             shaft,
             ground: level(shaft.ground_m),
             top: level(shaft.top_m),
-            extinction: shaft.falling.extinction_per_m * shown,
+            extinction: shaft.falling.liquid_extinction_per_m * shown,
             near: 0.0,
             fallen: (shaft.speed_m_s * time_s).rem_euclid(PERIOD_M),
             later: 0,
@@ -274,7 +279,7 @@ impl Column {
 impl AreaField {
     /// No columns.
     pub fn empty() -> Self {
-        let own = OwnRain::NONE;
+        let own = FallingLayer::NONE;
         Self { columns: Vec::new(), own, own_top: 0.0, own_near: 0.0, near_m: HIDDEN_M, waves: [[0.0; 4]; WAVES] }
     }
 
@@ -282,7 +287,7 @@ impl AreaField {
     pub fn new(
         shafts: impl Iterator<Item = Shaft>,
         (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        own: &OwnRain,
+        own: &FallingLayer,
         time_s: f64,
     ) -> Self {
         let mut field = Self::empty();
@@ -295,7 +300,7 @@ impl AreaField {
         &mut self,
         shafts: impl Iterator<Item = Shaft>,
         (eye, to_enu, altitude_m): (DVec3, &DMat3, f64),
-        own: &OwnRain,
+        own: &FallingLayer,
         time_s: f64,
     ) {
         self.columns.clear();
@@ -362,7 +367,7 @@ impl AreaField {
                 .map(|way| (way[1] - way[0]) * c.pattern(&self.waves, q, u, (origin.z, d.z), way));
             fell *= (front + rest) / (end - begin);
         }
-        let mut depth = c.extinction * fell - self.own.extinction_per_m * shared;
+        let mut depth = c.extinction * fell - self.own.liquid_per_m * shared;
         // What drops near the eye hide is drawn as drops.
         let near = range.min(self.near_m);
         let half = origin + d * (0.5 * near);
@@ -397,7 +402,7 @@ mod tests {
         };
         let shown = if patterned { smoothstep(PATTERN_M[0], PATTERN_M[1], p.length()) } else { 0.0 };
         let more = (1.0 + AMOUNT * shown * field.waves.iter().enumerate().map(wave).sum::<f64>()).max(0.0);
-        field.share(i, p) * (c.extinction * more * begun - field.own.extinction_per_m * own)
+        field.share(i, p) * (c.extinction * more * begun - field.own.liquid_per_m * own)
     }
 
     fn areas() -> Vec<RainArea> {
@@ -428,7 +433,7 @@ mod tests {
             a.validate().unwrap();
             Shaft::new(a, i as u32, (DVec3::from(a.center_m), 0.0), (6.0, DVec2::new(1.5, 0.5)), 0.0)
         });
-        let own = OwnRain { extinction_per_m: own_per_m, top_m: 1200.0, soft_m: 100.0 };
+        let own = FallingLayer { liquid_per_m: own_per_m, top_m: 1200.0, ..FallingLayer::NONE };
         let mut field = AreaField::new(shafts, (DVec3::Z * 2.0, &DMat3::IDENTITY, 2.0), &own, 77.0);
         field.waves = curtain::waves(5, COLUMN_LENGTHS_M);
         field

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    falling::curtain,
+    falling::{FallingLayer, curtain},
     gpu::Device,
     light::ToneCurve,
     moment::{Moment, Scene},
@@ -56,20 +56,20 @@ const COUNTED: usize = 32;
 /// Least share of a rain near a rim in what cones are made for.
 const LEAST_OF_CONES: f64 = 1e-2;
 
-/// Depth over which rain sets in below its cloud, m: that of the fog layer's upper end in which it falls. And the steps in which it does,
-/// so that a climbing camera does not count drops anew in each frame.
-const ONSET_M: f64 = 100.0;
+/// Steps in which rain sets in below its cloud, so that a climbing camera does not count drops anew in each frame.
 const ONSET_STEPS: f64 = 32.0;
 
 /// What falls in a weather without rain areas, as much of it as has left its cloud at an altitude.
 fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
-    let begun = ((c.falling_top_m() - altitude_m) / ONSET_M + 0.5).clamp(0.0, 1.0);
+    let layer = FallingLayer::new(c);
+    let begun = ((layer.top_m - altitude_m) / layer.soft_m).clamp(0.0, 1.0);
     let share = (begun * ONSET_STEPS).ceil() / ONSET_STEPS;
     let f = c.precipitation;
     Falling {
         rain_mm_h: f.rain_mm_h * share,
         drizzle_mm_h: f.drizzle_mm_h * share,
-        extinction_per_m: f.extinction_per_m * share,
+        liquid_extinction_per_m: f.liquid_extinction_per_m * share,
+        solid_extinction_per_m: f.solid_extinction_per_m * share,
         ..f
     }
 }
@@ -102,7 +102,7 @@ impl RainView {
         self.field.columns.clear();
         if !now.weather.regions.is_empty() {
             let shafts = now.weather.shafts_at(now.time_s, &scene.conditions)?;
-            self.field.set(shafts, at, &now.own_rain, now.time_s);
+            self.field.set(shafts, at, &now.falling, now.time_s);
         }
         self.local = Some(Local::new(&self.own, &self.field, at, REACH_M.max(self.reach(now))));
         self.ice.gather(now);

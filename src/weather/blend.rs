@@ -10,7 +10,7 @@ use super::conditions::{
 };
 
 /// a + (b - a) t, exact at both ends and monotone in t.
-fn mix(a: f64, b: f64, t: f64) -> f64 {
+pub(super) fn mix(a: f64, b: f64, t: f64) -> f64 {
     if t >= 1.0 { b } else { a + (b - a) * t }
 }
 
@@ -50,7 +50,7 @@ fn burden_per_m(c: &Conditions) -> f64 {
     c.air.rayleigh_extinction_per_m
         + c.aerosol.extinction_per_m
         + c.fog.extinction_per_m
-        + c.precipitation.extinction_per_m
+        + c.precipitation.extinction_per_m()
 }
 
 impl Conditions {
@@ -153,7 +153,8 @@ impl Falling {
             freezing: mix(self.freezing, to.freezing, t),
             showers: mix(self.showers, to.showers, t),
             thunder: mix(self.thunder, to.thunder, t),
-            extinction_per_m: mix(self.extinction_per_m, to.extinction_per_m, w),
+            liquid_extinction_per_m: mix(self.liquid_extinction_per_m, to.liquid_extinction_per_m, w),
+            solid_extinction_per_m: mix(self.solid_extinction_per_m, to.solid_extinction_per_m, w),
         }
     }
 }

@@ -115,6 +115,7 @@ pub struct GroundLayer {
 
 /// What falls, as rates of liquid water at the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "SavedFalling")]
 pub struct Falling {
     /// Rain, mm/h.
     pub rain_mm_h: f64,
@@ -132,8 +133,47 @@ pub struct Falling {
     pub showers: f64,
     /// Whether there is thunder, 0 to 1.
     pub thunder: f64,
-    /// Extinction by all that falls, at 550 nm, 1/m.
-    pub extinction_per_m: f64,
+    /// Extinction by rain and drizzle, at 550 nm, 1/m.
+    pub liquid_extinction_per_m: f64,
+    /// Extinction by snow, ice pellets and hail, at 550 nm, 1/m.
+    pub solid_extinction_per_m: f64,
+}
+
+/// [`Falling`] as states hold it. Older states hold the sum of both extinctions.
+#[derive(Deserialize)]
+struct SavedFalling {
+    rain_mm_h: f64,
+    drizzle_mm_h: f64,
+    snow_mm_h: f64,
+    ice_pellets_mm_h: f64,
+    hail_mm_h: f64,
+    freezing: f64,
+    showers: f64,
+    thunder: f64,
+    liquid_extinction_per_m: Option<f64>,
+    solid_extinction_per_m: Option<f64>,
+    extinction_per_m: Option<f64>,
+}
+
+impl From<SavedFalling> for Falling {
+    fn from(s: SavedFalling) -> Self {
+        let falling = Self {
+            rain_mm_h: s.rain_mm_h,
+            drizzle_mm_h: s.drizzle_mm_h,
+            snow_mm_h: s.snow_mm_h,
+            ice_pellets_mm_h: s.ice_pellets_mm_h,
+            hail_mm_h: s.hail_mm_h,
+            freezing: s.freezing,
+            showers: s.showers,
+            thunder: s.thunder,
+            liquid_extinction_per_m: s.liquid_extinction_per_m.unwrap_or(0.0),
+            solid_extinction_per_m: s.solid_extinction_per_m.unwrap_or(0.0),
+        };
+        match s.extinction_per_m {
+            Some(whole) => super::hydrometeors::by_species(falling).with_extinction(whole),
+            None => falling,
+        }
+    }
 }
 
 /// A horizontally mixed layer of cloud.
@@ -354,12 +394,29 @@ impl Falling {
         freezing: 0.0,
         showers: 0.0,
         thunder: 0.0,
-        extinction_per_m: 0.0,
+        liquid_extinction_per_m: 0.0,
+        solid_extinction_per_m: 0.0,
     };
 
     /// Everything that falls, mm/h of liquid water.
     pub fn total_mm_h(&self) -> f64 {
         self.rain_mm_h + self.drizzle_mm_h + self.snow_mm_h + self.ice_pellets_mm_h + self.hail_mm_h
+    }
+
+    /// Extinction by all that falls, at 550 nm, 1/m.
+    pub fn extinction_per_m(&self) -> f64 {
+        self.liquid_extinction_per_m + self.solid_extinction_per_m
+    }
+
+    /// The same with `whole` as the extinction of all, 1/m, in which liquid and solid keep their shares. What has no species
+    /// counts as solid: no drop is drawn of it.
+    pub(crate) fn with_extinction(self, whole: f64) -> Self {
+        let before = self.extinction_per_m();
+        if before <= 0.0 {
+            return Self { liquid_extinction_per_m: 0.0, solid_extinction_per_m: whole, ..self };
+        }
+        let liquid_extinction_per_m = whole * (self.liquid_extinction_per_m / before);
+        Self { liquid_extinction_per_m, solid_extinction_per_m: whole - liquid_extinction_per_m, ..self }
     }
 }
 

@@ -82,8 +82,12 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     air.rayleigh_scale_height_m = o.rayleigh_scale_height_m.unwrap_or(air.rayleigh_scale_height_m);
     let mut falling = hydrometeors::falling(&w.precipitation);
     let left = (super::LN_20 / w.visibility_m - air.rayleigh_extinction_per_m).max(0.0);
-    falling.extinction_per_m = o.precipitation_extinction_per_m.unwrap_or(falling.extinction_per_m.min(left));
-    let shares = particles::share_extinction(w, &air, falling.extinction_per_m, o);
+    if let Some(whole) = o.precipitation_extinction_per_m {
+        falling = falling.with_extinction(whole);
+    } else if falling.extinction_per_m() > left {
+        falling = falling.with_extinction(left);
+    }
+    let shares = particles::share_extinction(w, &air, falling.extinction_per_m(), o);
     let aerosol = particles::aerosol_layer(w, shares.aerosol_per_m, o.humidity_growth);
     let fog = particles::ground_layer(w, shares.ground_per_m, &aerosol);
     let counted = if shares.ground_counts { fog.extinction_per_m } else { 0.0 };
@@ -92,7 +96,7 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     ground.wetness = o.wetness.unwrap_or(ground.wetness);
     let clouds = cloud_light::cloud_slabs(w, o.rain_needs_cloud.unwrap_or(true));
     Ok(Conditions {
-        extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m,
+        extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m(),
         air,
         aerosol,
         fog,
@@ -116,7 +120,7 @@ mod tests {
     use super::super::*;
 
     fn sum(c: &Conditions) -> f64 {
-        c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m + c.precipitation.extinction_per_m
+        c.air.rayleigh_extinction_per_m + c.aerosol.extinction_per_m + c.precipitation.extinction_per_m()
     }
 
     #[test]
@@ -224,7 +228,7 @@ mod tests {
         let c = derive_with(&rainy, &o).unwrap();
         assert_eq!(c.aerosol.extinction_per_m, 1e-5);
         assert_eq!(c.fog.extinction_per_m, 2e-5);
-        assert_eq!(c.precipitation.extinction_per_m, 3e-5);
+        assert_eq!(c.precipitation.extinction_per_m(), 3e-5);
         assert!((c.aerosol.single_scattering_albedo - 0.925).abs() < 1e-12);
         assert_eq!((c.air.rayleigh_density_ratio, c.air.rayleigh_scale_height_m), (0.5, 7000.0));
         assert_eq!((c.sea.significant_wave_height_m, c.surface.wetness), (1.5, 0.2));

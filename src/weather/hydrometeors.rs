@@ -1,5 +1,6 @@
 //! What falls, and how much light it stops.
 
+use super::blend::mix;
 use super::conditions::Falling;
 use super::kinds::PrecipitationKind;
 use super::model::Precipitation;
@@ -123,7 +124,7 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
     let flag = |on: bool| if on { 1.0 } else { 0.0 };
     let only = |on: bool, amount: f64| if on { amount } else { 0.0 };
     let pellets = matches!(p.kind, K::IcePellets | K::SmallHail);
-    let mut f = Falling {
+    let f = Falling {
         rain_mm_h: only(!drizzle, wet),
         drizzle_mm_h: only(drizzle, wet),
         snow_mm_h: only(!pellets && p.kind != K::Hail, frozen),
@@ -132,15 +133,22 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
         freezing: flag(p.kind.is_freezing()),
         showers: flag(p.showers || p.thunderstorm),
         thunder: flag(p.thunderstorm),
-        extinction_per_m: 0.0,
+        liquid_extinction_per_m: 0.0,
+        solid_extinction_per_m: 0.0,
     };
-    let rain = if f.showers > 0.0 { shower_extinction_per_m } else { rain_extinction_per_m };
-    f.extinction_per_m = rain(f.rain_mm_h)
-        + drizzle_extinction_per_m(f.drizzle_mm_h)
-        + snow_extinction_per_m(f.snow_mm_h)
-        + ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
-        + hail_extinction_per_m(f.hail_mm_h);
-    f
+    by_species(f)
+}
+
+/// The same rates with the extinction of their drops, and of their flakes, pellets and stones.
+pub(super) fn by_species(f: Falling) -> Falling {
+    let [steady, showers] = [rain_extinction_per_m, shower_extinction_per_m].map(|law| law(f.rain_mm_h));
+    Falling {
+        liquid_extinction_per_m: mix(steady, showers, f.showers) + drizzle_extinction_per_m(f.drizzle_mm_h),
+        solid_extinction_per_m: snow_extinction_per_m(f.snow_mm_h)
+            + ice_pellet_extinction_per_m(f.ice_pellets_mm_h)
+            + hail_extinction_per_m(f.hail_mm_h),
+        ..f
+    }
 }
 
 #[cfg(test)]
@@ -210,7 +218,7 @@ mod tests {
             assert!((fit * rate / (ext * r) - 1.0).abs() < 0.007, "{r} mm/h: {fit}");
         }
         let shower = falling(&Precipitation { showers: true, ..Precipitation::of(PrecipitationKind::Rain, 10.0) });
-        assert_eq!(shower.extinction_per_m, shower_extinction_per_m(10.0));
+        assert_eq!(shower.extinction_per_m(), shower_extinction_per_m(10.0));
     }
 
     #[test]
@@ -247,7 +255,8 @@ mod tests {
                 let rate = if kind == PrecipitationKind::None { 0.0 } else { 4.0 };
                 let f = falling(&Precipitation { hail, ..Precipitation::of(kind, rate) });
                 assert!((f.total_mm_h() - rate).abs() < 1e-12, "{kind:?}");
-                assert_eq!(f.extinction_per_m > 0.0, rate > 0.0, "{kind:?}");
+                assert_eq!(f.extinction_per_m() > 0.0, rate > 0.0, "{kind:?}");
+                assert_eq!(f.liquid_extinction_per_m > 0.0, f.rain_mm_h + f.drizzle_mm_h > 0.0, "{kind:?}");
             }
         }
         let sleet = falling(&Precipitation::of(PrecipitationKind::Sleet, 4.0));

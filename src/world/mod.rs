@@ -7,6 +7,7 @@
 
 mod air;
 mod held;
+mod kept;
 mod lights;
 mod regions;
 mod saved;
@@ -25,6 +26,7 @@ use glam::{DMat3, DVec3};
 
 pub(crate) use air::planet_under;
 pub(crate) use held::{HeldEffect, Within};
+pub(crate) use kept::KeptScene;
 pub(crate) use lights::color_of;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};
@@ -36,8 +38,9 @@ use crate::{
         sun::{Utc, direction, sun_position},
     },
     error::{Result, check_range},
+    falling::FallingLayer,
     light::{Exposure, ToneCurve},
-    moment::{Moment, OwnRain, Region, Scene, WeatherOver},
+    moment::{Moment, Region, Scene, WeatherOver},
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
     surroundings::{OccluderMaps, Shelter},
@@ -108,8 +111,6 @@ pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[
 pub(crate) struct Couplings {
     /// Takes the light that the weather's low layer takes.
     pub dim: Dim,
-    /// What the low layer's extinction has of the weather's rain.
-    pub own_rain: fn(&Conditions) -> OwnRain,
     /// Light of the moonless sky on level ground, lux a channel, at a time and place where the air's optical depths straight up are
     /// given.
     pub night_lux: NightLux,
@@ -265,17 +266,18 @@ impl World {
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// What the low layer's extinction has of the weather's rain `c`.
-    pub fn own_rain(&self, c: &Conditions) -> OwnRain {
-        if self.set.undimmed { OwnRain::NONE } else { (self.couplings.own_rain)(c) }
+    /// Extinction of what falls in the weather `c` outside of all regions; none where a law of the host's stands in for it.
+    pub fn falling(&self, c: &Conditions) -> FallingLayer {
+        if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }
 
-    /// What holds now at a camera that stands at `eye`, which the host calls `name`.
+    /// What holds now at a camera that stands at `eye`, which the host calls `name`; `kept` is the scene of an earlier call, taken again
+    /// where nothing has changed since.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
-    pub fn moment(&self, name: &str, eye: DVec3) -> Result<Moment<'_>> {
-        let scene = self.scene_named(name, eye, self.time_s)?;
+    pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
+        let KeptScene { scene, here, .. } = self.scene_kept(name, eye, kept)?;
         let weather = self.over();
         Ok(Moment {
             eye,
@@ -285,8 +287,8 @@ impl World {
             exposure: self.exposure,
             planet_radius_m: self.set.planet.bottom_radius_m,
             weather,
-            here: weather.at_place(eye, self.time_s, scene.conditions),
-            own_rain: if self.set.regions.is_empty() { OwnRain::NONE } else { self.own_rain(&scene.conditions) },
+            here,
+            falling: self.falling(&scene.conditions),
             shelters: &self.set.shelters,
             maps: self.maps.as_deref(),
             lamps: &self.lights,

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3};
 use welkin::fog::patterns::Curtains;
-use welkin::fog::reference::{FogModel, fog_along};
+use welkin::fog::reference::{FallingModel, FogModel, fog_along, fog_beside_drops};
 use welkin::fog::{
-    CompatibilityLaw, DistanceKind, FogLayer, FogUniform, Law, Patches, Phase, Viewpoint, koschmieder_extinction_per_m,
-    laws::Curve,
+    CompatibilityLaw, DistanceKind, FallingLayer, FogLayer, FogUniform, Law, Patches, Phase, Viewpoint,
+    koschmieder_extinction_per_m, laws::Curve,
 };
 use welkin::gpu::shader;
 use welkin::scene::ViewRays;
@@ -109,16 +109,71 @@ fn patches_are_drawn_as_the_reference_has_them() {
     }
 }
 
+/// What falls below a cloud 600 m up.
+fn rain(liquid_per_m: f64) -> FallingLayer {
+    FallingLayer { liquid_per_m, solid_per_m: 1e-4, top_m: 650.0, soft_m: 100.0 }
+}
+
+fn with_falling(layer: Option<&FogLayer>, falling: &FallingLayer, view: &Viewpoint) -> FogModel {
+    FogModel::of_weather(layer, falling, &noon(), view).unwrap()
+}
+
+#[test]
+fn what_falls_is_drawn_as_the_reference_has_it_beside_fog_and_drops() {
+    let body = BODY.replace("fog_along(u", "fog_beside_drops(u").replace("i.z, i.w)", "i.z, i.z, i.w)");
+    let layers = [
+        None,
+        Some(slab(400.0, -1e4, 60.0, 20.0)),
+        Some(slab(3000.0, 200.0, 900.0, 100.0)),
+        Some(exponential(2000.0, 50.0)),
+        Some(FogLayer { albedo: [0.97, 0.93, 0.85], angstrom: 1.3, ..slab(400.0, 0.0, 300.0, 50.0) }),
+    ];
+    for (h, layer) in [2.0, 300.0, 640.0, 5000.0].into_iter().flat_map(|h| layers.map(|l| (h, l))) {
+        let m = with_falling(layer.as_ref(), &rain(8e-4), &view(h, EARTH_M));
+        compare(&format!("h {h} {layer:?}"), &m, 6e-4);
+        let mut changed = 0;
+        for (k, hidden) in [0.004f32, 0.02, 5.0].into_iter().enumerate() {
+            let inputs: Vec<_> =
+                rays().into_iter().skip(k).step_by(3).map(|[a, mu, range, _]| [a, mu, range, hidden]).collect();
+            let uniform = m.uniform();
+            let block = bytemuck::bytes_of(&uniform);
+            let all = gpu::evaluate("fog/lookup.wgsl", &body, "FogUniform", block, &inputs);
+            let narrow =
+                gpu::evaluate_with("fog/lookup.wgsl", &body, "FogUniform", block, &inputs, &m.variant().constants());
+            for (i, g) in inputs.iter().chain(&inputs).zip(all.into_iter().chain(narrow)) {
+                let s = f64::from(1.0 - i[1] * i[1]).max(0.0).sqrt();
+                let [a, mu, range, hidden] = i.map(f64::from);
+                let range = if i[2] >= RANGE_SKY_M as f32 { RANGE_SKY_M } else { range };
+                let d = DVec3::new(s * a.sin(), s * a.cos(), mu);
+                let want = fog_beside_drops(&m, DVec3::ZERO, d, range, range, hidden);
+                let plain = fog_along(&m, DVec3::ZERO, d, range, range);
+                changed += usize::from((want.transmittance.y - plain.transmittance.y).abs() > 1e-3);
+                for (got, want) in [(g[0], want.radiance.y), (g[1], want.transmittance.y), (g[3], want.transmittance.x)]
+                {
+                    let error = (f64::from(got) - want).abs();
+                    assert!(error < 6e-4 * want.max(1.0), "h {h} {layer:?} {i:?}: drawn {got} of {want}");
+                }
+                // Drops hide nothing of the fog.
+                let none = FallingLayer { liquid_per_m: 0.0, solid_per_m: 0.0, ..rain(0.0) };
+                let fog =
+                    fog_along(&with_falling(layer.as_ref(), &none, &view(h, EARTH_M)), DVec3::ZERO, d, range, range);
+                assert!(want.transmittance.y <= fog.transmittance.y + 1e-9, "h {h} {layer:?} {i:?}");
+            }
+        }
+        assert!(h > 1000.0 || changed > 30, "h {h}: {changed} changed");
+    }
+}
+
 #[test]
 fn curtains_are_drawn_as_the_reference_has_them() {
-    let layer = FogLayer { phase: Phase::HenyeyGreenstein { g: 0.0 }, ..slab(3000.0, -1e4, 600.0, 100.0) };
     for h in [2.0, 300.0, 900.0] {
         let wave = |i: usize| {
             let k = 2.0 * std::f64::consts::PI / (130.0 + 110.0 * i as f64);
             (DVec3::new(k * (i as f64).cos(), k * (i as f64).sin(), 0.15 * k), i as f64)
         };
-        let even = model(layer, &view(h, EARTH_M));
-        let m = FogModel { curtains: Curtains { amount: 0.245, waves: std::array::from_fn(wave) }, ..even };
+        let even = with_falling(None, &rain(1e-3), &view(h, EARTH_M));
+        let curtains = Curtains { amount: 0.245, waves: std::array::from_fn(wave) };
+        let m = FogModel { falling: FallingModel { curtains, ..even.falling }, ..even };
         compare(&format!("curtains h {h}"), &m, 2e-3);
         let changed = rays().iter().filter(|i| (twin(&m, **i)[1] - twin(&even, **i)[1]).abs() > 0.03).count();
         assert!(h > 500.0 || changed > 3, "{h} m: {changed} rays differ");
@@ -271,6 +326,16 @@ fn bad_numbers_are_refused_by_name() {
     light.sun_irradiance[1] = f64::NAN;
     let e = FogModel::new(&Law::Layer(good), &light, &view(2.0, EARTH_M)).unwrap_err();
     assert!(e.to_string().contains("fog.sun_irradiance"));
+    let wrong = [
+        ("liquid_per_m", FallingLayer { liquid_per_m: -1e-3, ..rain(0.0) }),
+        ("solid_per_m", FallingLayer { solid_per_m: f64::NAN, ..rain(0.0) }),
+        ("top_m", FallingLayer { top_m: f64::INFINITY, ..rain(0.0) }),
+        ("soft_m", FallingLayer { soft_m: 0.0, ..rain(0.0) }),
+    ];
+    for (field, falling) in wrong {
+        let e = FogModel::of_weather(None, &falling, &noon(), &view(2.0, EARTH_M)).unwrap_err().to_string();
+        assert!(e.contains(&format!("falling.{field}")), "{e}");
+    }
     let e = FogModel::new(&Law::Layer(good), &noon(), &view(f64::NAN, EARTH_M)).unwrap_err();
     assert!(e.to_string().contains("altitude_m"));
 }
@@ -313,6 +378,7 @@ fn offsets_are_those_of_the_shader() {
         fall,
         patch_waves,
         curtain_waves,
+        falling,
         lit,
         curtain_amount,
         waves

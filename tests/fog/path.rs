@@ -1,8 +1,8 @@
 //! Optical depth of the layer along rays: closed form against quadrature, flat and on the curved planet.
 
 use glam::DVec3;
-use welkin::fog::reference::{FogModel, layer_depth_above, layer_path, layer_rise};
-use welkin::fog::{FogLayer, FogLight, Law, Phase, Profile, Viewpoint, koschmieder_extinction_per_m};
+use welkin::fog::reference::{FogModel, falling_path, layer_depth_above, layer_path, layer_rise};
+use welkin::fog::{FallingLayer, FogLayer, FogLight, Law, Phase, Profile, Viewpoint, koschmieder_extinction_per_m};
 
 pub const EARTH_M: f64 = 6.371e6;
 
@@ -102,6 +102,36 @@ fn transmittance_is_that_of_quadrature_on_the_curved_planet_and_the_flat_one() {
         }
     }
     println!("largest relative error of T: {worst:.2e}");
+}
+
+/// What falls is a slab without a lower end, whatever fog lies in it.
+#[test]
+fn what_falls_is_that_of_quadrature_beside_any_fog() {
+    for (top_m, soft_m) in [(650.0, 100.0), (150.0, 100.0), (2050.0, 100.0), (300.0, 1.0)] {
+        let alone = slab(3000.0, -1e4, top_m - 0.5 * soft_m, soft_m);
+        let falling = FallingLayer { liquid_per_m: 0.0, solid_per_m: alone.extinction_per_m, top_m, soft_m };
+        for (radius, h0) in
+            [EARTH_M, f64::INFINITY].into_iter().flat_map(|r| [1.7, 240.0, 600.0, 3000.0].map(|h| (r, h)))
+        {
+            for mu in [-1.0f64, -0.3, -0.02, -0.0005, 0.0, 0.0007, 0.2, 1.0] {
+                for t in [10.0, 3e3, 4e4] {
+                    if h0 + layer_rise(1.0 / (radius + h0), mu, t) < -200.0 {
+                        continue;
+                    }
+                    let want = quadrature(&alone, radius, h0, mu, t);
+                    for fog in [None, Some(slab(150.0, 100.0, 260.0, 20.0)), Some(exponential(2000.0, 50.0))] {
+                        let m = FogModel::of_weather(fog.as_ref(), &falling, &noon(), &view(h0, radius)).unwrap();
+                        let got = falling_path(&m, h0, mu, t).depth;
+                        let error = ((-got).exp() - (-want).exp()).abs() / (-want).exp().max(1e-3);
+                        assert!(error < 0.004, "{falling:?} radius {radius} h {h0} mu {mu} t {t}: {got} of {want}");
+                    }
+                }
+            }
+        }
+        let above = FogModel::of_weather(None, &falling, &noon(), &view(0.0, f64::INFINITY)).unwrap();
+        let want = alone.extinction_per_m * (top_m - 0.5 * soft_m);
+        assert!((layer_depth_above(&above, 0.0) / want - 1.0).abs() < 1e-9);
+    }
 }
 
 #[test]

@@ -27,6 +27,31 @@ fn visibility_between_two_points_is_the_reported_one() {
     }
 }
 
+/// Over a bank of fog rain takes what it takes without one, and the fog is no deeper for it.
+#[test]
+fn rain_falls_through_fog_and_above_it() {
+    let mut host = host();
+    let fog =
+        Weather { visibility_m: 150.0, fog: Fog { top_m: Some(60.0), ..Fog::of(FogKind::Fog) }, ..Weather::default() };
+    let rain = Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, 5.0), ..fog.clone() };
+    let mut through = [[0.0; 2]; 2];
+    let mut extinction = 0.0;
+    for (i, weather) in [fog, rain].into_iter().enumerate() {
+        let t = i as f64;
+        host.context.set_weather(&weather, t, 0.0).unwrap();
+        host.context.update(t).unwrap();
+        extinction = host.context.conditions_at(DVec3::Z, t).unwrap().precipitation.extinction_per_m();
+        through[i] = [120.0, 2.0].map(|height| {
+            let from = DVec3::new(0.0, 0.0, height);
+            host.context.between(from, from + DVec3::Y * 500.0, t).unwrap().transmittance[1].ln()
+        });
+    }
+    let [above, inside] = [0, 1].map(|k| through[1][k] - through[0][k]);
+    assert!((above / (-500.0 * extinction) - 1.0).abs() < 0.01, "rain takes {above} of {}", -500.0 * extinction);
+    // The reported visibility is that through both.
+    assert!(inside.abs() < 0.01 * through[0][1].abs(), "{through:?}");
+}
+
 /// Against a sum of the optical depths of short pieces of the way, each asked for alone.
 #[test]
 fn a_black_object_is_seen_as_far_as_a_plain_sum_of_the_way_leaves_5_percent() {

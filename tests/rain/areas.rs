@@ -130,8 +130,8 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
             let faster = factor_in(&c.air, z) / factor_in(&c.air, 0.0);
             let truth = faster * (rain.extinction_per_m + rain.stone_extinction_per_m);
             let limit = 5e-3 * rain.extinction_per_m + 0.03 * rain.stone_extinction_per_m;
-            assert!((falls.extinction_per_m - truth).abs() <= limit, "{at}: {} {truth}", falls.extinction_per_m);
-            let added = falls.extinction_per_m - without.precipitation.extinction_per_m;
+            assert!((falls.extinction_per_m() - truth).abs() <= limit, "{at}: {} {truth}", falls.extinction_per_m());
+            let added = falls.extinction_per_m() - without.precipitation.extinction_per_m();
             let total = without.extinction_per_m + added;
             assert!((c.extinction_per_m / total - 1.0).abs() < 1e-9, "{at}: {} {total}", c.extinction_per_m);
             assert_eq!(c.visibility_m(), welkin::weather::LN_20 / c.extinction_per_m);

@@ -8,7 +8,7 @@ use welkin::{
         Classes, RainModel, RainSettings,
         lattice::{self, SHELLS},
     },
-    weather::{Weather, derive},
+    weather::{Fog, Weather, derive},
 };
 
 use crate::scene::{Host, rain, upright};
@@ -118,9 +118,12 @@ fn drops_and_veil_together_take_what_the_rain_takes() {
     let mut host = white((320, 180));
     // All of it nearer than where curtains begin.
     host.boxes[0] = upright([0.0, 20.0, 300.0], [2000.0, 1e-3, 2000.0]);
-    for (i, (rate, visibility_m)) in [(30.0, 700.0), (200.0, 200.0)].into_iter().enumerate() {
+    // In mist and rain, and over mist.
+    let deep = Fog { top_m: Some(2000.0), ..Fog::default() };
+    let cases = [(30.0, 700.0, deep), (200.0, 200.0, deep), (30.0, 700.0, Fog::default())];
+    for (i, (rate, visibility_m, fog)) in cases.into_iter().enumerate() {
         let t = 10.0 * (i + 1) as f64;
-        let weather = Weather { visibility_m, ..rain(rate, 0.0) };
+        let weather = Weather { visibility_m, fog, ..rain(rate, 0.0) };
         host.context.set_weather(&weather, t, 0.0).unwrap();
         let all = Stages::PREPARE.with(Stages::MEDIUM).with(Stages::PARTICLES);
         let mut seen = Vec::new();
@@ -131,12 +134,15 @@ fn drops_and_veil_together_take_what_the_rain_takes() {
             seen.push(mean(&host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect::<Vec<_>>()));
         }
         let c = derive(&weather).unwrap();
+        let is_below = fog.top_m.is_none();
+        assert!(c.fog.extinction_per_m > 0.1 * c.extinction_per_m && (c.fog.top_m < 200.0) == is_below, "{:?}", c.fog);
+        let extinction_per_m = c.extinction_per_m - if is_below { c.fog.extinction_per_m } else { 0.0 };
         // The wall is flat: the mean over the picture of the slanted way to it.
         let rays = host.rays();
         let n = 60;
         let want: f64 = (0..n * n)
             .map(|i| DVec2::new(f64::from(i % n), f64::from(i / n)) * 2.0 / f64::from(n) - 1.0 + 1.0 / f64::from(n))
-            .map(|ndc| (-c.extinction_per_m * 20.0 / rays.view_ray(ndc).direction.y).exp())
+            .map(|ndc| (-extinction_per_m * 20.0 / rays.view_ray(ndc).direction.y).exp())
             .sum::<f64>()
             / f64::from(n * n);
         let (got, want) = (-mean(&seen).ln(), -want.ln());

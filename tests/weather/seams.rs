@@ -87,10 +87,11 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         freezing,
         showers,
         thunder,
-        extinction_per_m,
+        liquid_extinction_per_m,
+        solid_extinction_per_m,
     } = precipitation;
     out.extend([rain_mm_h, drizzle_mm_h, snow_mm_h, ice_pellets_mm_h, hail_mm_h, freezing, showers, thunder]);
-    out.push(extinction_per_m);
+    out.extend([liquid_extinction_per_m, solid_extinction_per_m]);
     for slab in clouds {
         let CloudSlab {
             cover,

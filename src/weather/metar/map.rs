@@ -245,7 +245,7 @@ fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64
             0.0
         }
     };
-    let falling = hydrometeors::falling(&w.precipitation).extinction_per_m;
+    let falling = hydrometeors::falling(&w.precipitation).extinction_per_m();
     particles::unlimited_visibility_m(w.relative_humidity, falling).max(floor)
 }
 

@@ -1,0 +1,79 @@
+//! A scene that a view keeps between the calls of a frame, so that it is worked out once for all of them.
+
+use glam::DVec3;
+
+use super::{GivenDirection, NightSettings, World};
+use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions};
+
+/// A scene with the weather at its place, and all that they follow from.
+#[derive(Clone, Copy)]
+pub(crate) struct KeptScene {
+    from: SceneInputs,
+    pub scene: Scene,
+    /// The weather at the camera, with what falls in its region.
+    pub here: Conditions,
+    /// How many scenes have been worked out in this place.
+    #[cfg(test)]
+    pub count: u64,
+}
+
+/// All that may change about a world and a camera and that a scene follows from. Two scenes of equal inputs are equal.
+#[derive(Clone, Copy, PartialEq)]
+struct SceneInputs {
+    eye: DVec3,
+    time_s: f64,
+    /// Different in each world and after each change of its weather.
+    timeline_revision: u64,
+    surroundings_revision: u64,
+    utc_at_zero: Utc,
+    given_sun: Option<GivenDirection>,
+    given_moon: Option<GivenDirection>,
+    undimmed: bool,
+    planet: Planet,
+    night: NightSettings,
+}
+
+impl World {
+    fn scene_inputs(&self, eye: DVec3) -> SceneInputs {
+        SceneInputs {
+            eye,
+            time_s: self.time_s,
+            timeline_revision: self.timeline_revision,
+            surroundings_revision: self.surroundings_revision,
+            utc_at_zero: self.set.utc_at_zero,
+            given_sun: self.set.given_sun,
+            given_moon: self.set.given_moon,
+            undimmed: self.set.undimmed,
+            planet: self.set.planet,
+            night: self.night,
+        }
+    }
+
+    /// The scene now at a camera at `eye`, which the host calls `name`: that in `kept` where it is of the same time, place, weather and
+    /// settings, else a new one in its place.
+    ///
+    /// # Errors
+    /// As [`World::scene_named`]; `kept` stays as it was.
+    pub(super) fn scene_kept(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<KeptScene> {
+        let from = self.scene_inputs(eye);
+        if let Some(known) = kept.as_deref().filter(|known| known.from == from) {
+            return Ok(*known);
+        }
+        let scene = self.scene_named(name, eye, self.time_s)?;
+        let here = self.over().at_place(eye, self.time_s, scene.conditions);
+        #[cfg(test)]
+        let count = kept.as_ref().map_or(0, |before| before.count) + 1;
+        let new = KeptScene {
+            from,
+            scene,
+            here,
+            #[cfg(test)]
+            count,
+        };
+        match kept {
+            Some(before) => **before = new,
+            None => *kept = Some(Box::new(new)),
+        }
+        Ok(new)
+    }
+}
