@@ -62,6 +62,8 @@ pub(crate) struct StarsView {
     tonight: Option<Tonight>,
     passes: Option<Box<(StarPass, GlowPass)>>,
     layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
+    /// Whether the layer shows what was prepared last.
+    is_layer_drawn: bool,
 }
 
 impl StarsView {
@@ -100,6 +102,7 @@ impl StarsView {
         if self.layer.as_ref().is_some_and(|(texture, ..)| texture.size() != size) {
             self.layer = None;
         }
+        self.is_layer_drawn &= self.layer.is_some();
         let made = self.layer.get_or_insert_with(|| {
             let texture = device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("night sky"),
@@ -207,7 +210,8 @@ impl DrawnEffect for StarsView {
         Ok(())
     }
 
-    /// Draws the layer behind the sky's own light: the glow, and the points before it.
+    /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens and air stay as they
+    /// are.
     fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
         let block = &with.composition.block;
         if !self.is_there(with.composition.stages) || block.behind[1] == 0.0 {
@@ -222,7 +226,11 @@ impl DrawnEffect for StarsView {
         // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
         let view = tonight.seen(shot, f64::from(block.dither_step) / 12.92);
         points.prepare(to.device, &self.settings, &view, FORMAT, None)?;
-        glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk);
+        let has_changed = glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
+        if self.is_layer_drawn && !has_changed {
+            return Ok(());
+        }
+        self.is_layer_drawn = true;
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("night sky"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -251,5 +259,6 @@ impl DrawnEffect for StarsView {
 
     fn forget_picture(&mut self) {
         self.layer = None;
+        self.is_layer_drawn = false;
     }
 }
