@@ -19,13 +19,28 @@ fn unrefracted(dir: vec3f) -> vec3f {
     return vec3f(dir.xy * (sqrt(max(1.0 - z * z, 0.0)) / level), z);
 }
 
+// Lamps whose discs a pipeline draws: those of `SKY_LAMPS`, and behind them those that do not light the air. A lamp that is not there has
+// no radiance.
+override SKY_DISCS: u32 = 2u;
+
+// The lamp whose disc stands nearest to a direction: one look for both discs, and a moon before a sun hides it.
+fn nearest_lamp(dir: vec3f) -> SkyLamp {
+    var lamp = sky_view.lamps[0];
+    if (SKY_DISCS > 1u) {
+        if (dot(dir, sky_view.lamps[1].toward) > dot(dir, lamp.toward)) {
+            lamp = sky_view.lamps[1];
+        }
+    }
+    return lamp;
+}
+
 // Share of a disc's radius at which its middle is, and how much of the pixel it covers.
 fn disc_place(lamp: SkyLamp, dir: vec3f, pixel_angle: f32) -> vec2f {
     // The angle by its sine's series, within 1e-5 of itself for the largest discs.
     let chord = 0.5 * length(dir - lamp.toward);
     let apart = chord * (2.0 + chord * chord * 0.33333333);
     let cover = clamp((lamp.angular_radius - apart) / max(pixel_angle, 1e-6) + 0.5, 0.0, 1.0);
-    return vec2f(min(apart / max(lamp.angular_radius, 1e-6), 1.0), cover);
+    return vec2f(min(apart * lamp.inverse_radius, 1.0), cover);
 }
 
 // Radiance of the lamps' discs in a direction, reddened by the air; `pixel_angle` is the angle of a pixel, rad, over
@@ -36,21 +51,16 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
 
 fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     let real = unrefracted(dir);
-    var out = vec3f(0.0);
-    for (var i = 0u; i < sky_lamps(); i++) {
-        let lamp = sky_view.lamps[i];
-        let place = disc_place(lamp, real, pixel_angle);
-        let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
-        // The mean of mu^a over the disc is 2/(2 + a): disc_scale has the second wavelength's, each gets its own.
-        var law = exp2(log2(mu) * lamp.limb) * (2.0 + lamp.limb) / (2.0 + lamp.limb.y);
-        if (lamp.kind == 1u) {
-            // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
-            let offset = (real - lamp.toward * dot(real, lamp.toward)) / max(lamp.angular_radius, 1e-6);
-            let normal = offset - lamp.toward * mu;
-            let mu0 = max(dot(normal, lamp.lit_from), 0.0);
-            law = vec3f(mu0 / max(mu0 + mu, 1e-4));
-        }
-        out += lamp.irradiance * law * (place.y * lamp.disc_scale);
+    let lamp = nearest_lamp(real);
+    let place = disc_place(lamp, real, pixel_angle);
+    let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
+    var law = exp2(log2(mu) * lamp.limb);
+    if (lamp.kind == 1u) {
+        // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
+        let offset = (real - lamp.toward * dot(real, lamp.toward)) * lamp.inverse_radius;
+        let normal = offset - lamp.toward * mu;
+        let mu0 = max(dot(normal, lamp.lit_from), 0.0);
+        law = vec3f(mu0 / max(mu0 + mu, 1e-4));
     }
-    return out * sky_transmittance_on(path);
+    return lamp.disc * law * place.y * sky_transmittance_on(path);
 }
