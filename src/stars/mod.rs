@@ -56,6 +56,7 @@
 //! and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
 
 mod behind;
+pub mod candidates;
 pub mod catalogue;
 pub mod galaxy;
 pub mod glow;
@@ -81,4 +82,4 @@ pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
-pub(crate) use view::{LAND_ALBEDO, STARS, StarsView};
+pub(crate) use view::{LAND_ALBEDO, StarsView};

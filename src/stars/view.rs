@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::{
     Heavens, NightSky, StarPass, StarSettings, StarView,
+    candidates::{STARS, stars_work},
     glow_pass::{Dusk, GlowPass},
     light::illuminance_lux,
     limits::{display_threshold_lux, threshold_lux},
@@ -15,21 +16,10 @@ use crate::{
     gpu::{Device, bind},
     light::luminance,
     moment::{Moment, Scene},
-    plan::{
-        StepWork,
-        parts::{Part, Worth},
-    },
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, yes},
     weather::smoothstep,
     world::{night_share, zenith_depth},
 };
-
-/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance. What they are worth is
-/// taken to be what the clear sky's own light and they are worth together.
-pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
-
-/// Work of the layer a pixel, in units of a pixel with none of the parts.
-const LAYER_OF_PIXEL: f64 = 0.1;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Elevations of the sun between which points fade in, degrees: by day there are none.
@@ -194,8 +184,7 @@ impl DrawnEffect for StarsView {
     }
 
     fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        let fixed = LAYER_OF_PIXEL * shot.pixels() as f64;
-        put(&STARS, self.is_there(stages), &[StepWork { fixed, ..StepWork::default() }]);
+        put(&STARS, self.is_there(stages), &[stars_work(shot.pixels())]);
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
