@@ -122,6 +122,12 @@ pub struct Falling {
     pub drizzle_mm_h: f64,
     /// Snow, snow grains and ice crystals, mm/h of melted water.
     pub snow_mm_h: f64,
+    /// Part of it that falls as snow grains, 0 to 1.
+    #[serde(default)]
+    pub grain_share: f64,
+    /// Part of it that falls as ice crystals, 0 to 1; the rest are flakes.
+    #[serde(default)]
+    pub crystal_share: f64,
     /// Ice pellets and small hail, mm/h of melted water.
     pub ice_pellets_mm_h: f64,
     /// Hail, mm/h of melted water.
@@ -349,6 +355,8 @@ impl Falling {
         rain_mm_h: 0.0,
         drizzle_mm_h: 0.0,
         snow_mm_h: 0.0,
+        grain_share: 0.0,
+        crystal_share: 0.0,
         ice_pellets_mm_h: 0.0,
         hail_mm_h: 0.0,
         freezing: 0.0,
@@ -356,6 +364,12 @@ impl Falling {
         thunder: 0.0,
         extinction_per_m: 0.0,
     };
+
+    /// Snow as flakes, as snow grains and as ice crystals, mm/h of melted water: together [`Falling::snow_mm_h`].
+    pub fn snow_kinds_mm_h(&self) -> [f64; 3] {
+        let [grains, crystals] = [self.grain_share, self.crystal_share].map(|share| share * self.snow_mm_h);
+        [(self.snow_mm_h - grains - crystals).max(0.0), grains, crystals]
+    }
 
     /// Everything that falls, mm/h of liquid water.
     pub fn total_mm_h(&self) -> f64 {
