@@ -22,17 +22,8 @@ fn unrefracted(dir: vec3f) -> vec3f {
 // Lamps whose discs a pipeline draws: those of `SKY_LAMPS`, and behind them those that do not light the air. A lamp that is not there has
 // no radiance.
 override SKY_DISCS: u32 = 2u;
-
-// The lamp whose disc stands nearest to a direction: one look for both discs, and a moon before a sun hides it.
-fn nearest_lamp(dir: vec3f) -> SkyLamp {
-    var lamp = sky_view.lamps[0];
-    if (SKY_DISCS > 1u) {
-        if (dot(dir, sky_view.lamps[1].toward) > dot(dir, lamp.toward)) {
-            lamp = sky_view.lamps[1];
-        }
-    }
-    return lamp;
-}
+// The first lamp is a sun and the second one a moon: the law of neither is computed for the other.
+override SUN_THEN_MOON: bool = false;
 
 // Share of a disc's radius at which its middle is, and how much of the pixel it covers.
 fn disc_place(lamp: SkyLamp, dir: vec3f, pixel_angle: f32) -> vec2f {
@@ -51,16 +42,37 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
 
 fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     let real = unrefracted(dir);
-    let lamp = nearest_lamp(real);
-    let place = disc_place(lamp, real, pixel_angle);
-    let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
-    var law = exp2(log2(mu) * lamp.limb);
-    if (lamp.kind == 1u) {
-        // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
-        let offset = (real - lamp.toward * dot(real, lamp.toward)) * lamp.inverse_radius;
-        let normal = offset - lamp.toward * mu;
-        let mu0 = max(dot(normal, lamp.lit_from), 0.0);
-        law = vec3f(mu0 / max(mu0 + mu, 1e-4));
+    var out = vec3f(0.0);
+    if (SUN_THEN_MOON) {
+        out = sun_disc(sky_view.lamps[0], real, pixel_angle);
+        if (SKY_DISCS > 1u) {
+            out += moon_disc(sky_view.lamps[1], real, pixel_angle);
+        }
+    } else {
+        for (var i = 0u; i < SKY_DISCS; i++) {
+            let lamp = sky_view.lamps[i];
+            out += select(sun_disc(lamp, real, pixel_angle), moon_disc(lamp, real, pixel_angle), lamp.kind == 1u);
+        }
     }
-    return lamp.disc * law * place.y * sky_transmittance_on(path);
+    return out * sky_transmittance_on(path);
+}
+
+// Zenith cosine of the eye on a disc's face, at a share of its radius.
+fn face_cosine(share: f32) -> f32 {
+    return sqrt(max(1.0 - share * share, 1e-4));
+}
+
+// Dark towards the limb: mu^a.
+fn sun_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+    let place = disc_place(lamp, real, pixel_angle);
+    return lamp.disc * exp2(log2(face_cosine(place.x)) * lamp.limb) * place.y;
+}
+
+// Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
+fn moon_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+    let place = disc_place(lamp, real, pixel_angle);
+    let mu = face_cosine(place.x);
+    let offset = (real - lamp.toward * dot(real, lamp.toward)) * lamp.inverse_radius;
+    let mu0 = max(dot(offset - lamp.toward * mu, lamp.lit_from), 0.0);
+    return lamp.disc * (mu0 / max(mu0 + mu, 1e-4) * place.y);
 }

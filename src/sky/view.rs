@@ -90,6 +90,7 @@ impl DrawnEffect for SkyView {
         to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
         to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
         to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
+        to.constant("SUN_THEN_MOON", 1.0, 1.0);
         (to.block.drawn[0], to.block.drawn[2]) = (air, sky);
         to.tables = Some((self.volume.layout().clone(), self.volume.bind_group().clone()));
         Ok(())
