@@ -93,13 +93,16 @@ no_tool = echo "lint: $(1) is not installed (rustup component add $(1))" >&2; [ 
 header: setup-build ## write include/welkin.h and the ABI lists anew from the sources
 	WELKIN_BLESS=1 cargo test --locked --quiet --test abi_header
 
-# Lint, documentation examples, then every test; the header's drift and the C examples are among the tests.
-test: setup lint ## all checks, at most 25 minutes on two cores from a clean clone
+docs: setup-build ## the Rust documentation, warnings are errors
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+
+# Lint, documentation, its examples, then every test; the header's drift and the C examples are among the tests.
+test: setup lint docs ## all checks, at most 25 minutes on two cores from a clean clone
 	$(MAKE) --no-print-directory lib PROFILE=dev
 	cargo test --locked --doc
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
-accept: setup lint ## the long sweeps in release, and the benchmarks, at most 90 minutes
+accept: setup lint docs ## the long sweeps in release, and the benchmarks, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_ACCEPT=1 cargo test --locked --release --doc
 	$(MAKE) --no-print-directory bench

@@ -72,7 +72,7 @@
  * - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
  *   wk_ground_texture.snow_texture.
  * - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
- *   own functions. Terrain and sea test and write the host's depth, which its target struct lends with depth_access.
+ *   own functions. Terrain and sea test and write the host's depth, which a frame lends with wk_frame.depth_access.
  * - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
  * - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
  *
@@ -1470,7 +1470,7 @@ typedef uint32_t wk_cloud_layer_has_flags;
 #define WK_CLOUD_LAYER_HAS_WATER 2
 /** droplet_radius_um */
 #define WK_CLOUD_LAYER_HAS_DROPLET_RADIUS 4
-/** wind_m_s and wind_from_deg. Not in this version: clouds do not move yet. */
+/** wind_m_s and wind_from_deg. Not in this version: all layers move with the weather's wind. */
 #define WK_CLOUD_LAYER_HAS_WIND 8
 
 /** One layer of cloud. */
@@ -2586,7 +2586,7 @@ typedef struct wk_conditions {
     double rain_mm_h;
     /** Drizzle, mm/h. */
     double drizzle_mm_h;
-    /** Snow, snow grains and ice crystals, mm/h of melted water. */
+    /** Snow, snow grains and ice crystals together, mm/h of melted water. */
     double snow_mm_h;
     /** Ice pellets and small hail, mm/h of melted water. */
     double ice_pellets_mm_h;
@@ -2636,6 +2636,12 @@ typedef struct wk_conditions {
     double snow_depth_m;
     /** Ozone column, Dobson units. */
     double ozone_du;
+    /** Of snow_mm_h, what falls as flakes, mm/h of melted water; 0 where none falls. */
+    double snow_flakes_mm_h;
+    /** Of snow_mm_h, what falls as snow grains, likewise. */
+    double snow_grains_mm_h;
+    /** Of snow_mm_h, what falls as ice crystals, likewise. */
+    double ice_crystals_mm_h;
 } wk_conditions;
 
 /** Every field of `wk_conditions` at its default. */
@@ -2690,7 +2696,10 @@ typedef struct wk_conditions {
     /* puddles */ 0.0, \
     /* ice */ 0.0, \
     /* snow_depth_m */ 0.0, \
-    /* ozone_du */ 0.0 \
+    /* ozone_du */ 0.0, \
+    /* snow_flakes_mm_h */ 0.0, \
+    /* snow_grains_mm_h */ 0.0, \
+    /* ice_crystals_mm_h */ 0.0 \
 }
 
 /** A horizontally mixed layer of cloud; plain values of a list. */

@@ -2,7 +2,7 @@
 //!
 //! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and bytes. The lab
 //! (`examples/lab`) draws every candidate, measures its cost and its [`Difference`](crate::plan::Difference) from the f64 reference, and
-//! charts them; of what is [`Candidate::offered`], only those on the front ([`crate::plan::front::pareto`]) are worth a choice.
+//! charts them; of what is [`Candidate::offered`], only those are worth a choice that no other beats in both.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};
@@ -20,6 +20,7 @@ use crate::{
     plan::{Listed, Work},
     rain::{RainSettings, candidates::RainMethod},
     sky::{SkyModel, SkySettings, candidates::ElekTable},
+    stars::candidates::StarMethod,
 };
 
 /// What can be drawn. Grows with the rooms.
@@ -31,11 +32,14 @@ pub enum Effect {
     Fog,
     /// Rain and drizzle near the camera.
     Rain,
+    /// Stars, planets and the glow between them.
+    Stars,
 }
 
 impl Effect {
     /// All effects with the names that programs use for them.
-    pub const NAMES: [(&'static str, Effect); 3] = [("sky", Effect::Sky), ("fog", Effect::Fog), ("rain", Effect::Rain)];
+    pub const NAMES: [(&'static str, Effect); 4] =
+        [("sky", Effect::Sky), ("fog", Effect::Fog), ("rain", Effect::Rain), ("stars", Effect::Stars)];
 
     /// The effect of that name.
     ///
@@ -64,6 +68,8 @@ pub enum Method {
     Fog(FogMethod),
     /// A way to draw rain.
     Rain(RainMethod),
+    /// A way to draw the night sky.
+    Stars(StarMethod),
 }
 
 /// One way to draw an effect.
@@ -88,6 +94,7 @@ impl Candidate {
             Method::Sky(s) => s == SkySettings::default() && s.model == SkyModel::default(),
             Method::Fog(m) => m == FogMethod::default(),
             Method::Rain(m) => m == RainMethod::Offered(RainSettings::default()),
+            Method::Stars(m) => m == StarMethod::default(),
             Method::SkyElek(_) => false,
         }
     }
@@ -110,6 +117,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
         }
         Effect::Fog => all(effect, crate::fog::candidates::candidates(), Method::Fog),
         Effect::Rain => all(effect, crate::rain::candidates::candidates(), Method::Rain),
+        Effect::Stars => all(effect, crate::stars::candidates::candidates(), Method::Stars),
     }
 }
 
@@ -145,7 +153,7 @@ mod tests {
                 }
             }
         }
-        assert!(Effect::from_name("sea").unwrap_err().to_string().contains("sky, fog, rain"));
+        assert!(Effect::from_name("sea").unwrap_err().to_string().contains("sky, fog, rain, stars"));
         assert!(candidate(Effect::Fog, "best").unwrap_err().to_string().contains("exact"));
     }
 }

@@ -150,8 +150,13 @@ impl Held {
 }
 
 /// The parts of the weather that a picture may do with less of, in the order of every list of them.
-pub const PARTS: &[Part] =
-    &[sky::candidates::AIR, fog::candidates::FOG, sky::candidates::SKY, rain::candidates::RAIN, stars::STARS];
+pub const PARTS: &[Part] = &[
+    sky::candidates::AIR,
+    fog::candidates::FOG,
+    sky::candidates::SKY,
+    rain::candidates::RAIN,
+    stars::candidates::STARS,
+];
 
 /// Two parts of the list that cost more beside each other, and how much under the lamps of a scene.
 pub(crate) fn together(scene: &Scene) -> ([usize; 2], StepWork) {

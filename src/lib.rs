@@ -5,6 +5,10 @@
 //! nouns and verbs through `include/welkin.h`, which [`capi`] implements as a thin shell.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
+// Tests of single rooms take helpers of `tests/support`, which name the crate as its users do.
+#[cfg(test)]
+extern crate self as welkin;
+
 pub mod almanac;
 pub mod candidates;
 pub mod capi;
@@ -35,6 +39,9 @@ pub mod stars;
 mod surroundings;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+#[path = "../tests/support/textures.rs"]
+mod textures;
 pub mod weather;
 pub mod wind;
 mod world;

@@ -117,6 +117,18 @@ fn clear_weather_is_blue_at_noon_red_at_sunset_and_dark_by_the_moon() {
 }
 
 #[test]
+fn a_planet_file_gives_the_host_another_sky() {
+    let host = Host::build("planet");
+    let dusty = root().join("examples/data/planet_dusty.toml");
+    run(host.command().args(["--report", "1", "--planet"]).arg(dusty));
+    let sky = mean(&host.picture("01_noon.png"), SKY);
+    assert!(sky[1] > 100.0 && sky[2] < sky[0] + 5.0, "under dust no sky is blue, got {sky:?}");
+    let missing = host.command().args(["--planet", "nowhere.toml"]).output().expect("the host runs");
+    let said = String::from_utf8_lossy(&missing.stderr).into_owned();
+    assert!(!missing.status.success() && said.contains("nowhere.toml: cannot be read"), "{said}");
+}
+
+#[test]
 fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
     let host = Host::build("fog");
     run(host.command().args(["--report", "7"]));

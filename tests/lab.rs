@@ -12,12 +12,16 @@ mod canvas;
 mod chart;
 #[path = "../examples/lab/clouds.rs"]
 mod clouds;
+#[path = "support/coarse_sky.rs"]
+mod coarse_sky;
 #[path = "../examples/lab/command.rs"]
 mod command;
 #[path = "../examples/lab/compare.rs"]
 mod compare;
 #[path = "../examples/lab/fog.rs"]
 mod fog;
+#[path = "../examples/lab/front.rs"]
+mod front;
 #[path = "../examples/lab/growth.rs"]
 mod growth;
 #[path = "../examples/lab/page.rs"]
@@ -40,6 +44,8 @@ mod scenes;
 mod sky;
 #[path = "../examples/lab/stability/mod.rs"]
 mod stability;
+#[path = "../examples/lab/stars.rs"]
+mod stars;
 #[path = "../examples/lab/store.rs"]
 mod store;
 #[path = "../examples/lab/timing.rs"]

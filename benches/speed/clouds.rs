@@ -26,7 +26,7 @@ fn under(
     model: CloudModel,
 ) -> Fallible<Arc<Context>> {
     let weather = Weather { clouds: layers.to_vec(), ..Weather::default() };
-    let mut context = world(device, shared, &weather)?;
+    let mut context = world(device, shared, &weather, -60.0)?;
     Arc::get_mut(&mut context).ok_or("the world is shared already")?.set_cloud_model(model);
     Ok(context)
 }

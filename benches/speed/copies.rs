@@ -179,10 +179,11 @@ impl Scene {
     }
 }
 
-/// A world under a high sun.
-pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather) -> Fallible<Arc<Context>> {
+/// A world under a high sun and a moon at an elevation, degrees.
+pub fn world(device: &Arc<Device>, shared: &Arc<Shared>, weather: &Weather, moon_deg: f64) -> Fallible<Arc<Context>> {
     let mut context = Context::new(device.clone(), shared.clone(), ContextDesc::default())?;
     context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: 60.0 }))?;
+    context.set_moon(Some(GivenDirection { azimuth_deg: 20.0, elevation_deg: moon_deg }))?;
     context.set_default_surface_class(SurfaceClass::Paved);
     context.set_weather(weather, 0.0, 0.0)?;
     context.update(0.0)?;
@@ -198,14 +199,17 @@ fn scenes(device: &Arc<Device>) -> Fallible<Vec<Scene>> {
     let weathers = [Weather::preset("clear")?, Weather::preset("fog")?, haze, Weather::preset("rain")?, wet];
     let mut worlds = Vec::new();
     for weather in &weathers {
-        worlds.push(world(device, &shared, weather)?);
+        worlds.push(world(device, &shared, weather, -60.0)?);
     }
+    worlds.push(world(device, &shared, &weathers[0], 30.0)?);
     let all = Stages::ALL.without(Stages::TONE);
     let (sky, air) = (Stages::BACKGROUND, Stages::MEDIUM);
     let mut made = Vec::new();
     for (name, world, calls, has_depth) in [
         ("clear noon", 0, &[all][..], true),
         ("clear noon, nothing but sky", 0, &[all], false),
+        ("clear noon, the moon up", 5, &[all], true),
+        ("clear noon, the moon up, nothing but sky", 5, &[all], false),
         ("clear noon, TONE too", 0, &[Stages::ALL], true),
         ("clear noon, BACKGROUND and MEDIUM in one call", 0, &[sky.with(air)], true),
         ("clear noon, in two calls", 0, &[sky, air], true),

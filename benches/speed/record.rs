@@ -14,21 +14,12 @@ use welkin::{
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
 
+use crate::textures;
+
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
 fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    let color = if format.has_depth_aspect() { U::empty() } else { U::COPY_SRC };
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: 64, height: 36, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | color,
-        view_formats: &[],
-    })
+    textures::texture(device, (64, 36), format, 1)
 }
 
 fn empty_pass(device: &Device, target: &wgpu::TextureView) {

@@ -47,7 +47,7 @@ double demo_clock_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-bool demo_open(demo *d, const platform *p, const char *data, int width, int height, int finer)
+bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer)
 {
     char path[1024];
     *d = (demo){.platform = p, .cut = true, .started_ms = demo_clock_ms()};
@@ -57,7 +57,7 @@ bool demo_open(demo *d, const platform *p, const char *data, int width, int heig
     snprintf(path, sizeof path, "%s/metar.txt", data);
     if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height, finer))
         return false;
-    return weather_open(&d->weather, p) && demo_next_report(d, 0) && demo_next_hour(d, 0);
+    return weather_open(&d->weather, p, planet) && demo_next_report(d, 0) && demo_next_hour(d, 0);
 }
 
 void demo_close(demo *d)

@@ -31,8 +31,11 @@ typedef struct demo {
     double weather_ms; /* Welkin's part of it */
 } demo;
 
-/* `data` is the folder with the terrain and the reports. The host's context is current. See picture_create for the size. */
-bool demo_open(demo *d, const platform *p, const char *data, int width, int height, int finer);
+/*
+ * `data` is the folder with the terrain and the reports, `planet` the text of a planet file or NULL. The host's context is current. See
+ * picture_create for the size.
+ */
+bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer);
 void demo_close(demo *d);
 
 /* Each goes round. `step` is 1 or -1. */

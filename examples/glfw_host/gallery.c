@@ -49,7 +49,7 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
     d->scene.with_bridge = s->world == WITH_BRIDGE;
     d->scene.empty = s->world == NO_WORLD;
     weather_close(&d->weather);
-    bool ok = weather_open(&d->weather, d->platform) && s->prepare(d) &&
+    bool ok = weather_open(&d->weather, d->platform, NULL) && s->prepare(d) &&
               (!s->windscreen || let_it_rain_on_the_glass(d, s)) && demo_draw(d);
     d->still = NULL;
     if (!ok)
@@ -99,7 +99,7 @@ int gallery_run(const char *data, const char *out, int width, int height, char *
     bool ok = false;
     if (!headless_open(&p))
         return 1;
-    if (gl_load(&p) && demo_open(&d, &p, data, width, height, SAMPLES_A_SIDE)) {
+    if (gl_load(&p) && demo_open(&d, &p, data, NULL, width, height, SAMPLES_A_SIDE)) {
         d.picture.plain = true;
         printf("adapter: %s\n", weather_adapter(&d.weather));
         ok = take_all(&d, out, names, count);

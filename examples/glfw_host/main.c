@@ -11,7 +11,7 @@
 #include "window.h"
 
 static const char USAGE[] =
-    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N]\n"
+    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N] [--planet FILE]\n"
     "glfw_host --gallery [NAME..] [--data DIR] [--out DIR] [--size WxH]\n"
     "  --data DIR   terrain and weather reports (examples/data)\n"
     "  --out DIR    where pictures go when there is no display (out); it must exist\n"
@@ -19,11 +19,28 @@ static const char USAGE[] =
     "  --headless   write pictures even where there is a display\n"
     "  --frames N   close the window after N frames\n"
     "  --report N   begin with report N; pictures of that one only\n"
+    "  --planet FILE  a planet file, as examples/data/planet_dusty.toml, in place of the Earth\n"
     "  --gallery    draw the README's pictures, or those of the names given, with 2 x 2 samples a pixel\n";
+
+/* The text of a file, to be freed; NULL with a line on stderr if it cannot be read. */
+static char *text_of(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    long size = file && fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
+    char *text = size >= 0 ? calloc((size_t)size + 1, 1) : NULL;
+    bool ok = text && fseek(file, 0, SEEK_SET) == 0 && fread(text, 1, (size_t)size, file) == (size_t)size;
+    if (file)
+        fclose(file);
+    if (ok)
+        return text;
+    free(text);
+    fprintf(stderr, "%s: cannot be read\n", path);
+    return NULL;
+}
 
 int main(int argc, char **argv)
 {
-    const char *data = "examples/data", *out = "out";
+    const char *data = "examples/data", *out = "out", *planet_file = NULL;
     int width = 0, height = 0, frames = 0, report = 0;
     bool headless = !window_possible(), gallery = false;
     char **names = argv; /* gathered where the arguments stood */
@@ -34,6 +51,8 @@ int main(int argc, char **argv)
             data = argv[++i];
         else if (strcmp(argv[i], "--out") == 0 && more)
             out = argv[++i];
+        else if (strcmp(argv[i], "--planet") == 0 && more)
+            planet_file = argv[++i];
         else if (strcmp(argv[i], "--frames") == 0 && more)
             frames = atoi(argv[++i]);
         else if (strcmp(argv[i], "--report") == 0 && more)
@@ -56,5 +75,11 @@ int main(int argc, char **argv)
         width = headless && !gallery ? 640 : 1280, height = headless && !gallery ? 360 : 720;
     if (gallery)
         return gallery_run(data, out, width, height, names, name_count);
-    return headless ? contact_run(data, out, width, height, report) : window_run(data, width, height, frames, report);
+    char *planet = planet_file ? text_of(planet_file) : NULL;
+    if (planet_file && !planet)
+        return 1;
+    int code = headless ? contact_run(data, planet, out, width, height, report)
+                        : window_run(data, planet, width, height, frames, report);
+    free(planet);
+    return code;
 }

@@ -12,7 +12,7 @@ bool weather_check(wk_status status)
     return false;
 }
 
-bool weather_open(weather_link *w, const platform *p)
+bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
 {
     w->diagnostic = WK_DIAGNOSTIC_NONE;
     wk_opengl_host_desc host = WK_OPENGL_HOST_DESC_INIT;
@@ -25,6 +25,7 @@ bool weather_open(weather_link *w, const platform *p)
     place.world_kind = WK_WORLD_TANGENT;
     place.latitude_deg = SITE_LATITUDE_DEG;
     place.longitude_deg = SITE_LONGITUDE_DEG;
+    place.planet_toml = planet_toml;
 
     /* Rain as trainees should see it: at the default's contrast, as in nature, hardly any shows by day. */
     wk_rain rain = WK_RAIN_INIT;

@@ -31,8 +31,8 @@ typedef struct weather_link {
 /* Whether a call of Welkin's went well; if not, stderr says why. */
 bool weather_check(wk_status status);
 
-/* Once, when the host has made its contexts. */
-bool weather_open(weather_link *w, const platform *p);
+/* Once, when the host has made its contexts. `planet_toml` is the text of a planet file; NULL: the Earth. */
+bool weather_open(weather_link *w, const platform *p, const char *planet_toml);
 void weather_close(weather_link *w);
 
 /* Whenever the weather changes: a report as an airport sends it, and how long the change takes. */

@@ -103,7 +103,7 @@ static void loop(GLFWwindow *w, demo *d, int frames)
     }
 }
 
-int window_run(const char *data, int width, int height, int frames, int first)
+int window_run(const char *data, const char *planet, int width, int height, int frames, int first)
 {
     platform p = {get_proc, make_current, NULL};
     demo d;
@@ -115,7 +115,7 @@ int window_run(const char *data, int width, int height, int frames, int first)
     windows[CONTEXT_WELKIN] = windows[CONTEXT_HOST] ? create(1, 1, windows[CONTEXT_HOST]) : NULL;
     if (!windows[CONTEXT_WELKIN]) {
         fprintf(stderr, "this display has no OpenGL 3.3\n");
-    } else if (make_current(NULL, CONTEXT_HOST) == 0 && gl_load(&p) && demo_open(&d, &p, data, width, height, 1)) {
+    } else if (make_current(NULL, CONTEXT_HOST) == 0 && gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1)) {
         printf("adapter: %s\nkeys: N next report, T time of day, C camera (Shift: back), W weather on and off, Q quit\n",
                weather_adapter(&d.weather));
         glfwSetWindowUserPointer(windows[CONTEXT_HOST], &d);

@@ -11,6 +11,6 @@ bool window_possible(void);
  * Runs until the window is closed, or for `frames` frames if that is not 0, beginning with report `first` (from 1).
  * Answers the process's exit code.
  */
-int window_run(const char *data, int width, int height, int frames, int first);
+int window_run(const char *data, const char *planet, int width, int height, int frames, int first);
 
 #endif

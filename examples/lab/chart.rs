@@ -5,19 +5,19 @@ use std::sync::Arc;
 use welkin::Result;
 use welkin::candidates::{Candidate, Effect, Method, candidates};
 use welkin::gpu::{Device, DeviceOptions};
-use welkin::plan::front::pareto;
 use welkin::plan::{Difference, Price, difference, difference::percentile};
 use welkin::rain::{RainModel, RainSettings, candidates::RainMethod};
 
 use crate::command::Options;
+use crate::front::pareto;
 use crate::picture::{Figures, Picture};
 use crate::plot::{Point, Titles, scatter, short};
 use crate::store::{Journal, Table};
 use crate::timing::{Baseline, Ratio, interleaved};
-use crate::{fog, page, quadrature, rain, scenes, sky};
+use crate::{fog, page, quadrature, rain, scenes, sky, stars};
 
 /// What can be charted.
-pub const CHARTS: [&str; 4] = ["sky", "fog", "rain", "quadrature"];
+pub const CHARTS: [&str; 5] = ["sky", "fog", "rain", "stars", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -61,6 +61,7 @@ pub fn shaders(what: &str) -> String {
         "sky" | "quadrature" => &["common", "sky"],
         "fog" | "stability" => &["common", "fog", "frame", "sky"],
         "rain" => &["common", "fog", "frame", "rain", "sky"],
+        "stars" => &["common", "frame", "sky", "stars"],
         _ => &["common", "fog", "frame", "ground", "rain", "sky"],
     };
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
@@ -108,6 +109,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
         "sky" => sky_chart(&lab, options)?,
         "fog" => fog_chart(&lab, options)?,
         "rain" => rain_chart(&lab, options)?,
+        "stars" => star_chart(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }
     page::write(&options.out)
@@ -154,6 +156,7 @@ fn family(c: &Candidate) -> &'static str {
         (Effect::Fog, "froxels") => "froxels",
         (Effect::Fog, _) => "older laws",
         (Effect::Sky | Effect::Rain, known) => known,
+        (Effect::Stars, _) => "night",
     }
 }
 
@@ -182,7 +185,7 @@ fn sky_chart(lab: &Lab, options: &Options) -> Result<()> {
         }
         if truths.is_none() {
             let of = |air| sky::truth(&scenes_of(air), air, sky::SIZE, options.quick);
-            truths = Some(scenes::Air::ALL.into_iter().map(of).collect::<Result<_>>()?);
+            truths = Some(scenes::SkyAir::ALL.into_iter().map(of).collect::<Result<_>>()?);
         }
         eprintln!("  {}/{} {} ..", i + 1, all.len(), c.name);
         let row = sky_row(lab, c, truths.as_deref().unwrap_or_default())?;
@@ -211,7 +214,7 @@ fn sky_chart(lab: &Lab, options: &Options) -> Result<()> {
 }
 
 /// The sky scenes of an air.
-pub fn scenes_of(air: scenes::Air) -> Vec<scenes::SkyScene> {
+pub fn scenes_of(air: scenes::SkyAir) -> Vec<scenes::SkyScene> {
     scenes::SKY.into_iter().filter(|s| s.air == air).collect()
 }
 
@@ -220,7 +223,7 @@ fn sky_row(lab: &Lab, c: &Candidate, truths: &[Vec<sky::TrueScene>]) -> Result<V
     let mut pairs = Vec::new();
     let mut rebuilds = Vec::new();
     // The clear air last: frames are timed in it.
-    for (air, truths) in scenes::Air::ALL.into_iter().zip(truths).rev() {
+    for (air, truths) in scenes::SkyAir::ALL.into_iter().zip(truths).rev() {
         // An air that nobody has built, so that none is shared.
         let odd = air.planet().with_air_scaled(1.0 + 1e-5 * rebuilds.len() as f64 + 1e-6);
         let before = lab.baseline.run()?;
@@ -281,7 +284,7 @@ fn fog_chart(lab: &Lab, options: &Options) -> Result<()> {
         for (scene, host) in frames {
             made.push(bench.make(c, scene, &host?)?);
         }
-        let cost = interleaved(&lab.baseline, lab.rounds, |_| made.iter().map(fog::Drawn::frame).sum())?;
+        let cost = interleaved(&lab.baseline, lab.rounds, |_| made.iter().map(fog::FogDraw::frame).sum())?;
         let mut row = first_fields(c.name, family(c), c.is_default(), &cost, &error.luminance);
         row.extend([
             c.work.shared_bytes.to_string(),
@@ -399,6 +402,63 @@ fn rain_plots(journal: Journal, options: &Options, scenes: usize) -> Result<()> 
     };
     table.rows.retain(|r| r[0] != "truth-again");
     plot(&table, "cost", &titles, &options.out.join("rain"))
+}
+
+fn star_chart(lab: &Lab, options: &Options) -> Result<()> {
+    let names: Vec<String> = scenes::STARS.iter().map(|s| format!("p95_{}", s.name)).collect();
+    let columns: Vec<&str> = COLUMNS
+        .iter()
+        .copied()
+        .chain(["flux"])
+        .chain(names.iter().map(String::as_str))
+        .chain(["units", "date"])
+        .collect();
+    let mut journal = Journal::open(&options.out, "stars", &lab.note("stars", options), &columns, options.fresh)?;
+    let all = candidates(Effect::Stars);
+    for (i, c) in all.iter().enumerate() {
+        let Method::Stars(method) = c.method else { continue };
+        if journal.has(c.name) {
+            continue;
+        }
+        eprintln!("  {}/{} {} ..", i + 1, all.len(), c.name);
+        let (mut pictures, mut flux) = (Vec::new(), 0.0f64);
+        for scene in &scenes::STARS {
+            let mut host = stars::Host::new(&lab.device, scene, stars::SIZE)?;
+            let ((truth, even), drawn) = (host.truth()?, host.picture(method)?);
+            flux = flux.max(stars::flux_error(&drawn, &truth, &even));
+            pictures.push([drawn, truth].map(|p| stars::blocks(&p)));
+        }
+        let pairs: Vec<(Picture, &Picture)> = pictures.iter().map(|[drawn, truth]| (drawn.clone(), truth)).collect();
+        let (mut luminances, mut each) = ([Vec::new(), Vec::new()], Vec::new());
+        for (drawn, truth) in &pairs {
+            let white = truth.white();
+            let y = |p: &Picture| -> Vec<f64> {
+                p.texels.iter().map(welkin::light::luminance).map(|y| y / white).collect()
+            };
+            let [a, b] = [y(drawn), y(truth)];
+            each.push(difference(&a, &b, 1.0)?.p95);
+            luminances[0].extend(a);
+            luminances[1].extend(b);
+        }
+        let error = difference(&luminances[0], &luminances[1], 1.0)?;
+        let mut timed = stars::Host::new(&lab.device, &scenes::STARS[0], (640, 360))?;
+        let cost = interleaved(&lab.baseline, lab.rounds, |i| timed.timed(method, i == 0))?;
+        let mut row = first_fields(c.name, family(c), c.is_default(), &cost, &error);
+        row.push(format!("{flux:.6e}"));
+        row.extend(each.iter().map(|v| format!("{v:.6e}")));
+        row.push(format!("{:.4e}", c.work.frame(640 * 360, true).at(&Price::default())));
+        row.push(today());
+        journal.push(row)?;
+    }
+    let (table, old) = journal.finish()?;
+    say_what_moved(&table, old.as_ref());
+    let titles = Titles {
+        title: "Stars: what a frame costs against how far its light is from the truth",
+        x: "cost of a picture of nothing but a clear night sky, 640x360, over the baseline's",
+        y: "95th percentile of the relative error of blocks' mean luminance",
+        note: "moonless, moonlit, dusk; line: nothing is both cheaper and better; ring: the default",
+    };
+    plot(&table, "cost", &titles, &options.out.join("stars"))
 }
 
 /// The points of a table: cost by the column `cost` with its quarters.

@@ -10,7 +10,7 @@ use crate::chart::Lab;
 use crate::command::Options;
 use crate::picture::{Figures, Picture};
 use crate::plot::short;
-use crate::{fog, rain, scenes, sky};
+use crate::{fog, rain, scenes, sky, stars};
 
 /// Size of a picture of sky or fog.
 const SIZE: (u32, u32) = (128, 72);
@@ -37,6 +37,7 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
         Effect::Sky => "low-sun",
         Effect::Fog => "fog",
         Effect::Rain => "shower",
+        Effect::Stars => "moonless",
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
@@ -44,6 +45,7 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
         Effect::Sky => by_pixels([a.name, b.name], &sky_pictures(&lab, [a, b], scene, options.quick)?)?,
         Effect::Fog => by_pixels([a.name, b.name], &fog_pictures(&lab, [a, b], scene)?)?,
         Effect::Rain => by_blocks(&lab, [a, b], scene)?,
+        Effect::Stars => by_pixels([a.name, b.name], &star_pictures(&lab, [a, b], scene)?)?,
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
     let stem = options.out.join(format!("compare-{}-{}-{wanted}", a.name, b.name));
@@ -72,6 +74,16 @@ fn fog_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Pictu
     let host = fog::host(&scene, SIZE)?;
     let one = |c: &Candidate| bench.make(c, &scene, &host)?.picture();
     Ok([one(pair[0])?, one(pair[1])?, fog::truth(&scene, &host)?])
+}
+
+fn star_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Picture; 3]> {
+    let mut host = stars::Host::new(&lab.device, &scenes::STARS[scene], stars::SIZE)?;
+    let mut one = |c: &Candidate| match c.method {
+        Method::Stars(method) => host.picture(method),
+        _ => Err(Error::range(c.name, "a way to draw stars", c.name)),
+    };
+    let [a, b] = [one(pair[0])?, one(pair[1])?];
+    Ok([a, b, host.truth()?.0])
 }
 
 /// Pictures that are compared pixel by pixel.

@@ -110,7 +110,7 @@ pub struct Bench {
 }
 
 /// A way to draw fog into a scene, ready.
-pub struct Drawn {
+pub struct FogDraw {
     device: Arc<Device>,
     fill: Option<(wgpu::RenderPipeline, [wgpu::TextureView; 2])>,
     apply: wgpu::RenderPipeline,
@@ -216,7 +216,7 @@ impl Bench {
     }
 
     /// A candidate in a scene.
-    pub fn make(&self, candidate: &Candidate, scene: &FogScene, host: &Host) -> Result<Drawn> {
+    pub fn make(&self, candidate: &Candidate, scene: &FogScene, host: &Host) -> Result<FogDraw> {
         let Method::Fog(method) = candidate.method else {
             return Err(Error::range("candidate", "one of the fog", candidate.name));
         };
@@ -270,11 +270,11 @@ impl Bench {
             _ => (None, self.pipeline("fogged", &narrow, &[format])),
         };
         let target = target(&self.device, host.size, format);
-        Ok(Drawn { device: self.device.clone(), fill, apply, groups, target })
+        Ok(FogDraw { device: self.device.clone(), fill, apply, groups, target })
     }
 }
 
-impl Drawn {
+impl FogDraw {
     /// One frame, ms.
     pub fn frame(&self) -> Result<f64> {
         let mut encoder = self.device.device.create_command_encoder(&Default::default());

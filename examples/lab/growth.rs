@@ -7,7 +7,6 @@ use welkin::candidates::{Effect, Method, candidate};
 use welkin::context::{Context, ContextDesc, GivenDirection};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::Device;
-use welkin::plan::front::growth;
 use welkin::rain::{RainModel, RainSettings};
 use welkin::scene::Camera;
 use welkin::sky::{SkySettings, SkyTables, SkyVolume};
@@ -16,6 +15,7 @@ use welkin::{Result, Status};
 
 use crate::chart::{Lab, say_what_moved, today};
 use crate::command::Options;
+use crate::front::growth;
 use crate::plot::{Line, Titles, lines, short};
 use crate::store::{Journal, Table};
 use crate::timing::{interleaved, target, timed};
@@ -92,7 +92,7 @@ fn sky_pixels(series: &mut Series<'_>) -> Result<()> {
     for size in SIZES {
         let pixels = f64::from(size.0 * size.1);
         series.point(("sky", "pixels", pixels), || {
-            use sky::Drawn as _;
+            use sky::SkyDraw as _;
             let library = match made.take() {
                 Some(l) => l,
                 None => sky::Library::new(&device, &SkySettings::default())?,
@@ -128,7 +128,7 @@ fn sky_tables(series: &mut Series<'_>) -> Result<()> {
         series.point(("sky build", "texels", texels), || {
             let mut tables = SkyTables::new(&device, &s)?;
             let device = device.clone();
-            let planet = scenes::Air::Clear.planet();
+            let planet = scenes::SkyAir::Clear.planet();
             let work = move |i: usize| {
                 let air = planet.with_air_scaled(1.0 + 0.001 * (i + 1) as f64);
                 Ok(sky::build(&device, &mut tables, &air)? * 1e3)
@@ -138,7 +138,7 @@ fn sky_tables(series: &mut Series<'_>) -> Result<()> {
         series.point(("sky of an observer", "texels", c.work.view_bytes as f64 / 8.0), || {
             let small = SkySettings { orders: 3, suns: 16, altitudes: 8, ..s };
             let mut tables = SkyTables::new(&device, &small)?;
-            let planet = scenes::Air::Clear.planet();
+            let planet = scenes::SkyAir::Clear.planet();
             sky::build(&device, &mut tables, &planet)?;
             let mut volume = SkyVolume::new(&tables)?;
             let device = device.clone();

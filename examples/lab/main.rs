@@ -9,9 +9,12 @@ mod brute;
 mod canvas;
 mod chart;
 mod clouds;
+#[path = "../../tests/support/coarse_sky.rs"]
+mod coarse_sky;
 mod command;
 mod compare;
 mod fog;
+mod front;
 mod growth;
 mod page;
 mod picture;
@@ -23,6 +26,7 @@ mod report;
 mod scenes;
 mod sky;
 mod stability;
+mod stars;
 mod store;
 mod timing;
 

@@ -7,19 +7,19 @@ use welkin::{Error, Result};
 
 /// Which air a sky scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Air {
+pub enum SkyAir {
     /// The Earth's on a clear day.
     Clear,
     /// Haze of about 12 km visibility.
     Haze,
 }
 
-impl Air {
-    pub const ALL: [Air; 2] = [Air::Clear, Air::Haze];
+impl SkyAir {
+    pub const ALL: [SkyAir; 2] = [SkyAir::Clear, SkyAir::Haze];
 
     pub fn planet(self) -> Planet {
         let mut planet = Planet::earth();
-        if self == Air::Haze {
+        if self == SkyAir::Haze {
             planet.mie.extinction_per_m = [2.4e-4; 3];
             planet.mie.scattering_per_m = [2.2e-4; 3];
         }
@@ -31,7 +31,7 @@ impl Air {
 #[derive(Clone, Copy, Debug)]
 pub struct SkyScene {
     pub name: &'static str,
-    pub air: Air,
+    pub air: SkyAir,
     pub altitude_m: f64,
     pub sun_zenith_deg: f64,
     /// The view's azimuth from the sun's, its elevation, and the angle that the picture is wide.
@@ -42,7 +42,7 @@ pub struct SkyScene {
 
 const fn sky(
     name: &'static str,
-    air: Air,
+    air: SkyAir,
     altitude_m: f64,
     sun_zenith_deg: f64,
     azimuth_deg: f64,
@@ -54,16 +54,16 @@ const fn sky(
 
 /// From an excavator's seat to orbit, noon to twilight.
 pub const SKY: [SkyScene; 10] = [
-    sky("noon", Air::Clear, 3.0, 28.0, 55.0, 12.0, 90.0),
-    sky("afternoon-digging", Air::Clear, 3.0, 57.0, -120.0, -12.0, 75.0),
-    sky("low-sun", Air::Clear, 20.0, 80.0, 25.0, 8.0, 90.0),
-    sky("sunset", Air::Clear, 20.0, 89.6, 8.0, 8.0, 90.0),
-    sky("earth-shadow", Air::Clear, 20.0, 91.0, 180.0, 10.0, 90.0),
-    sky("twilight", Air::Clear, 20.0, 95.0, 15.0, 14.0, 90.0),
-    sky("haze", Air::Haze, 10.0, 60.0, 70.0, 5.0, 90.0),
-    sky("haze-low-sun", Air::Haze, 10.0, 82.0, 20.0, 6.0, 90.0),
-    sky("airliner", Air::Clear, 11_000.0, 72.0, 100.0, -2.0, 90.0),
-    sky("limb", Air::Clear, 400_000.0, 96.0, 40.0, -18.0, 60.0),
+    sky("noon", SkyAir::Clear, 3.0, 28.0, 55.0, 12.0, 90.0),
+    sky("afternoon-digging", SkyAir::Clear, 3.0, 57.0, -120.0, -12.0, 75.0),
+    sky("low-sun", SkyAir::Clear, 20.0, 80.0, 25.0, 8.0, 90.0),
+    sky("sunset", SkyAir::Clear, 20.0, 89.6, 8.0, 8.0, 90.0),
+    sky("earth-shadow", SkyAir::Clear, 20.0, 91.0, 180.0, 10.0, 90.0),
+    sky("twilight", SkyAir::Clear, 20.0, 95.0, 15.0, 14.0, 90.0),
+    sky("haze", SkyAir::Haze, 10.0, 60.0, 70.0, 5.0, 90.0),
+    sky("haze-low-sun", SkyAir::Haze, 10.0, 82.0, 20.0, 6.0, 90.0),
+    sky("airliner", SkyAir::Clear, 11_000.0, 72.0, 100.0, -2.0, 90.0),
+    sky("limb", SkyAir::Clear, 400_000.0, 96.0, 40.0, -18.0, 60.0),
 ];
 
 /// A camera over a flat plain in a layer of fog, with masts at several distances.
@@ -154,6 +154,21 @@ pub fn rain() -> Vec<RainScene> {
     ]
 }
 
+/// A clear night over 50 degrees north, looked at 40 degrees up to the south.
+#[derive(Clone, Copy, Debug)]
+pub struct StarScene {
+    pub name: &'static str,
+    pub sun_deg: f64,
+    pub moon_deg: f64,
+}
+
+/// From a dark sky to one that hides all but the brightest.
+pub const STARS: [StarScene; 3] = [
+    StarScene { name: "moonless", sun_deg: -40.0, moon_deg: -40.0 },
+    StarScene { name: "moonlit", sun_deg: -40.0, moon_deg: 30.0 },
+    StarScene { name: "dusk", sun_deg: -9.0, moon_deg: -40.0 },
+];
+
 /// A scene's index by name.
 ///
 /// # Errors
@@ -163,6 +178,7 @@ pub fn find(effect: Effect, name: &str) -> Result<usize> {
         Effect::Sky => SKY.iter().map(|s| s.name).collect(),
         Effect::Fog => fog().iter().map(|s| s.name).collect(),
         Effect::Rain => rain().iter().map(|s| s.name).collect(),
+        Effect::Stars => STARS.iter().map(|s| s.name).collect(),
     };
     let fault = || Error::range("--scene", &format!("one of {}", names.join(", ")), name);
     names.iter().position(|n| *n == name).ok_or_else(fault)

@@ -22,10 +22,10 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     var seen = 0u;
     // Drops lie in the order of their classes.
     for (var index = first; index < last;) {
-        let kind = kind_of(s, class_of(index));
-        let end = clamp(kind.end, index + 1u, last);
+        let in_shell = class_in_shell(s, class_of(index));
+        let end = clamp(in_shell.end, index + 1u, last);
         for (; index < end; index++) {
-            let m = moving(kind, index);
+            let m = moving(in_shell, index);
             seen |= select(0u, 1u << (index - first), may_show(m.drop, m.velocity));
         }
     }

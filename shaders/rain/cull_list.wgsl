@@ -39,12 +39,12 @@ fn shell_blocks() -> u32 {
 }
 
 // Drop `index` of its shell.
-fn moving(kind: Kind, index: u32) -> Moving {
+fn moving(in_shell: ClassInShell, index: u32) -> Moving {
     if STEPPED {
-        let state = states[kind.s * (arrayLength(&states) / SHELLS) + index];
-        return Moving(drop_at(kind, index, state.place - eyes[kind.s].xyz), state.velocity);
+        let state = states[in_shell.s * (arrayLength(&states) / SHELLS) + index];
+        return Moving(drop_at(in_shell, index, state.place - eyes[in_shell.s].xyz), state.velocity);
     }
-    let drop = drop_of(kind, index);
+    let drop = drop_of(in_shell, index);
     return Moving(drop, rain.wind - vec3f(0.0, 0.0, drop.speed));
 }
 

@@ -33,7 +33,7 @@ fn make_streaks(@builtin(global_invocation_id) id: vec3u) {
     }
     let s = block / shell_blocks();
     let index = 32u * (WORDS * (block % shell_blocks()) + word) + firstTrailingBit(bits);
-    let m = moving(kind_of(s, class_of(index)), index);
+    let m = moving(class_in_shell(s, class_of(index)), index);
     // A rain area's rim thins what is left.
     streaks[id.x] = streak_of(m.drop, m.velocity, m.drop.share > 0.0);
 }

@@ -87,7 +87,7 @@ fn class_of(index: u32) -> u32 {
 }
 
 // What the drops of one class in one shell have in common.
-struct Kind {
+struct ClassInShell {
     s: u32,
     k: u32,
     // Of the shell's drops, its first and the one behind its last.
@@ -100,31 +100,31 @@ struct Kind {
     shell: vec4f,
 }
 
-fn kind_of(s: u32, k: u32) -> Kind {
+fn class_in_shell(s: u32, k: u32) -> ClassInShell {
     let size = rain.classes[k];
     let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
-    return Kind(s, k, first, u32(size.z), size.x, u32(size.y), rain.cell[s], rain.shell[s]);
+    return ClassInShell(s, k, first, u32(size.z), size.x, u32(size.y), rain.cell[s], rain.shell[s]);
 }
 
 // Drop `index` of its shell.
-fn drop_of(kind: Kind, index: u32) -> Drop {
-    let place = random3(vec3u(rain.seed, (kind.s << 8u) | kind.k, index - kind.first));
-    return drop_at(kind, index, place - vec3u(0u, 0u, kind.speed * kind.cell.w) - kind.cell.xyz);
+fn drop_of(in_shell: ClassInShell, index: u32) -> Drop {
+    let place = random3(vec3u(rain.seed, (in_shell.s << 8u) | in_shell.k, index - in_shell.first));
+    return drop_at(in_shell, index, place - vec3u(0u, 0u, in_shell.speed * in_shell.cell.w) - in_shell.cell.xyz);
 }
 
 // The same, `away_units` from the camera in 2^-32 of the cell's side.
-fn drop_at(kind: Kind, index: u32, away_units: vec3u) -> Drop {
-    let shell = kind.shell;
+fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
+    let shell = in_shell.shell;
     let p = vec3f(bitcast<vec3i>(away_units)) * (shell.x / 4294967296.0);
     let d = length(p);
     let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
-    let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), kind.s == 0u);
+    let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), in_shell.s == 0u);
     var here = vec2f(1e9, rain.weight);
     if AREAS {
-        here = local_drops(kind.k, p);
+        here = local_drops(in_shell.k, p);
     }
-    let share = select(0.0, inner * outer, f32(index - kind.first) < here.x);
-    return Drop(p, kind.diameter, f32(kind.speed) * SPEED_UNIT, share, here.y * f32(1u << kind.s));
+    let share = select(0.0, inner * outer, f32(index - in_shell.first) < here.x);
+    return Drop(p, in_shell.diameter, f32(in_shell.speed) * SPEED_UNIT, share, here.y * f32(1u << in_shell.s));
 }
 
 // Radiance of a drop seen along `d` without lamps: it shows, small and upside down, most of the half space behind it, and what the
@@ -269,7 +269,7 @@ fn corner_of(streak: Streak, corner: u32) -> RainVarying {
 @vertex
 fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> RainVarying {
     let index = instance % rain.per_shell;
-    let drop = drop_of(kind_of(instance / rain.per_shell, class_of(index)), index);
+    let drop = drop_of(class_in_shell(instance / rain.per_shell, class_of(index)), index);
     let velocity = rain.wind - vec3f(0.0, 0.0, drop.speed);
     return corner_of(streak_of(drop, velocity, may_show(drop, velocity)), corner);
 }

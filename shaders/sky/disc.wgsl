@@ -19,13 +19,19 @@ fn unrefracted(dir: vec3f) -> vec3f {
     return vec3f(dir.xy * (sqrt(max(1.0 - z * z, 0.0)) / level), z);
 }
 
+// Lamps whose discs a pipeline draws: those of `SKY_LAMPS`, and behind them those that do not light the air. A lamp that is not there has
+// no radiance.
+override SKY_DISCS: u32 = 2u;
+// The first lamp is a sun and the second one a moon: the law of neither is computed for the other.
+override SUN_THEN_MOON: bool = false;
+
 // Share of a disc's radius at which its middle is, and how much of the pixel it covers.
 fn disc_place(lamp: SkyLamp, dir: vec3f, pixel_angle: f32) -> vec2f {
     // The angle by its sine's series, within 1e-5 of itself for the largest discs.
     let chord = 0.5 * length(dir - lamp.toward);
     let apart = chord * (2.0 + chord * chord * 0.33333333);
     let cover = clamp((lamp.angular_radius - apart) / max(pixel_angle, 1e-6) + 0.5, 0.0, 1.0);
-    return vec2f(min(apart / max(lamp.angular_radius, 1e-6), 1.0), cover);
+    return vec2f(min(apart * lamp.inverse_radius, 1.0), cover);
 }
 
 // Radiance of the lamps' discs in a direction, reddened by the air; `pixel_angle` is the angle of a pixel, rad, over
@@ -37,20 +43,36 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
 fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
     let real = unrefracted(dir);
     var out = vec3f(0.0);
-    for (var i = 0u; i < sky_lamps(); i++) {
-        let lamp = sky_view.lamps[i];
-        let place = disc_place(lamp, real, pixel_angle);
-        let mu = sqrt(max(1.0 - place.x * place.x, 1e-4));
-        // The mean of mu^a over the disc is 2/(2 + a): disc_scale has the second wavelength's, each gets its own.
-        var law = exp2(log2(mu) * lamp.limb) * (2.0 + lamp.limb) / (2.0 + lamp.limb.y);
-        if (lamp.kind == 1u) {
-            // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
-            let offset = (real - lamp.toward * dot(real, lamp.toward)) / max(lamp.angular_radius, 1e-6);
-            let normal = offset - lamp.toward * mu;
-            let mu0 = max(dot(normal, lamp.lit_from), 0.0);
-            law = vec3f(mu0 / max(mu0 + mu, 1e-4));
+    if (SUN_THEN_MOON) {
+        out = sun_disc(sky_view.lamps[0], real, pixel_angle);
+        if (SKY_DISCS > 1u) {
+            out += moon_disc(sky_view.lamps[1], real, pixel_angle);
         }
-        out += lamp.irradiance * law * (place.y * lamp.disc_scale);
+    } else {
+        for (var i = 0u; i < SKY_DISCS; i++) {
+            let lamp = sky_view.lamps[i];
+            out += select(sun_disc(lamp, real, pixel_angle), moon_disc(lamp, real, pixel_angle), lamp.kind == 1u);
+        }
     }
     return out * sky_transmittance_on(path);
+}
+
+// Zenith cosine of the eye on a disc's face, at a share of its radius.
+fn face_cosine(share: f32) -> f32 {
+    return sqrt(max(1.0 - share * share, 1e-4));
+}
+
+// Dark towards the limb: mu^a.
+fn sun_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+    let place = disc_place(lamp, real, pixel_angle);
+    return lamp.disc * exp2(log2(face_cosine(place.x)) * lamp.limb) * place.y;
+}
+
+// Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
+fn moon_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+    let place = disc_place(lamp, real, pixel_angle);
+    let mu = face_cosine(place.x);
+    let offset = (real - lamp.toward * dot(real, lamp.toward)) * lamp.inverse_radius;
+    let mu0 = max(dot(offset - lamp.toward * mu, lamp.lit_from), 0.0);
+    return lamp.disc * (mu0 / max(mu0 + mu, 1e-4) * place.y);
 }

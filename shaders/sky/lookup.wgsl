@@ -15,8 +15,8 @@ struct SkyLamp {
     kind: u32,
     // Exponents of limb darkening (Hestroffer and Magnan 1998: I = mu^a), per wavelength; or the factor of a moon's law.
     limb: vec3f,
-    // Radiance of the disc's middle per unit irradiance (sun), or the scale of the moon's law, 1/sr.
-    disc_scale: f32,
+    // Of its angular radius.
+    inverse_radius: f32,
     lit_from: vec3f,
     unused: f32,
     // Unit level direction under the lamp.
@@ -24,6 +24,9 @@ struct SkyLamp {
     // Where the tables of this lamp lie: first layer.
     layer: u32,
     unused_b: u32,
+    // Radiance of the disc where the law of its face is 1.
+    disc: vec3f,
+    unused_c: f32,
 }
 
 struct SkyView {

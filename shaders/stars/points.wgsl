@@ -53,7 +53,7 @@ fn weight(offset: vec2f) -> f32 {
     return spline(offset.x) * spline(offset.y);
 }
 
-// Lift by refraction, rad, at a true elevation, rad (Saemundsson 1986), as sky::sun::refraction_deg.
+// Lift by refraction, rad, at a true elevation, rad (Saemundsson 1986), as refraction_deg of src/almanac/celestial.rs.
 fn refraction(elevation: f32) -> f32 {
     let degrees = elevation * 57.29578;
     let h = max(degrees, -1.0);

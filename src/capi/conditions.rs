@@ -81,7 +81,7 @@ pub struct wk_conditions {
     pub rain_mm_h: f64,
     /// Drizzle, mm/h.
     pub drizzle_mm_h: f64,
-    /// Snow, snow grains and ice crystals, mm/h of melted water.
+    /// Snow, snow grains and ice crystals together, mm/h of melted water.
     pub snow_mm_h: f64,
     /// Ice pellets and small hail, mm/h of melted water.
     pub ice_pellets_mm_h: f64,
@@ -131,6 +131,12 @@ pub struct wk_conditions {
     pub snow_depth_m: f64,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
+    /// Of snow_mm_h, what falls as flakes, mm/h of melted water; 0 where none falls.
+    pub snow_flakes_mm_h: f64,
+    /// Of snow_mm_h, what falls as snow grains, likewise.
+    pub snow_grains_mm_h: f64,
+    /// Of snow_mm_h, what falls as ice crystals, likewise.
+    pub ice_crystals_mm_h: f64,
 }
 
 impl wk_conditions {
@@ -186,10 +192,17 @@ impl wk_conditions {
         ice: 0.0,
         snow_depth_m: 0.0,
         ozone_du: 0.0,
+        snow_flakes_mm_h: 0.0,
+        snow_grains_mm_h: 0.0,
+        ice_crystals_mm_h: 0.0,
     };
 
     fn of(c: &Conditions) -> Self {
+        let [snow_flakes_mm_h, snow_grains_mm_h, ice_crystals_mm_h] = c.precipitation.snow_kinds_mm_h();
         Self {
+            snow_flakes_mm_h,
+            snow_grains_mm_h,
+            ice_crystals_mm_h,
             extinction_per_m: c.extinction_per_m,
             visibility_m: c.visibility_m(),
             temperature_c: c.air.temperature_c,

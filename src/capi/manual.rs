@@ -73,7 +73,7 @@
 //! - Snow: it falls in the stage PARTICLES, as rain does; its kinds in rain areas are wk_area_snow; what lies on the terrain is
 //!   wk_ground_texture.snow_texture.
 //! - Terrain, with tiles that a digging host updates by rectangle, holes and soil materials, is a new child of the context with its
-//!   own functions. Terrain and sea test and write the host's depth, which its target struct lends with depth_access.
+//!   own functions. Terrain and sea test and write the host's depth, which a frame lends with wk_frame.depth_access.
 //! - Bodies of water are new functions of the context; base colour and motion are images appended to the target structs.
 //! - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
 //!

@@ -66,7 +66,7 @@ pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
 pub const WK_CLOUD_LAYER_HAS_WATER: wk_cloud_layer_has_flags = 2;
 /// droplet_radius_um
 pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
-/// wind_m_s and wind_from_deg. Not in this version: clouds do not move yet.
+/// wind_m_s and wind_from_deg. Not in this version: all layers move with the weather's wind.
 pub const WK_CLOUD_LAYER_HAS_WIND: wk_cloud_layer_has_flags = 8;
 
 /// How precipitation falls.

@@ -32,7 +32,7 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     let mut take = |i: usize, layer: wk_cloud_layer| {
         if layer.has & WK_CLOUD_LAYER_HAS_WIND != 0 {
             let field = format!("{param}.clouds[{i}].has");
-            let what = "holds WK_CLOUD_LAYER_HAS_WIND: clouds do not move in this version, leave the bit out";
+            let what = "holds WK_CLOUD_LAYER_HAS_WIND: all layers move with the weather's wind in this version, leave the bit out";
             return Err(Error::about(Status::Unsupported, field, what));
         }
         weather.clouds.push(cloud(&layer)?);

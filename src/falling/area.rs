@@ -140,6 +140,8 @@ impl RainArea {
             rain_mm_h: self.rate_mm_h - drizzle,
             drizzle_mm_h: drizzle,
             snow_mm_h: 0.0,
+            grain_share: 0.0,
+            crystal_share: 0.0,
             ice_pellets_mm_h: 0.0,
             hail_mm_h: 0.0,
             freezing: 0.0,

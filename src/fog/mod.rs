@@ -35,6 +35,9 @@
 //! # What it needs of others
 //! [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo. [`Viewpoint`]: altitude of the
 //! camera, planet and ground. Extinctions of air, haze and what falls, by species, at the station.
+//!
+//! # What is not here
+//! No `passes.rs`: the composition draws the layer, which has no pass of its own.
 
 pub mod candidates;
 mod held;

@@ -75,9 +75,9 @@ const MOST_PIPELINES: usize = 32;
 /// Likewise those that tell kinds of pixels apart.
 const MOST_KINDS: usize = 8;
 
-/// What distinguishes one of these from another.
+/// What a pipeline that tells kinds of pixels apart is made for.
 #[derive(Clone, Copy, PartialEq)]
-struct Kinds {
+struct KindsPipeline {
     format: wgpu::TextureFormat,
     sampling: Sampling,
     constants: [Constant; 2],
@@ -111,7 +111,7 @@ pub(super) struct Composite {
     layout_tables: wgpu::BindGroupLayout,
     layout_around: wgpu::BindGroupLayout,
     pipelines: Recent<Variant, wgpu::RenderPipeline, MOST_PIPELINES>,
-    kinds: Recent<Kinds, wgpu::RenderPipeline, MOST_KINDS>,
+    kinds: Recent<KindsPipeline, wgpu::RenderPipeline, MOST_KINDS>,
     none: wgpu::TextureView,
     /// The same as a texture of layers.
     no_layers: wgpu::TextureView,
@@ -232,7 +232,7 @@ impl Composite {
         let layouts = [&self.layouts[variant.sampling as usize], &self.layout_tables, &self.layout_around];
         let between = &variant.constants.between;
         let constants = [("DEPTH_KINDS", between.value("DEPTH_KINDS")), ("HAS_DEPTH", yes(variant.images[0]))];
-        let kinds = Kinds { format: variant.format, sampling: variant.sampling, constants };
+        let kinds = KindsPipeline { format: variant.format, sampling: variant.sampling, constants };
         self.kinds.get_or_make(
             |made| *made == kinds,
             || {

@@ -108,7 +108,7 @@ impl View {
         }
         for (part, shares) in shot.shares.iter_mut().enumerate().take(PARTS.len()) {
             for (step, share) in shares.iter_mut().enumerate().take(PARTS[part].rungs.len() - 1) {
-                *share = self.planner.drawn(part, step);
+                *share = self.planner.drawn_share(part, step);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! What stands around the camera as a cube map with rougher levels, for reflections in the host's own things.
 //!
-//! Drawn only for views whose host asked for it: one face a frame, all six where nothing of earlier frames may show or light and weather
-//! leap. `shaders/frame/environment.wgsl` asks the composition's own functions; `environment_filter.wgsl` makes the levels.
+//! Created when the host first calls `View::environment`. Each frame draws one face, or all six where nothing of earlier frames may show or
+//! light and weather leap. `shaders/frame/environment.wgsl` asks the composition's own functions; `environment_filter.wgsl` makes the levels.
 
 use glam::{DMat3, DVec3};
 

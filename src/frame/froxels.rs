@@ -1,6 +1,6 @@
 //! The veil of air and fog as textures, for the host's own transparent shaders (glass, lamps, smoke).
 //!
-//! Drawn only for views whose host asked for them. The mapping is that of `shaders/frame/froxels.wgsl` and of the
+//! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping is that of `shaders/frame/froxels.wgsl` and of the
 //! published snippets.
 
 use crate::{

@@ -1,4 +1,4 @@
-//! Kinds of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
+//! KindAttachment of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
 //!
 //! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, and a thing for the sky
 //! behind it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
@@ -75,12 +75,12 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; 2] {
 }
 
 /// The depth attachment of a view: the kinds of its picture's pixels.
-pub(super) struct Kinds {
+pub(super) struct KindAttachment {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
 }
 
-impl Kinds {
+impl KindAttachment {
     /// For a picture of this size.
     pub fn new(device: &wgpu::Device, size: wgpu::Extent3d) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {

@@ -1,6 +1,6 @@
 //! A view's hold on the host's picture: the copy that shaders read, and the bind group of its textures.
 
-use super::{View, environment::EnvironmentMap, froxels::Froxels, kinds::Kinds};
+use super::{View, environment::EnvironmentMap, froxels::Froxels, kinds::KindAttachment};
 use crate::{
     error::Result,
     gpu::{KeptLayer, Layer, is_kept},
@@ -26,7 +26,7 @@ impl View {
             texel * u64::from(c.width()) * u64::from(c.height()) * u64::from(c.sample_count())
         });
         let effects: u64 = self.effects.all().iter().map(|effect| effect.bytes()).sum();
-        let kinds = self.kinds.as_ref().map_or(0, Kinds::bytes);
+        let kinds = self.kinds.as_ref().map_or(0, KindAttachment::bytes);
         let environment = self.environment.as_deref().map_or(0, EnvironmentMap::bytes);
         copy + kinds + environment + self.froxels.as_ref().map_or(0, Froxels::bytes) + effects
     }
@@ -54,7 +54,7 @@ impl View {
             self.kinds = None;
         }
         if apart && self.kinds.is_none() {
-            self.kinds = Some(Kinds::new(&self.device.device, color.size()));
+            self.kinds = Some(KindAttachment::new(&self.device.device, color.size()));
         }
     }
 

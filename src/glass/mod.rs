@@ -15,6 +15,9 @@
 //! **Cost.** Two passes over the lattice a step, two small copies of the picture and one pass over it a frame; nothing
 //! without a windscreen or on dry glass. **Left out**: the splash of an impact, water pushed ahead of a blade, drops
 //! farther apart than a cell seeing each other.
+//!
+//! No `held.rs`: the water belongs to a view's own window (`state.rs`). No `candidates.rs`: it is drawn in one way, and no plan leaves it
+//! out.
 
 mod geometry;
 pub mod laws;
@@ -106,7 +109,7 @@ pub struct Windscreen {
     pub velocity_m_s: DVec3,
     /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]: drives the beads.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel that Welkin is not told of. What the context's
+    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel for which there is no box. What the context's
     /// boxes and maps keep off each part of the pane ([`crate::context::Context::set_shelters`],
     /// [`crate::context::Context::set_occluder_maps`]) is taken off besides; a box that holds the camera and ends within 3 m
     /// before the glass is the vehicle's own and keeps nothing off.

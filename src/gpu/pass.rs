@@ -1,4 +1,4 @@
-//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, or quads over a layer.
+//! The kinds of pass that effects are: a full-screen triangle with a fragment shader, quads over a layer, a mesh, or a compute shader.
 //!
 //! Tables, sky, fog and composition are all built of it, so they run on tier 0 as well. The vertex stage is
 //! `common/fullscreen.wgsl`.
@@ -144,6 +144,89 @@ pub fn quads(device: &Device, desc: &QuadsDesc<'_>) -> Result<wgpu::RenderPipeli
             })],
         }),
         multiview_mask: None,
+        cache: None,
+    }))
+}
+
+/// What a pipeline of a mesh is made of: triangles of vertices that a buffer brings, in place of what is there.
+pub(crate) struct MeshDesc<'a> {
+    /// Shader file below `shaders/`.
+    pub shader: &'a str,
+    /// Entry point of the vertices.
+    pub vertex: &'a str,
+    /// Of the pixels.
+    pub fragment: &'a str,
+    /// One layout a bind group, in order.
+    pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    /// What each vertex brings.
+    pub vertices: wgpu::VertexBufferLayout<'a>,
+    /// Of the target, of one sample.
+    pub format: wgpu::TextureFormat,
+}
+
+/// Makes the pipeline.
+///
+/// # Errors
+/// As [`fullscreen`].
+pub(crate) fn mesh(device: &Device, desc: &MeshDesc<'_>) -> Result<wgpu::RenderPipeline> {
+    let module = device.shader(desc.shader)?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(desc.shader),
+        bind_group_layouts: desc.layouts,
+        immediate_size: 0,
+    });
+    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(desc.shader),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(desc.vertex),
+            compilation_options: Default::default(),
+            buffers: &[Some(desc.vertices.clone())],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(desc.fragment),
+            compilation_options: Default::default(),
+            targets: &[Some(desc.format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}
+
+/// What a compute pipeline is made of.
+pub(crate) struct ComputeDesc<'a> {
+    /// Shader file below `shaders/`.
+    pub shader: &'a str,
+    /// Entry point.
+    pub entry: &'a str,
+    /// One layout a bind group, in order; none where the shader leaves a group out.
+    pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    /// Values of `override` constants.
+    pub constants: &'a [(&'a str, f64)],
+}
+
+/// Makes the pipeline.
+///
+/// # Errors
+/// As [`fullscreen`].
+pub(crate) fn compute(device: &Device, desc: &ComputeDesc<'_>) -> Result<wgpu::ComputePipeline> {
+    let module = device.shader(desc.shader)?;
+    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(desc.entry),
+        bind_group_layouts: desc.layouts,
+        immediate_size: 0,
+    });
+    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(desc.entry),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(desc.entry),
+        compilation_options: wgpu::PipelineCompilationOptions { constants: desc.constants, ..Default::default() },
         cache: None,
     }))
 }

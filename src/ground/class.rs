@@ -61,11 +61,11 @@ impl SurfaceClass {
 
     /// Whether the pattern of hollows that no heights are known of has puddles there.
     pub fn has_hollows(self) -> bool {
-        self.look().hollows > 0.0
+        self.surface_look().hollows > 0.0
     }
 
     /// How water shows on it; what is not specified is soil.
-    pub(crate) fn look(self) -> SurfaceLook {
+    pub(crate) fn surface_look(self) -> SurfaceLook {
         let look = |soaks, film, slope, relief_mm, most_albedo| SurfaceLook {
             soaks,
             film,
@@ -125,7 +125,7 @@ mod tests {
     fn only_what_is_paved_holds_puddles_of_its_own_and_leaves_never_mirror() {
         let with = |f: fn(&SurfaceClass) -> bool| SurfaceClass::ALL.into_iter().filter(f).collect::<Vec<_>>();
         assert_eq!(with(|c| c.has_hollows()), [SurfaceClass::Paved]);
-        assert_eq!(with(|c| c.look().film == 0.0), [SurfaceClass::Vegetation, SurfaceClass::Water]);
-        assert_eq!(SurfaceClass::Unspecified.look(), SurfaceClass::Soil.look());
+        assert_eq!(with(|c| c.surface_look().film == 0.0), [SurfaceClass::Vegetation, SurfaceClass::Water]);
+        assert_eq!(SurfaceClass::Unspecified.surface_look(), SurfaceClass::Soil.surface_look());
     }
 }

@@ -12,6 +12,9 @@
 //! light on it (a surface in shadow is taken for a darker one and darkens too much). In the display's spaces the
 //! shown colour is taken for the albedo, darkened, and the mirrored light added through the tone curve. Mirrors see the sky
 //! and level ground, no objects.
+//!
+//! No `passes.rs`: the composition draws the water, and `texture.rs` holds what it reads of the terrain. No `candidates.rs`: it is drawn in
+//! one way, and no plan leaves it out.
 
 mod basins;
 mod class;

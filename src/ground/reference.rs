@@ -69,13 +69,6 @@ pub fn glitter(slope: f64, disc2: f64, up: DVec3, facet: DVec3, to_eye: DVec3, t
     density * lit / (4.0 * area)
 }
 
-/// What is left of a mirror of this slope where its normal may be off by `error`, rad: all up to half of what its roughness hides,
-/// nothing from twice as much on.
-pub fn mirror_left(error: f64, slope: f64) -> f64 {
-    let x = ((error - 0.5 * slope) / (1.5 * slope)).clamp(0.0, 1.0);
-    1.0 - x * x * (3.0 - 2.0 * x)
-}
-
 /// Drops larger than [`RING_DIAMETER_MM`] that land on a square metre of level ground in a second.
 pub fn ring_drops_per_m2_s(sizes: &DropSizes) -> f64 {
     let slowest = sizes.speed_m_s(RING_DIAMETER_MM);

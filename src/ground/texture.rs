@@ -22,7 +22,7 @@ pub struct GroundTexture {
     /// context; filled anew by its next [`Context::ground_texture`](crate::context::Context::ground_texture) and by frames with
     /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE).
     pub texture: wgpu::Texture,
-    /// Another number whenever `texture` is another object: where another grid was set or loaded.
+    /// Incremented whenever `texture` is replaced: where another grid was set or loaded.
     pub generation: u64,
     /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
     pub revision: u64,

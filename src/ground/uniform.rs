@@ -218,8 +218,8 @@ impl WetScene<'_> {
 
     /// Of each class; the default's stands first. Nobody has marked what only the default says: it may be a hill.
     fn looks(&self) -> [SurfaceLook; CLASSES] {
-        let mut looks = SurfaceClass::ALL.map(SurfaceClass::look);
-        looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.look() };
+        let mut looks = SurfaceClass::ALL.map(SurfaceClass::surface_look);
+        looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.surface_look() };
         looks
     }
 

@@ -29,6 +29,10 @@
 //! # Error
 //! Frames of any rate add up to the same light within 1e-5 of it; drawn ones within 2 % (tests). Figures of light are those of [`light`];
 //! a single flash differs from the mean by a factor of 2 or so. The glow has no structure of the cloud in it.
+//!
+//! # What is not here
+//! No `reference.rs`: flashes, channels and their light are computed on the CPU, in f64; shaders draw them only. No `candidates.rs`: a
+//! flash is drawn in one way, and no plan leaves it out.
 
 pub mod channel;
 mod glow;

@@ -10,7 +10,6 @@ mod budget;
 mod choice;
 pub mod difference;
 pub mod estimate;
-pub mod front;
 mod gauge;
 mod governor;
 pub mod parts;

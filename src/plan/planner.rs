@@ -415,7 +415,7 @@ impl<U: Unseen> Planner<U> {
     }
 
     /// How much is drawn of what a part has at `rung` and not at the next one.
-    pub fn drawn(&self, part: usize, rung: usize) -> f32 {
+    pub fn drawn_share(&self, part: usize, rung: usize) -> f32 {
         1.0 - (self.plan.parts[part].depth - rung as f32).clamp(0.0, 1.0)
     }
 

@@ -22,7 +22,7 @@ pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {
 /// A way to draw rain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RainMethod {
-    /// What the library offers, as a view is told ([`crate::frame::View::set_rain`]).
+    /// What the library offers, as [`crate::frame::View::set_rain`] takes it.
     Offered(RainSettings),
     /// Level of detail of an older system, drawn from its list ([`SourceLod::drops`]): compared with only.
     Source(SourceLod),

@@ -78,7 +78,7 @@ pub(crate) struct Streaks {
 }
 
 impl Streaks {
-    /// For a camera and what it is told; the light is exposed, and passed through what the picture has been.
+    /// For a camera; the light is exposed, and passed through what the picture has been.
     pub fn new(
         (classes, wind_m_s): (&Classes, DVec3),
         shot: &StreakCamera<'_>,

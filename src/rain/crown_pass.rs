@@ -1,15 +1,13 @@
 //! Splashes where there are compute shaders: the place of each slot's crown is sought in the picture's depth once, not once a
 //! corner. The draw then only spreads corners.
 
-use super::{
-    cull_pass::{compute_pipeline, group_entry, listed_pipeline},
-    splash,
-};
+use super::{cull_pass::listed_pipeline, splash};
 use crate::{
     error::Result,
     gpu::{
         Device,
         bind::{self, Slot},
+        pass::{self, ComputeDesc},
     },
 };
 
@@ -21,7 +19,7 @@ pub(super) struct CrownPass {
     layout: wgpu::BindGroupLayout,
     crowns: wgpu::Buffer,
     group: wgpu::BindGroup,
-    /// For depth of one and of several samples, with and without rims of areas near, and occluder maps.
+    /// Indexed by whether depth has several samples, and whether area rims and occluder maps are in use.
     makes: [Option<wgpu::ComputePipeline>; 8],
     /// For either kind of depth.
     draws: [Option<wgpu::RenderPipeline>; 2],
@@ -47,7 +45,7 @@ impl CrownPass {
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("crowns"),
             layout: &layout,
-            entries: &[group_entry(0, &crowns)],
+            entries: &[bind::buffer(0, &crowns)],
         });
         Self { layout, crowns, group, makes: [const { None }; 8], draws: [None, None], counts }
     }
@@ -75,7 +73,8 @@ impl CrownPass {
             let flag = |name, on| (name, f64::from(u8::from(on)));
             let constants = [flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(&self.layout), Some(around)];
-            *make = Some(compute_pipeline(device, (shader, "make_crowns"), &layouts, &constants)?);
+            let desc = ComputeDesc { shader, entry: "make_crowns", layouts: &layouts, constants: &constants };
+            *make = Some(pass::compute(device, &desc)?);
         }
         let draw = &mut self.draws[usize::from(multi)];
         if draw.is_none() {

@@ -16,7 +16,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
-        pass::{self, QuadsDesc},
+        pass::{self, ComputeDesc, QuadsDesc},
     },
 };
 
@@ -133,7 +133,7 @@ impl CullPass {
                     block(8, STARTS[3], size_of::<LocalUniform>() - COLUMNS_BYTES),
                 ],
             ),
-            unstepped: group(&source, &[group_entry(0, &eyes), group_entry(1, &states)]),
+            unstepped: group(&source, &[bind::buffer(0, &eyes), bind::buffer(1, &states)]),
             layouts: [frame, found, streaks, source],
             found: make("found", FOUND_BYTES, wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC),
             list: None,
@@ -233,7 +233,7 @@ impl CullPass {
         };
         let blocks = make("cull", blocks * BLOCK_BYTES, wgpu::BufferUsages::empty());
         let streaks = make("streaks", room * STREAK_BYTES, wgpu::BufferUsages::VERTEX);
-        let entries = [group_entry(0, &blocks), group_entry(1, &streaks), group_entry(2, &self.found)];
+        let entries = [bind::buffer(0, &blocks), bind::buffer(1, &streaks), bind::buffer(2, &self.found)];
         let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("cull"), layout, entries })
         };
@@ -248,11 +248,15 @@ impl CullPass {
         let mark = &mut self.marks[usize::from(states.is_some())];
         if mark.is_none() {
             let layouts = [Some(frame), Some(found), None, Some(source)];
-            *mark = Some(compute_pipeline(device, ("rain/cull.wgsl", "mark"), &layouts, &[stepped])?);
+            let (layouts, constants) = (&layouts, &[stepped]);
+            let desc = ComputeDesc { shader: "rain/cull.wgsl", entry: "mark", layouts, constants };
+            *mark = Some(pass::compute(device, &desc)?);
         }
         if self.order.is_none() {
             let layouts = [Some(frame), Some(found)];
-            self.order = Some(compute_pipeline(device, ("rain/cull.wgsl", "order"), &layouts, &[])?);
+            let (layouts, constants) = (&layouts, &[]);
+            let desc = ComputeDesc { shader: "rain/cull.wgsl", entry: "order", layouts, constants };
+            self.order = Some(pass::compute(device, &desc)?);
         }
         let make = &mut self.makes[key([states.is_some(), areas, maps])];
         if make.is_none() {
@@ -260,7 +264,9 @@ impl CullPass {
             // Mixtures take each column by itself: what lies over what is in their order.
             let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(streaks), Some(around), Some(source)];
-            *make = Some(compute_pipeline(device, ("rain/cull_streaks.wgsl", "make_streaks"), &layouts, &constants)?);
+            let (layouts, constants) = (&layouts, &constants);
+            let desc = ComputeDesc { shader: "rain/cull_streaks.wgsl", entry: "make_streaks", layouts, constants };
+            *make = Some(pass::compute(device, &desc)?);
         }
         Ok(())
     }
@@ -268,32 +274,6 @@ impl CullPass {
 
 fn key(bits: [bool; 3]) -> usize {
     bits.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit))
-}
-
-pub(super) fn group_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
-}
-
-pub(super) fn compute_pipeline(
-    device: &Device,
-    (shader, entry): (&str, &str),
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    constants: &[(&str, f64)],
-) -> Result<wgpu::ComputePipeline> {
-    let module = device.shader(shader)?;
-    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry),
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry),
-        layout: Some(&layout),
-        module: &module,
-        entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-        cache: None,
-    }))
 }
 
 /// A draw of what compute shaders have made: what each instance brings to which entry points, in how many bytes.

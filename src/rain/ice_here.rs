@@ -21,14 +21,14 @@ impl Ice {
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }
 
-    /// Whether any falls that a view of these settings draws.
-    pub fn falls(&self, settings: &RainSettings) -> bool {
+    /// Whether a view of these settings draws any.
+    pub fn is_drawn(&self, settings: &RainSettings) -> bool {
         self.here.is_some() && settings.model != RainModel::Veil
     }
 
     /// Those that a view of these settings draws, if any; as many as it may draw drops.
     pub fn stones(&mut self, scene: &Scene, settings: &RainSettings, most: u32) -> Option<Stones> {
-        let falling = self.here.filter(|_| self.falls(settings))?;
+        let falling = self.here.filter(|_| self.is_drawn(settings))?;
         let air = &scene.conditions.air;
         let factor = drops::factor_in(air, air.station_altitude_m);
         match &self.counted {

@@ -65,8 +65,8 @@ impl Local {
         local
     }
 
-    /// Whether any of it is drawn as drops.
-    pub fn falls(&self, field: &AreaField) -> bool {
+    /// Whether drops are in it.
+    pub fn has_drops(&self, field: &AreaField) -> bool {
         let wet = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h > 0.0;
         match self {
             Self::Pure(f) => wet(f),
@@ -210,7 +210,7 @@ mod tests {
             let own = FallingLayer::NONE;
             let field = AreaField::new(std::iter::once(shaft), eye, &own, 0.0);
             let local = Local::new(&dry, &field, eye, 4.0);
-            (local, local.falls(&field))
+            (local, local.has_drops(&field))
         };
         assert_eq!(at(0.0), (Local::Pure(area.falling()), true));
         assert_eq!(at(900.0), (Local::Mixed(dry, 1), true));

@@ -7,6 +7,9 @@
 //! says what all of it is worth. Streaks make a layer of their own, which the composition puts before the picture. What is too
 //! small or too far is the fog's extinction; under a rain area of its own ([`RainArea`]) it is a column of rain, whose
 //! drops fall thinned by the area's rim near the camera and as a veil beyond.
+//!
+//! No `reference.rs`: each file has the f64 side of its own shader, and [`probe`] asks the shaders. No `held.rs`: drops follow from seed
+//! and time; those that are stepped ([`RainModel::Integrated`]) belong to a view and are not saved.
 
 mod area_pass;
 pub mod candidates;

@@ -15,6 +15,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        pass::{self, ComputeDesc},
     },
     wind::WindGrid,
 };
@@ -219,21 +220,13 @@ fn step_pipeline(
     layouts: &[wgpu::BindGroupLayout; 3],
     grid: bool,
 ) -> Result<wgpu::ComputePipeline> {
-    let module = device.shader("rain/step.wgsl")?;
-    let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("step"),
-        bind_group_layouts: &[Some(&layouts[0]), Some(&layouts[1])],
-        immediate_size: 0,
-    });
-    let constants = [("GRID", f64::from(u8::from(grid)))];
-    Ok(device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("step"),
-        layout: Some(&layout),
-        module: &module,
-        entry_point: Some("step_drops"),
-        compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-        cache: None,
-    }))
+    let desc = ComputeDesc {
+        shader: "rain/step.wgsl",
+        entry: "step_drops",
+        layouts: &[Some(&layouts[0]), Some(&layouts[1])],
+        constants: &[("GRID", f64::from(u8::from(grid)))],
+    };
+    pass::compute(device, &desc)
 }
 
 #[cfg(test)]

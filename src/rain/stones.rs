@@ -61,6 +61,31 @@ fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
 
+/// What the stones of one class have in common.
+struct StoneClass {
+    stone: Stone,
+    diameter_mm: f64,
+    speed_m_s: f64,
+    /// In a cubic metre of air.
+    number_per_m3: f64,
+}
+
+impl StoneClass {
+    fn new(sizes: &StoneSizes, i: usize) -> Self {
+        let stone = Stone::ALL[i / CLASSES];
+        let (low, high) = stone.range_mm();
+        let edge = |k: usize| low * libm::pow(high / low, k as f64 / CLASSES as f64);
+        let (a, b) = (edge(i % CLASSES), edge(i % CLASSES + 1));
+        let diameter_mm = (a * b).sqrt();
+        Self {
+            stone,
+            diameter_mm,
+            speed_m_s: sizes.speed_m_s(stone, diameter_mm),
+            number_per_m3: sizes.number_between(stone, a, b),
+        }
+    }
+}
+
 /// What the air and the ground round a camera hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stones {
@@ -84,14 +109,7 @@ impl Stones {
     pub fn new(falling: &Falling, speed_factor: f64, most: u32) -> Self {
         let sizes = StoneSizes::new(falling, speed_factor);
         let volume = SIDE_M.powi(3);
-        let class = |i: usize| {
-            let stone = Stone::ALL[i / CLASSES];
-            let (low, high) = stone.range_mm();
-            let edge = |k: usize| low * libm::pow(high / low, k as f64 / CLASSES as f64);
-            let (a, b) = (edge(i % CLASSES), edge(i % CLASSES + 1));
-            let d = (a * b).sqrt();
-            (stone, d, sizes.speed_m_s(stone, d), sizes.number_between(stone, a, b))
-        };
+        let classes: [StoneClass; STONE_CLASSES] = std::array::from_fn(|i| StoneClass::new(&sizes, i));
         let mut s = Self {
             table: [[0.0; 4]; STONE_CLASSES],
             upto: [[0; SHELLS]; STONE_CLASSES],
@@ -105,7 +123,7 @@ impl Stones {
         let mut left = f64::from(most);
         for kind in [Stone::Hail, Stone::Pellet] {
             let own = kind as usize * CLASSES..(kind as usize + 1) * CLASSES;
-            let number: f64 = own.clone().map(|i| class(i).3 * volume).sum();
+            let number: f64 = classes[own.clone()].iter().map(|c| c.number_per_m3 * volume).sum();
             let all = |shell: usize| number * f64::from(1u32 << (3 * shell));
             let fits = |last: &usize| all(*last) <= MOST_WEIGHT * left / (*last + 1) as f64;
             let last = (1..SHELLS).rev().find(fits).unwrap_or(0);
@@ -119,20 +137,20 @@ impl Stones {
                 s.reach[kind as usize].0 = 0.5 * side_m(shell);
                 for i in own.clone() {
                     s.weight[i][shell] = (1.0 / share) as f32;
-                    s.upto[i][shell] = (all(shell) * share * 256.0 * class(i).3 * volume / number) as u32;
+                    s.upto[i][shell] = (all(shell) * share * 256.0 * classes[i].number_per_m3 * volume / number) as u32;
                 }
             }
         }
-        s.count(class);
+        s.count(&classes);
         s
     }
 
     /// Adds up numbers of classes that are in 256ths so far, and what lands.
-    fn count(&mut self, class: impl Fn(usize) -> (Stone, f64, f64, f64)) {
+    fn count(&mut self, classes: &[StoneClass; STONE_CLASSES]) {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE * SIDE);
         let mut landings = [0.0; STONE_CLASSES];
         for i in (0..STONE_CLASSES).rev() {
-            let (stone, d, speed, number) = class(i);
+            let StoneClass { stone, diameter_mm: d, speed_m_s: speed, number_per_m3: number } = classes[i];
             landings[i] = (number * speed).min(room - self.landings_per_m2_s);
             self.landings_per_m2_s += landings[i];
             self.left_out_per_m2_s += number * speed - landings[i];

@@ -74,6 +74,27 @@ fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     }
 }
 
+/// What there is of rain and ice before a picture.
+#[derive(Clone, Copy)]
+struct RainPresence {
+    /// Drops near the camera, as streaks or cones.
+    drops: bool,
+    /// Hail and ice pellets near the camera.
+    stones: bool,
+    /// Columns of rain areas.
+    columns: bool,
+}
+
+impl RainPresence {
+    fn is_near(self) -> bool {
+        self.drops || self.stones
+    }
+
+    fn is_any(self) -> bool {
+        self.is_near() || self.columns
+    }
+}
+
 impl RainView {
     pub fn new(device: &Device, settings: RainSettings) -> Self {
         Self {
@@ -116,19 +137,19 @@ impl RainView {
         }
     }
 
-    /// Whether drops fall near the camera, as far as the settings draw them.
-    pub fn has_drops(&self) -> bool {
-        self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.falls(&self.field))
+    /// What falls that the settings draw before the picture.
+    fn presence(&self) -> RainPresence {
+        RainPresence {
+            drops: self.settings.model != RainModel::Veil && self.local.is_some_and(|l| l.has_drops(&self.field)),
+            stones: self.ice.is_drawn(&self.settings),
+            columns: !self.field.columns.is_empty(),
+        }
     }
 
-    /// Whether drops or cones are drawn.
-    fn draws_drops(&self) -> bool {
-        self.has_drops() && self.shares[0] > 0.0
-    }
-
-    /// Whether drops, cones or stones are drawn.
-    fn draws_near(&self) -> bool {
-        self.draws_drops() || self.ice.falls(&self.settings)
+    /// What of it the plan keeps in this frame.
+    fn kept(&self) -> RainPresence {
+        let presence = self.presence();
+        RainPresence { drops: presence.drops && self.shares[0] > 0.0, ..presence }
     }
 
     /// How many drops are drawn round the camera.
@@ -145,19 +166,9 @@ impl RainView {
         }
     }
 
-    /// Whether anything falls that the settings draw before the picture.
-    pub fn is_visible(&self) -> bool {
-        self.has_drops() || self.ice.falls(&self.settings) || !self.field.columns.is_empty()
-    }
-
-    /// Whether anything of it is drawn in this frame.
-    pub fn is_drawn(&self) -> bool {
-        self.draws_near() || !self.field.columns.is_empty()
-    }
-
     /// Whether the plan decides how much of the rain is drawn: where no model was asked for.
     pub fn is_planned(&self) -> bool {
-        self.settings.model == RainModel::Automatic && self.has_drops()
+        self.settings.model == RainModel::Automatic && self.presence().drops
     }
 
     /// Sets the drawn share of all rain, and the share of near rain drawn as single drops.
@@ -295,8 +306,8 @@ impl RainView {
         }
     }
 
-    /// What cones are made for: parts of each rain as at the camera itself, and a little of all that is near, of which there may be
-    /// none at the camera.
+    /// The rain that cones are made for: that at the camera, plus a small share of each rain area nearby, so that cones exist before the
+    /// camera enters it.
     fn falling_at(&mut self, device: &Device, scene: &Scene) -> Classes {
         let weather = self.own;
         let (base, bits) = match self.local.unwrap_or(Local::Pure(weather)) {
@@ -356,7 +367,7 @@ impl RainView {
         over: bool,
         to: &mut Recording<'_>,
     ) -> Result<RainReport> {
-        if !self.draws_near() {
+        if !self.kept().is_near() {
             return Ok(RainReport::default());
         }
         let (device, now, frame, scene) = (to.device, shot.now, shot.frame, &shot.now.scene);
@@ -369,7 +380,7 @@ impl RainView {
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
         // Hail may fall alone.
-        let wet = self.draws_drops();
+        let wet = self.kept().drops;
         block.shells = if wet && near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
         let most = self.settings.most_on(device);
@@ -428,11 +439,11 @@ impl RainView {
 
 impl DrawnEffect for RainView {
     fn stages(&self) -> Stages {
-        if self.is_visible() { Stages::PARTICLES } else { Stages(0) }
+        if self.presence().is_any() { Stages::PARTICLES } else { Stages(0) }
     }
 
     fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
-        if stages.has(Stages::PARTICLES) && self.is_drawn() {
+        if stages.has(Stages::PARTICLES) && self.kept().is_any() {
             let _ = self.layer(device, color);
         }
     }
@@ -446,10 +457,10 @@ impl DrawnEffect for RainView {
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         self.set_shares([1, 0].map(|step| shot.share(&candidates::RAIN, step)));
         to.block.drawn[3] = 1.0;
-        if self.is_visible() {
+        if self.presence().is_any() {
             (to.block.drops, to.block.drawn[3]) = self.hidden(shot.device, shot.now);
         }
-        if self.is_drawn() {
+        if self.kept().is_any() {
             let layer = self.layer(shot.device, shot.color.texture).clone();
             to.set_texture(Texture::Before, Some(layer));
         } else {

@@ -96,7 +96,7 @@ struct Work {
 }
 
 /// The table that passes draw and read under a name: that of one triple where there are several.
-fn drawn<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a Table> {
+fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a Table> {
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
@@ -229,7 +229,7 @@ impl Kit {
     }
 
     fn build_of(&self, ticket: Weak<Ticket>, set: Arc<TableSet>, scratch: Scratch) -> Build {
-        let view = |name: Name| drawn(&set, &scratch, name).map_or(&self.nothing.view, |t| &t.view);
+        let view = |name: Name| table_named(&set, &scratch, name).map_or(&self.nothing.view, |t| &t.view);
         let level = self.level(set.detail);
         let reads = level.passes.iter().map(|p| self.builder.tables_group(&self.device, p.reads.map(view))).collect();
         let triple = |air: &wgpu::Buffer| {
@@ -327,7 +327,7 @@ impl Kit {
             let pass = &level.passes[index];
             let Some(pipeline) = self.builder.pipeline(pass.kind) else { continue };
             let view = |name: &Name| {
-                drawn(&build.set, &build.scratch, *name).map(|t| wgpu::RenderPassColorAttachment {
+                table_named(&build.set, &build.scratch, *name).map(|t| wgpu::RenderPassColorAttachment {
                     view: &t.view,
                     depth_slice: None,
                     resolve_target: None,
@@ -352,7 +352,7 @@ impl Kit {
     /// Puts a triple's sources below those before it, and adds its light to theirs. With one triple they are in place.
     fn record_part(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize) {
         let (Some(parts), Some(light)) = (&self.parts, &build.triples[triple].1) else { return };
-        let Some(from) = drawn(&build.set, &build.scratch, Name::Sources) else { return };
+        let Some(from) = table_named(&build.set, &build.scratch, Name::Sources) else { return };
         let mut to = build.set.result(Name::Sources).texture.as_image_copy();
         to.origin.y = triple as u32 * from.texture.height();
         encoder.copy_texture_to_texture(from.texture.as_image_copy(), to, from.texture.size());

@@ -47,6 +47,9 @@
 //! # Models
 //! [`SkyModel`] names them with their errors. Transmittance is a closed form (`columns_along` in `shaders/sky/ray.wgsl`),
 //! not a table.
+//!
+//! # What is not here
+//! No `held.rs`: the tables follow from planet, place and lights, so that there is no state to lead through time or to save.
 
 mod cache;
 pub mod candidates;

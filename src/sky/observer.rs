@@ -28,6 +28,8 @@ pub struct Lamp {
     pub angular_radius: f64,
     /// The look of its disc.
     pub disc: Disc,
+    /// Whether its light in the air is drawn; else only its disc is, for next to nothing. Default true.
+    pub lights_air: bool,
 }
 
 impl Lamp {
@@ -38,6 +40,7 @@ impl Lamp {
             irradiance: planet.solar_irradiance,
             angular_radius: planet.sun_angular_radius_deg.to_radians(),
             disc: Disc::Sun,
+            lights_air: true,
         }
     }
 
@@ -75,8 +78,8 @@ impl Lamp {
         let limb = planet.wavelengths_nm.map(limb_exponent);
         let (kind, limb, lit_from, scale) = match self.disc {
             // The mean of mu^a over the disc is 2/(2 + a).
-            Disc::Sun => (0, limb, [0.0; 3], shown * (2.0 + limb[1]) / 2.0),
-            Disc::Moon { lit_from } => (1, [1.0; 3], lit_from, shown / moon_mean(&self.toward, &lit_from)),
+            Disc::Sun => (0, limb, [0.0; 3], limb.map(|a| shown * (2.0 + a) / 2.0)),
+            Disc::Moon { lit_from } => (1, [1.0; 3], lit_from, [shown / moon_mean(&self.toward, &lit_from); 3]),
         };
         LampUniform {
             toward: f(self.toward),
@@ -84,12 +87,14 @@ impl Lamp {
             irradiance: f(self.irradiance),
             kind,
             limb: f(limb),
-            disc_scale: scale as f32,
+            inverse_radius: (1.0 / self.angular_radius.max(1e-6)) as f32,
             lit_from: f(lit_from),
             unused: 0.0,
             level: level.map(|x| x as f32),
             layer,
             unused_b: 0,
+            disc: std::array::from_fn(|k| (self.irradiance[k] * scale[k]) as f32),
+            unused_c: 0.0,
         }
     }
 }

@@ -23,7 +23,7 @@ use crate::planet::spectral::parts;
 pub(crate) struct TableSet {
     pub planet: Planet,
     pub detail: Detail,
-    /// Another number for each set.
+    /// Unique to each set.
     pub id: u64,
     /// The air at each triple of wavelengths.
     pub airs: Vec<wgpu::Buffer>,

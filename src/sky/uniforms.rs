@@ -209,12 +209,14 @@ pub(crate) struct LampUniform {
     pub irradiance: [f32; 3],
     pub kind: u32,
     pub limb: [f32; 3],
-    pub disc_scale: f32,
+    pub inverse_radius: f32,
     pub lit_from: [f32; 3],
     pub unused: f32,
     pub level: [f32; 2],
     pub layer: u32,
     pub unused_b: u32,
+    pub disc: [f32; 3],
+    pub unused_c: f32,
 }
 
 /// `SkyView` of `sky/lookup.wgsl`.
@@ -247,7 +249,7 @@ mod tests {
             (&lookup, "SkyAir", size_of::<AirUniform>(), 20),
             (&lookup, "SkyDims", size_of::<DimsUniform>(), 20),
             (&lookup, "SkyEdges", size_of::<EdgesUniform>(), 4),
-            (&lookup, "SkyLamp", size_of::<LampUniform>(), 11),
+            (&lookup, "SkyLamp", size_of::<LampUniform>(), 13),
             (&lookup, "SkyView", size_of::<ViewUniform>(), 8),
             (&build, "SkyJob", size_of::<JobUniform>(), 4),
             (&observer, "SkyObserver", size_of::<ObserverUniform>(), 5),
@@ -265,6 +267,7 @@ mod tests {
         assert_eq!(at("SkyAir", "mie_extinction"), offset_of!(AirUniform, mie_extinction));
         assert_eq!(at("SkyLamp", "lit_from"), offset_of!(LampUniform, lit_from));
         assert_eq!(at("SkyLamp", "level"), offset_of!(LampUniform, level));
+        assert_eq!(at("SkyLamp", "disc"), offset_of!(LampUniform, disc));
         assert_eq!(at("SkyView", "edges"), offset_of!(ViewUniform, edges));
         assert_eq!(at("SkyView", "march_panels"), offset_of!(ViewUniform, march_panels));
         assert_eq!(at("SkyView", "lamps"), offset_of!(ViewUniform, lamps));

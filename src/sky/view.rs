@@ -89,6 +89,8 @@ impl DrawnEffect for SkyView {
         to.between("AIR", 1.0, yes(air > 0.0));
         to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
         to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
+        to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
+        to.constant("SUN_THEN_MOON", 1.0, 1.0);
         (to.block.drawn[0], to.block.drawn[2]) = (air, sky);
         to.tables = Some((self.volume.layout().clone(), self.volume.bind_group().clone()));
         Ok(())
@@ -99,6 +101,7 @@ impl Observer {
     /// A camera in a scene.
     pub(crate) fn of(scene: &Scene, exact: bool) -> Self {
         let lamp = |light: &Light, disc| Lamp {
+            lights_air: light.matters,
             toward: light.direction.to_array(),
             irradiance: light.spectrum,
             angular_radius: light.angular_radius,
@@ -107,11 +110,21 @@ impl Observer {
         let moon = lamp(&scene.moon, Disc::Moon { lit_from: moon_lit_from(&scene.moon).to_array() });
         Self {
             altitude_m: scene.place.altitude_m.clamp(-1e4, 1e8),
-            lamps: [Some(lamp(&scene.sun, Disc::Sun)), scene.moon.matters.then_some(moon)],
+            lamps: [Some(lamp(&scene.sun, Disc::Sun)), moon_shows(scene).then_some(moon)],
             refraction: 1.0,
             exact,
         }
     }
+}
+
+/// Sine of the angle below the horizon at which nothing of the moon's disc shows any more.
+const BELOW_HORIZON: f64 = 0.02;
+
+/// Whether the moon's disc may stand above the horizon.
+fn moon_shows(scene: &Scene) -> bool {
+    let (radius, h) = (scene.planet.bottom_radius_m, scene.place.altitude_m.max(0.0));
+    let horizon = -(h * (h + 2.0 * radius)).sqrt() / (radius + h);
+    scene.moon.matters || scene.moon.apparent.z > horizon - BELOW_HORIZON
 }
 
 /// The sun's direction as the moon's face sees it: in the plane of moon and bright limb, at the phase's angle.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Zeroable as _, bytes_of};
 
 use super::kit::Kit;
-use super::observer::{Lamp, Observer};
+use super::observer::Observer;
 use super::passes::{TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
@@ -157,6 +157,7 @@ pub struct SkyVolume {
     /// Made when first something fades in.
     fade: Option<Box<Fade>>,
     written: ViewUniform,
+    discs: u32,
 }
 
 impl SkyVolume {
@@ -188,6 +189,7 @@ impl SkyVolume {
             drawn: [None; LAMPS],
             fade: None,
             written,
+            discs: 0,
         })
     }
 
@@ -201,9 +203,14 @@ impl SkyVolume {
         &self.kit.settings
     }
 
-    /// Lamps that send light, as of the last [`SkyVolume::prepare`].
+    /// Lamps that light the air, as of the last [`SkyVolume::prepare`].
     pub(crate) fn lamp_count(&self) -> u32 {
         self.written.lamp_count
+    }
+
+    /// Lamps of which discs are drawn: those, and behind them those that show nothing else.
+    pub(crate) fn disc_count(&self) -> u32 {
+        self.discs
     }
 
     /// Layout of group 1 of every shader that includes `sky/lookup.wgsl`; equal for all volumes of a device.
@@ -236,10 +243,10 @@ impl SkyVolume {
         observer.check()?;
         let air = tables.air();
         let planet = tables.planet().copied().unwrap_or_else(super::Planet::earth);
-        // Lamps that matter, and the altitude that all their tables were drawn for.
-        let mut lit = observer.lamps.iter().flatten().filter(|l| l.is_lit());
-        let lamps: [Option<&Lamp>; LAMPS] = std::array::from_fn(|_| lit.next());
-        let lamps = || lamps.iter().flatten().copied();
+        // Lamps that light the air come first, and tables are drawn for these alone; all tables are of one altitude.
+        let lit = |in_air: bool| observer.lamps.iter().flatten().filter(move |l| l.is_lit() && l.lights_air == in_air);
+        let lamps = || lit(true);
+        let discs = || lit(true).chain(lit(false));
         let mu_s: [Option<f64>; LAMPS] = std::array::from_fn(|i| lamps().nth(i).map(|l| l.toward[2]));
         let drawn = match tables.shown().cloned() {
             Some(shown) => self.update_lamps(encoder, tables, &shown, observer, mu_s)?,
@@ -256,9 +263,10 @@ impl SkyVolume {
             march_panels: self.kit.settings.march_cells.div_ceil(4),
             lamps: [LampUniform::zeroed(); LAMPS],
         };
-        for (i, lamp) in lamps().enumerate() {
+        for (i, lamp) in discs().enumerate() {
             view.lamps[i] = lamp.uniform(&planet, LAYERS * i as u32);
         }
+        self.discs = discs().count() as u32;
         if view != self.written {
             self.device.queue.write_buffer(&self.view, 0, bytes_of(&view));
             self.written = view;

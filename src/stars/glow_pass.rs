@@ -1,7 +1,7 @@
 //! The glow on the GPU: a ball of directions with zodiacal light and starlight at its corners, to which the shader adds airglow and air.
 
 use bytemuck::Zeroable as _;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 use super::{
     galaxy::{equator_to_galactic, unresolved_s10},
@@ -14,6 +14,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        pass::{self, MeshDesc},
     },
 };
 
@@ -56,7 +57,7 @@ struct Corner {
 
 /// `GlowUniform` of `shaders/stars/glow.wgsl`.
 #[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 struct GlowUniform {
     clip: [[f32; 4]; 4],
     to_world: [[f32; 4]; 3],
@@ -90,6 +91,46 @@ pub(super) struct GlowPass {
     pipeline: wgpu::RenderPipeline,
     /// The sun's place in J2000.0 that the corners' zodiacal light is of.
     sun: Option<DVec3>,
+    triangles: VisibleTriangles,
+    written: Option<GlowUniform>,
+}
+
+/// The triangles of the ball that a picture may show. A software driver pays for all that it is given, most of which stand elsewhere.
+struct VisibleTriangles {
+    /// Of the ball, in J2000.0.
+    directions: Vec<Vec3>,
+    all: Vec<[u16; 3]>,
+    /// Beyond which sides of the picture each corner lies, a bit a side.
+    beyond: Vec<u8>,
+    /// Corners of those that may show; one more where their number is odd, as uploads are of four bytes.
+    shown: Vec<u16>,
+    count: u32,
+}
+
+impl VisibleTriangles {
+    fn new(directions: Vec<Vec3>, all: Vec<[u16; 3]>) -> Self {
+        let (beyond, shown) = (vec![0; directions.len()], Vec::with_capacity(3 * all.len() + 1));
+        Self { directions, all, beyond, shown, count: 0 }
+    }
+
+    /// Finds those of a picture: a triangle whose corners all lie beyond one side is not in it.
+    fn find(&mut self, view: &StarView<'_>) {
+        let rows = [0, 1, 3].map(|i| (view.heavens.to_world.transpose() * view.clip.row(i).truncate()).as_vec3());
+        for (beyond, direction) in self.beyond.iter_mut().zip(&self.directions) {
+            let [x, y, w] = rows.map(|row| row.dot(*direction));
+            *beyond = [x > w, -x > w, y > w, -y > w].into_iter().fold(0, |bits, out| 2 * bits + u8::from(out));
+        }
+        self.shown.clear();
+        for triangle in &self.all {
+            if triangle.iter().fold(15, |bits, corner| bits & self.beyond[usize::from(*corner)]) == 0 {
+                self.shown.extend(triangle);
+            }
+        }
+        self.count = self.shown.len() as u32;
+        if self.shown.len() % 2 == 1 {
+            self.shown.push(0);
+        }
+    }
 }
 
 impl GlowPass {
@@ -109,8 +150,9 @@ impl GlowPass {
         };
         let block = buffer("glow", size_of::<GlowUniform>(), U::UNIFORM);
         let list = indices();
-        let indices = buffer("glow", size_of::<u16>() * list.len(), U::INDEX);
-        device.queue.write_buffer(&indices, 0, bytemuck::cast_slice(&list));
+        let indices = buffer("glow", (size_of::<u16>() * list.len()).next_multiple_of(4), U::INDEX);
+        let directions = corners(DVec3::X).iter().map(|corner| Vec3::from_array(corner.direction)).collect();
+        let triangles = VisibleTriangles::new(directions, list.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect());
         let corners = buffer("glow", size_of::<Corner>() * ROWS * COLUMNS, U::VERTEX);
         let slots = [(0, Slot::Uniform(size_of::<GlowUniform>()))];
         let layout = bind::layout(&device.device, "glow", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
@@ -120,13 +162,14 @@ impl GlowPass {
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: block.as_entire_binding() }],
         });
         let pipeline = pipeline(device, &layout, format)?;
-        Ok(Self { block, corners, indices, group, pipeline, sun: None })
+        Ok(Self { block, corners, indices, group, pipeline, sun: None, triangles, written: None })
     }
 
-    /// Brings everything up for a draw of `sky` as `view` sees it.
-    pub fn prepare(&mut self, device: &Device, sky: &NightSky, view: &StarView<'_>, dusk: &Dusk) {
+    /// Brings everything up for a draw of `sky` as `view` sees it; whether it is another draw than the last one.
+    pub fn prepare(&mut self, device: &Device, sky: &NightSky, view: &StarView<'_>, dusk: &Dusk) -> bool {
         let sun = view.heavens.sun;
-        if self.sun.is_none_or(|s| s.angle_between(sun) > STALE_RAD) {
+        let is_stale = self.sun.is_none_or(|s| s.angle_between(sun) > STALE_RAD);
+        if is_stale {
             self.sun = Some(sun);
             device.queue.write_buffer(&self.corners, 0, bytemuck::cast_slice(&corners(sun)));
         }
@@ -149,7 +192,14 @@ impl GlowPass {
             zenith_power: sky.zenith_depth.map(|d| (-d * std::f64::consts::LOG2_E) as f32),
             ..GlowUniform::zeroed()
         };
+        if self.written == Some(block) {
+            return is_stale;
+        }
+        self.written = Some(block);
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+        self.triangles.find(view);
+        device.queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(&self.triangles.shown));
+        true
     }
 
     /// Draws what was prepared in place of what is there. Sets group 0, vertex buffer 0 and the index buffer.
@@ -158,7 +208,7 @@ impl GlowPass {
         pass.set_bind_group(0, &self.group, &[]);
         pass.set_vertex_buffer(0, self.corners.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..(self.indices.size() / 2) as u32, 0, 0..1);
+        pass.draw_indexed(0..self.triangles.count, 0, 0..1);
     }
 
     /// Bytes on the GPU.
@@ -210,45 +260,33 @@ fn pipeline(
     layout: &wgpu::BindGroupLayout,
     format: wgpu::TextureFormat,
 ) -> Result<wgpu::RenderPipeline> {
-    let module = device.shader("stars/glow.wgsl")?;
     let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x2];
-    let corners = wgpu::VertexBufferLayout {
-        array_stride: size_of::<Corner>() as u64,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &attributes,
-    };
-    let groups = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("glow"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("glow"),
-        layout: Some(&groups),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("glow_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(corners)],
+    let desc = MeshDesc {
+        shader: "stars/glow.wgsl",
+        vertex: "glow_vertex",
+        fragment: "glow_fragment",
+        layouts: &[Some(layout)],
+        vertices: wgpu::VertexBufferLayout {
+            array_stride: size_of::<Corner>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
         },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("glow_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    }))
+        format,
+    };
+    pass::mesh(device, &desc)
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DMat4;
+
     use super::*;
-    use crate::gpu::shader::assert_layout;
+    use crate::{
+        almanac::{Utc, celestial::direction},
+        gpu::shader::assert_layout,
+        scene::{Camera, DepthMapping, Place, ViewRays},
+        stars::{Heavens, StarSettings},
+    };
 
     /// At 30 degrees from the sun the zodiacal light halves within 10 degrees.
     #[test]
@@ -271,6 +309,50 @@ mod tests {
         let (usual, most) = (off[off.len() * 95 / 100], off[off.len() - 1]);
         println!("of the glow over airglow straight up: 95 % within {usual:.4}, all within {most:.4}");
         assert!(usual < 0.03 && most < 0.15, "{usual} {most}");
+    }
+
+    /// Each ray of a picture meets a triangle of those that were found for it, wherever the camera looks.
+    #[test]
+    fn triangles_that_a_picture_shows_are_kept_and_most_others_are_not() {
+        let place = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
+        let heavens = Heavens::at(Utc(1.7e9), &place, &StarSettings::default()).unwrap();
+        let directions = corners(DVec3::X).iter().map(|c| Vec3::from_array(c.direction)).collect();
+        let mut triangles =
+            VisibleTriangles::new(directions, indices().chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect());
+        for (azimuth, elevation) in [(0.0, 5.0), (100.0, 40.0), (190.0, 89.0), (280.0, -20.0), (350.0, 60.0)] {
+            let camera = Camera::look_to(DVec3::ZERO, direction(azimuth, elevation), DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
+            let mapping = DepthMapping { reversed: true, ..Default::default() };
+            let rays = ViewRays::new(&camera, &mapping).unwrap();
+            let view = StarView {
+                heavens: &heavens,
+                clip: camera.projection * DMat4::from_mat3(camera.rotation()),
+                rays: &rays,
+                size: [160, 90],
+                y_sign: 1.0,
+                zenith_depth: [0.1; 3],
+                transmittance: 1.0,
+                air_density: 1.0,
+                horizon_deg: 0.0,
+                scale: 1.0,
+                faintest_lux: 0.0,
+            };
+            triangles.find(&view);
+            let kept = &triangles.shown[..triangles.count as usize];
+            assert!(kept.len() < 3 * triangles.all.len() / 3, "{} of {}", kept.len() / 3, triangles.all.len());
+            let to_sphere = (view.clip * DMat4::from_mat3(heavens.to_world)).inverse();
+            for i in 0..40 {
+                let at = DVec3::new(f64::from(i % 8) / 3.6 - 0.97, f64::from(i / 8) / 2.1 - 0.95, 0.5);
+                let ray = to_sphere.project_point3(at).as_vec3();
+                let is_met = kept.chunks_exact(3).any(|t| {
+                    let [a, b, c] = [0, 1, 2].map(|k| triangles.directions[usize::from(t[k])]);
+                    let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|n| n.dot(ray));
+                    // Seen from within or from without, and a rounding beyond an edge; not on the other side of the ball.
+                    let is_inside = sides.iter().all(|s| *s > -1e-6) || sides.iter().all(|s| *s < 1e-6);
+                    is_inside && (a + b + c).dot(ray) > 0.0
+                });
+                assert!(is_met, "{azimuth} {elevation}: nothing at {at}");
+            }
+        }
     }
 
     #[test]

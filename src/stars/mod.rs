@@ -36,8 +36,9 @@
 //!
 //! # Cost
 //! 24 bytes a point on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads those in the picture that are brighter
-//! than [`StarView::faintest_lux`], some hundreds, and draws each as 4 corners that light at most 16 pixels. The glow is a ball of 2555
-//! corners, found anew after each six hours of simulated time, with an even sky's work a pixel. On the CPU a frame pays for
+//! than [`StarView::faintest_lux`], some hundreds, and draws each as 4 corners that light at most 16 pixels. The glow is a ball of 1421
+//! corners, found anew after each six hours of simulated time, of which a frame draws the triangles in the picture, with an even sky's
+//! work a pixel. On the CPU a frame pays for
 //! [`Heavens::at`], some 900 sines and cosines, and for [`NightSky::new`], which looks in 32 directions. By day there is none of it.
 //!
 //! # Error
@@ -55,6 +56,7 @@
 //! and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
 
 mod behind;
+pub mod candidates;
 pub mod catalogue;
 pub mod galaxy;
 pub mod glow;
@@ -80,4 +82,4 @@ pub use places::Heavens;
 pub use planets::{Body, PlanetPlace};
 pub use settings::StarSettings;
 pub use uniforms::StarView;
-pub(crate) use view::{LAND_ALBEDO, STARS, StarsView};
+pub(crate) use view::{LAND_ALBEDO, StarsView};

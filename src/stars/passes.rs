@@ -42,6 +42,8 @@ struct Loaded {
     lux: Vec<f32>,
     /// Those that the next draw shows, behind the planets.
     shown: Vec<StarInstance>,
+    /// And those that the buffer has.
+    written: Vec<StarInstance>,
     buffer: wgpu::Buffer,
 }
 
@@ -56,6 +58,8 @@ pub struct StarPass {
     pipelines: Vec<(PointsKind, wgpu::RenderPipeline)>,
     /// The pipeline's kind and the instances of the next draw.
     prepared: Option<(PointsKind, u32)>,
+    written: Option<StarUniform>,
+    has_changed: bool,
 }
 
 impl StarPass {
@@ -68,7 +72,17 @@ impl StarPass {
             bind::layout(device, "stars", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
         });
         let none = bind::nothing(device, wgpu::TextureFormat::Rgba8Unorm);
-        Self { block, layouts, none, loaded: None, bound: None, pipelines: Vec::new(), prepared: None }
+        Self {
+            block,
+            layouts,
+            none,
+            loaded: None,
+            bound: None,
+            pipelines: Vec::new(),
+            prepared: None,
+            written: None,
+            has_changed: false,
+        }
     }
 
     /// Brings everything up for a draw into a target of `format` (one sample a pixel, blendable), hidden by `depth` if there is one, and
@@ -95,8 +109,14 @@ impl StarPass {
         let bright = loaded.lux.partition_point(|lux| f64::from(*lux) > view.faintest_lux);
         let frustum = Frustum::of(view);
         loaded.shown.extend(loaded.all[..bright].iter().filter(|star| frustum.may_show(star)));
-        device.queue.write_buffer(&loaded.buffer, 0, bytemuck::cast_slice(&loaded.shown));
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&view.uniform()));
+        let block = view.uniform();
+        self.has_changed = self.written != Some(block) || loaded.shown != loaded.written;
+        if self.has_changed {
+            device.queue.write_buffer(&loaded.buffer, 0, bytemuck::cast_slice(&loaded.shown));
+            device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+            loaded.written.clone_from(&loaded.shown);
+            self.written = Some(block);
+        }
         let count = loaded.shown.len() as u32;
         let kind = (format, depth.is_some_and(|d| d.multisampled), depth.is_some());
         if !self.pipelines.iter().any(|(k, _)| *k == kind) {
@@ -106,6 +126,11 @@ impl StarPass {
         self.bind(&device.device, depth);
         self.prepared = Some((kind, count));
         Ok(count)
+    }
+
+    /// Whether the last [`StarPass::prepare`] prepared another draw than the one before it.
+    pub(super) fn has_changed(&self) -> bool {
+        self.has_changed
     }
 
     /// Draws what was prepared, adding it to the target. Sets group 0 and vertex buffer 0.
@@ -148,8 +173,9 @@ impl StarPass {
         });
         device.check_made()?;
         let lux = stars.iter().map(brightness).collect();
-        let shown = Vec::with_capacity(most);
-        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, all: stars, lux, shown, buffer });
+        let (shown, written) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        self.written = None;
+        self.loaded = Some(Loaded { stars: settings.stars.clone(), year, all: stars, lux, shown, written, buffer });
         Ok(())
     }
 

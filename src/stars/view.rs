@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::{
     Heavens, NightSky, StarPass, StarSettings, StarView,
+    candidates::{STARS, stars_work},
     glow_pass::{Dusk, GlowPass},
     light::illuminance_lux,
     limits::{display_threshold_lux, threshold_lux},
@@ -15,21 +16,10 @@ use crate::{
     gpu::{Device, bind},
     light::luminance,
     moment::{Moment, Scene},
-    plan::{
-        StepWork,
-        parts::{Part, Worth},
-    },
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, yes},
     weather::smoothstep,
     world::{night_share, zenith_depth},
 };
-
-/// Stars, planets and the glow between them, at two rungs: as they are, or an even sky of the glow's mean luminance. What they are worth is
-/// taken to be what the clear sky's own light and they are worth together.
-pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
-
-/// Work of the layer a pixel, in units of a pixel with none of the parts.
-const LAYER_OF_PIXEL: f64 = 0.1;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Elevations of the sun between which points fade in, degrees: by day there are none.
@@ -62,6 +52,8 @@ pub(crate) struct StarsView {
     tonight: Option<Tonight>,
     passes: Option<Box<(StarPass, GlowPass)>>,
     layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
+    /// Whether the layer shows what was prepared last.
+    is_layer_drawn: bool,
 }
 
 impl StarsView {
@@ -100,6 +92,7 @@ impl StarsView {
         if self.layer.as_ref().is_some_and(|(texture, ..)| texture.size() != size) {
             self.layer = None;
         }
+        self.is_layer_drawn &= self.layer.is_some();
         let made = self.layer.get_or_insert_with(|| {
             let texture = device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("night sky"),
@@ -191,8 +184,7 @@ impl DrawnEffect for StarsView {
     }
 
     fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
-        let fixed = LAYER_OF_PIXEL * shot.pixels() as f64;
-        put(&STARS, self.is_there(stages), &[StepWork { fixed, ..StepWork::default() }]);
+        put(&STARS, self.is_there(stages), &[stars_work(shot.pixels())]);
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
@@ -207,7 +199,8 @@ impl DrawnEffect for StarsView {
         Ok(())
     }
 
-    /// Draws the layer behind the sky's own light: the glow, and the points before it.
+    /// Draws the layer behind the sky's own light: the glow, and the points before it. It rests while camera, heavens and air stay as they
+    /// are.
     fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
         let block = &with.composition.block;
         if !self.is_there(with.composition.stages) || block.behind[1] == 0.0 {
@@ -222,7 +215,11 @@ impl DrawnEffect for StarsView {
         // The dark end of the sRGB curve is straight, 12.92 times as steep as light.
         let view = tonight.seen(shot, f64::from(block.dither_step) / 12.92);
         points.prepare(to.device, &self.settings, &view, FORMAT, None)?;
-        glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk);
+        let has_changed = glow.prepare(to.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
+        if self.is_layer_drawn && !has_changed {
+            return Ok(());
+        }
+        self.is_layer_drawn = true;
         let mut pass = to.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("night sky"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -251,5 +248,6 @@ impl DrawnEffect for StarsView {
 
     fn forget_picture(&mut self) {
         self.layer = None;
+        self.is_layer_drawn = false;
     }
 }

@@ -1,5 +1,5 @@
-//! What the host tells of the world round a camera: what keeps rain off, and its lamps. One bind group (2) for all shaders that
-//! read it, one upload a frame, none where there is nothing of it.
+//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders, and one upload a frame,
+//! none where there is nothing of them.
 
 use glam::{DMat3, DVec3};
 

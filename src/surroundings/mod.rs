@@ -1,4 +1,4 @@
-//! What the host tells of the world round a camera, for all effects alike: boxes and occluder maps that keep rain off, and lamps.
+//! The host's boxes and occluder maps, which keep rain off, and its lamps, for all effects alike.
 
 mod around;
 mod occluder;

@@ -144,10 +144,18 @@ impl GroundLayer {
 
 impl Falling {
     fn blend(&self, to: &Self, t: f64, w: f64) -> Self {
+        let snow_mm_h = mix(self.snow_mm_h, to.snow_mm_h, t);
+        // Of snow that comes or goes the kinds are those of what there is.
+        let kind = |share: fn(&Self) -> f64| {
+            let amount = mix(self.snow_mm_h * share(self), to.snow_mm_h * share(to), t);
+            if snow_mm_h > 0.0 { (amount / snow_mm_h).clamp(0.0, 1.0) } else { share(to) }
+        };
         Self {
             rain_mm_h: mix(self.rain_mm_h, to.rain_mm_h, t),
             drizzle_mm_h: mix(self.drizzle_mm_h, to.drizzle_mm_h, t),
-            snow_mm_h: mix(self.snow_mm_h, to.snow_mm_h, t),
+            snow_mm_h,
+            grain_share: kind(|f| f.grain_share),
+            crystal_share: kind(|f| f.crystal_share),
             ice_pellets_mm_h: mix(self.ice_pellets_mm_h, to.ice_pellets_mm_h, t),
             hail_mm_h: mix(self.hail_mm_h, to.hail_mm_h, t),
             freezing: mix(self.freezing, to.freezing, t),

@@ -123,6 +123,10 @@ pub struct Falling {
     pub drizzle_mm_h: f64,
     /// Snow, snow grains and ice crystals, mm/h of melted water.
     pub snow_mm_h: f64,
+    /// Part of it that falls as snow grains, 0 to 1.
+    pub grain_share: f64,
+    /// Part of it that falls as ice crystals, 0 to 1; the rest are flakes.
+    pub crystal_share: f64,
     /// Ice pellets and small hail, mm/h of melted water.
     pub ice_pellets_mm_h: f64,
     /// Hail, mm/h of melted water.
@@ -145,6 +149,10 @@ struct SavedFalling {
     rain_mm_h: f64,
     drizzle_mm_h: f64,
     snow_mm_h: f64,
+    #[serde(default)]
+    grain_share: f64,
+    #[serde(default)]
+    crystal_share: f64,
     ice_pellets_mm_h: f64,
     hail_mm_h: f64,
     freezing: f64,
@@ -161,6 +169,8 @@ impl From<SavedFalling> for Falling {
             rain_mm_h: s.rain_mm_h,
             drizzle_mm_h: s.drizzle_mm_h,
             snow_mm_h: s.snow_mm_h,
+            grain_share: s.grain_share,
+            crystal_share: s.crystal_share,
             ice_pellets_mm_h: s.ice_pellets_mm_h,
             hail_mm_h: s.hail_mm_h,
             freezing: s.freezing,
@@ -389,6 +399,8 @@ impl Falling {
         rain_mm_h: 0.0,
         drizzle_mm_h: 0.0,
         snow_mm_h: 0.0,
+        grain_share: 0.0,
+        crystal_share: 0.0,
         ice_pellets_mm_h: 0.0,
         hail_mm_h: 0.0,
         freezing: 0.0,
@@ -397,6 +409,12 @@ impl Falling {
         liquid_extinction_per_m: 0.0,
         solid_extinction_per_m: 0.0,
     };
+
+    /// Snow as flakes, as snow grains and as ice crystals, mm/h of melted water: together [`Falling::snow_mm_h`].
+    pub fn snow_kinds_mm_h(&self) -> [f64; 3] {
+        let [grains, crystals] = [self.grain_share, self.crystal_share].map(|share| share * self.snow_mm_h);
+        [(self.snow_mm_h - grains - crystals).max(0.0), grains, crystals]
+    }
 
     /// Everything that falls, mm/h of liquid water.
     pub fn total_mm_h(&self) -> f64 {

@@ -128,6 +128,8 @@ pub(super) fn falling(p: &Precipitation) -> Falling {
         rain_mm_h: only(!drizzle, wet),
         drizzle_mm_h: only(drizzle, wet),
         snow_mm_h: only(!pellets && p.kind != K::Hail, frozen),
+        grain_share: flag(p.kind == K::SnowGrains),
+        crystal_share: flag(p.kind == K::IceCrystals),
         ice_pellets_mm_h: only(pellets, frozen),
         hail_mm_h: hail_beside + only(p.kind == K::Hail, frozen),
         freezing: flag(p.kind.is_freezing()),

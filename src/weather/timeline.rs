@@ -41,7 +41,7 @@ impl Change {
     }
 }
 
-/// Conditions as a function of simulation time. Two timelines that were told the same give the same bits on every
+/// Conditions as a function of simulation time. Two timelines with the same input give the same bits on every
 /// machine (nothing but + - * / and `libm`).
 ///
 /// A change that begins while another is under way is laid over it: the older one goes on below while the newer one

@@ -14,7 +14,7 @@ pub(crate) struct WindOver<'a> {
     pub timeline: &'a Timeline,
     /// How far it had carried the air when the last change ended that the timeline has forgotten.
     pub kept: Drift,
-    /// Another number for every timeline of every context, and after every change of one.
+    /// Revision of the timeline: no two contexts share one, and every change of the timeline makes a new one.
     pub revision: u64,
 }
 

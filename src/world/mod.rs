@@ -1,8 +1,8 @@
 //! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its lights, the wind,
-//! and what the host tells of the surroundings. It names no effect; effects that have a state of their own are led along with it
+//! and the host's shelters, occluder maps and lamps. It names no effect; effects that have a state of their own are led along with it
 //! ([`HeldEffect`]).
 //!
-//! Everything here is a function of (description, timeline, time, position): two worlds that were told the same answer alike on every
+//! Everything here is a function of (description, timeline, time, position): two worlds with the same input answer alike on every
 //! machine, without a device and a frame.
 
 mod air;
@@ -123,7 +123,7 @@ pub(crate) struct World {
     pub exposure: Exposure,
     pub tone: ToneCurve,
     pub timeline: Timeline,
-    /// Another number for every timeline of every world, and after every change of one.
+    /// Revision of the timeline: no two worlds share one, and every change of the timeline makes a new one.
     timeline_revision: u64,
     wind: Wind,
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.

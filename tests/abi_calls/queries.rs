@@ -19,6 +19,36 @@ fn refused(status: wk_status, wanted: &str) {
 }
 
 #[test]
+fn kinds_of_snow_are_apart_and_add_up() {
+    let world = World::new();
+    let kinds =
+        [WK_PRECIPITATION_SNOW, WK_PRECIPITATION_SNOW_GRAINS, WK_PRECIPITATION_ICE_CRYSTALS, WK_PRECIPITATION_RAIN];
+    for (i, precipitation_kind) in kinds.into_iter().enumerate() {
+        let weather =
+            wk_weather { temperature_c: -8.0, precipitation_kind, precipitation_rate_mm_h: 2.0, ..init("wk_weather") };
+        let time_s = 100.0 * i as f64;
+        let mut c = init::<wk_conditions>("wk_conditions");
+        let mut half = c;
+        // SAFETY: live pointers.
+        unsafe {
+            assert_eq!(wk_context_set_weather(world.context, &weather, time_s, 10.0), WK_OK, "{}", message());
+            assert_eq!(wk_context_get_conditions(world.context, &EYE, time_s + 50.0, &mut c), WK_OK);
+            assert_eq!(wk_context_get_conditions(world.context, &EYE, time_s + 5.0, &mut half), WK_OK);
+        }
+        let of = |c: &wk_conditions| [c.snow_flakes_mm_h, c.snow_grains_mm_h, c.ice_crystals_mm_h];
+        let expected: [f64; 3] = std::array::from_fn(|k| if k == i { c.snow_mm_h } else { 0.0 });
+        assert_eq!(of(&c), expected, "{i}");
+        assert_eq!(c.snow_mm_h > 0.0, i < 3, "{i}");
+        // On the way from one kind to the next both fall.
+        let (both, sum) = (of(&half), of(&half).iter().sum::<f64>());
+        assert!((sum - half.snow_mm_h).abs() < 1e-12, "{both:?}");
+        if (1..3).contains(&i) {
+            assert!(both[i] > 0.0 && both[i - 1] > 0.0, "{both:?}");
+        }
+    }
+}
+
+#[test]
 fn conditions_follow_the_weather_and_its_transition() {
     let world = World::new();
     let layers = [

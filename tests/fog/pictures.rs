@@ -16,7 +16,7 @@ const HEIGHT: u32 = 270;
 /// One picture: linear RGB and distance a pixel.
 struct Picture(Vec<[f32; 4]>);
 
-struct Shot {
+struct FogScene {
     name: &'static str,
     law: Law,
     eye_m: f64,
@@ -48,8 +48,8 @@ fn fog(visibility_m: f64, top_m: f64, soft_m: f64) -> FogLayer {
     FogLayer::ground_fog(koschmieder_extinction_per_m(visibility_m), top_m, soft_m)
 }
 
-fn shots() -> Vec<Shot> {
-    let shot = |name, law, eye_m, pitch, light, exposure| Shot { name, law, eye_m, pitch, light, exposure };
+fn scenes() -> Vec<FogScene> {
+    let shot = |name, law, eye_m, pitch, light, exposure| FogScene { name, law, eye_m, pitch, light, exposure };
     let layer = Law::Layer;
     let patches = FogLayer {
         patches: Some(Patches { amount: 1.0, size_m: 60.0, seed: 3, drift_m: [0.0; 2] }),
@@ -88,7 +88,7 @@ fn shots() -> Vec<Shot> {
     ]
 }
 
-fn draw(shot: &Shot) -> Picture {
+fn draw(shot: &FogScene) -> Picture {
     let forward = DVec3::new(0.0, shot.pitch.cos(), shot.pitch.sin());
     let aspect = f64::from(WIDTH) / f64::from(HEIGHT);
     let camera = Camera::look_to(DVec3::ZERO, forward, DVec3::Z, 0.8, aspect, 0.1);
@@ -131,7 +131,7 @@ fn save(picture: &Picture, exposure: f64, path: &std::path::Path) {
 #[test]
 fn pictures_hold_up() {
     let folder = std::env::var("WELKIN_FOG_PICTURES").ok();
-    for shot in shots() {
+    for shot in scenes() {
         let picture = draw(&shot);
         if let Some(folder) = &folder {
             std::fs::create_dir_all(folder).unwrap();

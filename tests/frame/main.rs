@@ -11,6 +11,7 @@ mod froxels;
 mod host;
 mod lookup;
 mod measure;
+mod moon;
 mod night;
 #[path = "../support/opaque.rs"]
 mod opaque;

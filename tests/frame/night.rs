@@ -20,16 +20,16 @@ use crate::host::coarse;
 const NIGHT: Utc = Utc(1_768_773_600.0);
 
 /// A context and a view of it, with a target without depth.
-struct Night {
+pub struct Night {
     device: Arc<Device>,
-    context: Context,
+    pub context: Context,
     view: View,
     color: wgpu::Texture,
     frame_id: u64,
 }
 
 impl Night {
-    fn new(size: (u32, u32)) -> Self {
+    pub fn new(size: (u32, u32)) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
@@ -41,7 +41,7 @@ impl Night {
     }
 
     /// The picture, cd/m^2, of a camera that looks to an azimuth and elevation, degrees.
-    fn picture(&mut self, camera: &Camera) -> Vec<[f32; 4]> {
+    pub fn picture(&mut self, camera: &Camera) -> Vec<[f32; 4]> {
         self.frame_id += 1;
         let frame = Frame::new(self.frame_id, *camera, &self.color, None);
         self.view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
@@ -74,7 +74,7 @@ fn camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {
 }
 
 /// Light of a picture less that of another, lux: each pixel's luminance times its solid angle.
-fn light(picture: &[[f32; 4]], less: &[[f32; 4]], camera: &Camera, (width, height): (u32, u32)) -> f64 {
+pub fn light(picture: &[[f32; 4]], less: &[[f32; 4]], camera: &Camera, (width, height): (u32, u32)) -> f64 {
     let focal = [camera.projection.x_axis.x, camera.projection.y_axis.y];
     let texel = |i: usize| {
         let at = [i as f64 % f64::from(width) + 0.5, (i as f64 / f64::from(width)).floor() + 0.5];
@@ -187,6 +187,28 @@ fn by_day_in_fog_and_under_a_deck_there_are_no_stars() {
     same(&mut night, "clear again", false);
     night.context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 2.0 })).unwrap();
     same(&mut night, "by day", true);
+}
+
+#[test]
+fn the_layer_of_stars_rests_while_nothing_moves() {
+    let mut night = Night::new((160, 90));
+    let first = night.picture(&camera(150.0, 40.0));
+    assert_eq!(night.view.report().passes, 2, "the layer's pass and the composition's");
+    let again = night.picture(&camera(150.0, 40.0));
+    assert_eq!(night.view.report().passes, 1, "the layer is there");
+    assert!(first == again);
+    let turned = night.picture(&camera(151.0, 40.0));
+    assert_eq!(night.view.report().passes, 2, "the camera turned");
+    let back = night.picture(&camera(150.0, 40.0));
+    assert!(turned != first && back == first);
+    night.context.set_clock(Utc(NIGHT.0 + 60.0), 0.0).unwrap();
+    let later = night.picture(&camera(150.0, 40.0));
+    assert_eq!(night.view.report().passes, 2, "the heavens turned");
+    assert!(later != first);
+    // Another picture's size takes another layer.
+    night.color = target(&night.device, (320, 180));
+    night.picture(&camera(150.0, 40.0));
+    assert_eq!(night.view.report().passes, 2);
 }
 
 /// Mean luminance of a small picture straight up, stars left out.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use welkin::{
     context::{ContextDesc, GivenDirection},
+    sky::SkySettings,
     weather::{Fog, FogKind, Lofted, LoftedKind, Precipitation, PrecipitationKind, Weather},
 };
 
@@ -10,6 +11,17 @@ use crate::host::Host;
 
 fn host() -> Host {
     Host::new(wgpu::TextureFormat::Rgba16Float)
+}
+
+#[test]
+fn a_context_says_how_its_sky_is_drawn() {
+    let mut host = host();
+    assert_eq!(host.context.sky_settings().unwrap(), crate::coarse_sky::coarse_sky());
+    let other = SkySettings { orders: 3, ..crate::coarse_sky::coarse_sky() };
+    host.context.set_sky_settings(&other).unwrap();
+    assert_eq!(host.context.sky_settings().unwrap(), other);
+    assert!(host.context.set_sky_settings(&SkySettings { orders: 0, ..other }).is_err());
+    assert_eq!(host.context.sky_settings().unwrap(), other, "a refusal changes nothing");
 }
 
 #[test]

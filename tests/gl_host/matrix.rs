@@ -155,16 +155,16 @@ fn own(device: *mut wk_device, scene: &Scene, format: wk_format, space: wk_color
 
 /// A name for an image of one case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ImageKind {
     Texture,
     Renderbuffer,
     /// A framebuffer of the host's with these textures.
     Framebuffer,
 }
 
-fn make(painter: &Painter, host: &Host, kind: Kind, internal: u32, samples: i32) -> GlImage {
+fn make(painter: &Painter, host: &Host, kind: ImageKind, internal: u32, samples: i32) -> GlImage {
     painter.make(host, |gl| match (kind, samples) {
-        (Kind::Renderbuffer, _) => image_of_buffer(renderbuffer(gl, internal, samples)),
+        (ImageKind::Renderbuffer, _) => image_of_buffer(renderbuffer(gl, internal, samples)),
         (_, 1) => image_of(texture(gl, internal)),
         _ => image_of_samples(multisampled_texture(gl, internal, samples)),
     })
@@ -216,9 +216,9 @@ fn matrix(truth: &Truth, api: Api, mode: GlMode, formats: &[(u32, usize)]) {
         glow::DEPTH32F_STENCIL8,
         glow::DEPTH_COMPONENT16,
     ];
-    let kinds: &[Kind] = match mode {
-        GlMode::Shared => &[Kind::Texture, Kind::Renderbuffer],
-        GlMode::HostContext => &[Kind::Texture, Kind::Renderbuffer, Kind::Framebuffer],
+    let kinds: &[ImageKind] = match mode {
+        GlMode::Shared => &[ImageKind::Texture, ImageKind::Renderbuffer],
+        GlMode::HostContext => &[ImageKind::Texture, ImageKind::Renderbuffer, ImageKind::Framebuffer],
     };
     let (mut next_depth, mut next_space, mut cases) = (0, 0, 0);
     for &kind in kinds {
@@ -240,7 +240,7 @@ fn matrix(truth: &Truth, api: Api, mode: GlMode, formats: &[(u32, usize)]) {
                         "{api:?} {mode:?} {kind:?} {internal:#x} {depth_format:#x} {samples} {multisample} {space}"
                     );
                     painter.paint(&host, (color, internal), depth, false);
-                    let fbo = (kind == Kind::Framebuffer).then(|| host_framebuffer(&host, color, depth));
+                    let fbo = (kind == ImageKind::Framebuffer).then(|| host_framebuffer(&host, color, depth));
                     let images = fbo.map_or((color, depth), |f| {
                         let image = GlImage::Framebuffer { name: f.0.get() };
                         (image, image)

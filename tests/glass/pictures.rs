@@ -59,7 +59,7 @@ fn street(x: f64, y: f64, night: bool) -> [f64; 3] {
     c
 }
 
-struct Shot {
+struct WindscreenScene {
     name: &'static str,
     rate_mm_h: f64,
     speed_m_s: f64,
@@ -73,7 +73,7 @@ struct Shot {
     near_m: f64,
 }
 
-const SHOT: Shot = Shot {
+const SCENE: WindscreenScene = WindscreenScene {
     name: "",
     rate_mm_h: 6.0,
     speed_m_s: 0.0,
@@ -86,23 +86,31 @@ const SHOT: Shot = Shot {
     near_m: 0.4,
 };
 
-fn shots() -> Vec<Shot> {
+fn scenes() -> Vec<WindscreenScene> {
     vec![
-        Shot { name: "steady", speed_m_s: 8.0, ..SHOT },
-        Shot { name: "steady_wiped", speed_m_s: 8.0, wipers: true, ..SHOT },
-        Shot { name: "declared", speed_m_s: 8.0, seconds: 0.0, ..SHOT },
-        Shot { name: "cloudburst", rate_mm_h: 120.0, speed_m_s: 10.0, ..SHOT },
-        Shot { name: "cloudburst_wiped", rate_mm_h: 120.0, speed_m_s: 10.0, wipers: true, ..SHOT },
-        Shot { name: "night", speed_m_s: 8.0, night: true, ..SHOT },
-        Shot { name: "night_wiped", speed_m_s: 8.0, night: true, wipers: true, ..SHOT },
-        Shot { name: "fast", speed_m_s: 28.0, airflow_m_s: 22.0, ..SHOT },
-        Shot { name: "drizzle", rate_mm_h: 0.4, speed_m_s: 8.0, ..SHOT },
-        Shot { name: "misted", fogging: 0.8, demist: 0.5, seconds: 2.0, rate_mm_h: 2.0, speed_m_s: 5.0, ..SHOT },
-        Shot { name: "close", speed_m_s: 8.0, near_m: 0.15, ..SHOT },
+        WindscreenScene { name: "steady", speed_m_s: 8.0, ..SCENE },
+        WindscreenScene { name: "steady_wiped", speed_m_s: 8.0, wipers: true, ..SCENE },
+        WindscreenScene { name: "declared", speed_m_s: 8.0, seconds: 0.0, ..SCENE },
+        WindscreenScene { name: "cloudburst", rate_mm_h: 120.0, speed_m_s: 10.0, ..SCENE },
+        WindscreenScene { name: "cloudburst_wiped", rate_mm_h: 120.0, speed_m_s: 10.0, wipers: true, ..SCENE },
+        WindscreenScene { name: "night", speed_m_s: 8.0, night: true, ..SCENE },
+        WindscreenScene { name: "night_wiped", speed_m_s: 8.0, night: true, wipers: true, ..SCENE },
+        WindscreenScene { name: "fast", speed_m_s: 28.0, airflow_m_s: 22.0, ..SCENE },
+        WindscreenScene { name: "drizzle", rate_mm_h: 0.4, speed_m_s: 8.0, ..SCENE },
+        WindscreenScene {
+            name: "misted",
+            fogging: 0.8,
+            demist: 0.5,
+            seconds: 2.0,
+            rate_mm_h: 2.0,
+            speed_m_s: 5.0,
+            ..SCENE
+        },
+        WindscreenScene { name: "close", speed_m_s: 8.0, near_m: 0.15, ..SCENE },
     ]
 }
 
-fn screen(shot: &Shot, time_s: f64) -> Windscreen {
+fn screen(shot: &WindscreenScene, time_s: f64) -> Windscreen {
     // Glass that leans back by 30 degrees, as wide as the picture and more.
     let (n, aspect) = (shot.near_m, 16.0 / 9.0);
     let (half, lean) = (0.42 * n * 1.15, 0.5);
@@ -140,7 +148,7 @@ fn paint(host: &Host, night: bool) {
     host.device.queue.write_texture(host.color.as_image_copy(), &bytes, layout, host.color.size());
 }
 
-fn draw(shot: &Shot) -> Vec<[f32; 4]> {
+fn draw(shot: &WindscreenScene) -> Vec<[f32; 4]> {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, SIZE, shot.rate_mm_h);
     let frames = (shot.seconds * 20.0) as u32;
     for i in 0..=frames {
@@ -175,7 +183,7 @@ fn save(pixels: &[[f32; 4]], path: &std::path::Path) {
 fn pictures_hold_up() {
     let folder = std::env::var("WELKIN_GLASS_PICTURES").ok();
     let only = std::env::var("WELKIN_GLASS_ONLY").unwrap_or_default();
-    for shot in shots() {
+    for shot in scenes() {
         if folder.is_none() && shot.seconds > 3.0 || !shot.name.contains(&only) {
             continue;
         }

@@ -12,7 +12,7 @@ use welkin::{
 };
 
 use crate::{
-    hills::{self, Told, camera, hits, save, shoot},
+    hills::{self, SurfaceImages, camera, hits, save, shoot},
     host::{Host, SIZE, ground, look},
 };
 
@@ -103,9 +103,9 @@ fn the_near_plane_does_not_change_wet_ground() {
             for (name, albedo, classes) in
                 [("grass", grass, None), ("silent site", site, None), ("marked site", site, Some(&marked))]
             {
-                let told = Told { classes, ..Told::default() };
-                let a = shoot(&mut host, near, &hits, albedo, told);
-                let b = shoot(&mut host, tiny, &hits, albedo, told);
+                let given = SurfaceImages { classes, ..SurfaceImages::default() };
+                let a = shoot(&mut host, near, &hits, albedo, given);
+                let b = shoot(&mut host, tiny, &hits, albedo, given);
                 let name = format!("{weather}_{name}_{elevation}");
                 save(&format!("{name}_near_9.4"), &a);
                 save(&format!("{name}_near_0.19"), &b);
@@ -131,12 +131,12 @@ fn smooth_shaded_hills_do_not_show_their_triangles() {
     let camera = camera(EYE, -8.0, 9.4);
     let hits = hits(&camera);
     let smooth = normals(&host, &hits, DMat3::IDENTITY);
-    let told = Told { normals: Some(&smooth), ..Told::default() };
+    let given = SurfaceImages { normals: Some(&smooth), ..SurfaceImages::default() };
     for (weather, set) in WEATHERS {
         set(&mut host);
         for (name, albedo) in [("grass", GRASS), ("soil", SOIL)] {
-            let by_depth = shoot(&mut host, camera, &hits, |_| albedo, Told::default());
-            let by_normals = shoot(&mut host, camera, &hits, |_| albedo, told);
+            let by_depth = shoot(&mut host, camera, &hits, |_| albedo, SurfaceImages::default());
+            let by_normals = shoot(&mut host, camera, &hits, |_| albedo, given);
             save(&format!("hills_{weather}_{name}"), &by_depth);
             save(&format!("hills_{weather}_{name}_normals"), &by_normals);
             let step = largest_step(&by_depth, &by_normals, EYE, &hits);
@@ -144,8 +144,8 @@ fn smooth_shaded_hills_do_not_show_their_triangles() {
         }
         // All of it paved: the terrain's heights give the normals that the depth has not.
         host.context.set_ground_grid(Some(hills::grid(|_| SurfaceClass::Paved))).unwrap();
-        let by_terrain = shoot(&mut host, camera, &hits, |_| ASPHALT, Told::default());
-        let by_normals = shoot(&mut host, camera, &hits, |_| ASPHALT, told);
+        let by_terrain = shoot(&mut host, camera, &hits, |_| ASPHALT, SurfaceImages::default());
+        let by_normals = shoot(&mut host, camera, &hits, |_| ASPHALT, given);
         save(&format!("hills_{weather}_paved"), &by_terrain);
         save(&format!("hills_{weather}_paved_normals"), &by_normals);
         let step = largest_step(&by_terrain, &by_normals, EYE, &hits);
@@ -155,10 +155,10 @@ fn smooth_shaded_hills_do_not_show_their_triangles() {
 }
 
 /// What a display shows of level ground of this albedo under the eye, in the picture's middle.
-fn shown(host: &mut Host, albedo: [f64; 3], elevation_deg: f64, told: Told<'_>) -> [f64; 3] {
+fn shown(host: &mut Host, albedo: [f64; 3], elevation_deg: f64, given: SurfaceImages<'_>) -> [f64; 3] {
     let eye = DVec3::new(0.0, 300.0, 1.7);
     let camera = camera(eye, elevation_deg, 0.1);
-    let pixels = shoot(host, camera, &hits(&camera), |_| albedo, told);
+    let pixels = shoot(host, camera, &hits(&camera), |_| albedo, given);
     let rows = pixels.chunks(SIZE.0 as usize).skip(SIZE.1 as usize / 2 - 2).take(5);
     let middle: Vec<_> = rows.flat_map(|row| &row[60..100]).collect();
     [0, 1, 2].map(|c| middle.iter().map(|p| p[c]).sum::<f64>() / middle.len() as f64)
@@ -170,9 +170,9 @@ fn wet_grass_hardly_changes_and_wet_asphalt_darkens_and_mirrors_flat_looks() {
     let mut changes = |albedo: [f64; 3], class: SurfaceClass, elevation: f64| {
         host.context.set_default_surface_class(class);
         overcast(&mut host, SurfaceState::Dry);
-        let before = shown(&mut host, albedo, elevation, Told::default());
+        let before = shown(&mut host, albedo, elevation, SurfaceImages::default());
         overcast(&mut host, SurfaceState::Wet);
-        let after = shown(&mut host, albedo, elevation, Told::default());
+        let after = shown(&mut host, albedo, elevation, SurfaceImages::default());
         (after[1] - before[1]) / before[1]
     };
     for elevation in [-6.0, -60.0] {
@@ -314,7 +314,13 @@ fn normals_say_the_same_in_each_encoding_and_where_they_are_none_depth_is_asked(
         .collect();
     let bytes = host.image(wgpu::TextureFormat::Rgba8Unorm, &bytes);
     let mut picture = |normals: Option<&wgpu::Texture>, flags: FrameFlags| {
-        shoot(&mut host, camera, &hits, |_| ASPHALT, Told { normals, flags: flags.0, ..Told::default() })
+        shoot(
+            &mut host,
+            camera,
+            &hits,
+            |_| ASPHALT,
+            SurfaceImages { normals, flags: flags.0, ..SurfaceImages::default() },
+        )
     };
     let wanted = picture(Some(&world), FrameFlags(0));
     let turned = picture(Some(&eye), FrameFlags::NORMALS_IN_EYE_SPACE);
@@ -326,8 +332,8 @@ fn normals_say_the_same_in_each_encoding_and_where_they_are_none_depth_is_asked(
     assert!(apart(&wanted, &by_depth) > 1.0);
     for cleared in [0, 255] {
         let none = host.image(wgpu::TextureFormat::Rgba8Unorm, &vec![cleared; (4 * SIZE.0 * SIZE.1) as usize]);
-        let told = Told { normals: Some(&none), ..Told::default() };
-        assert_eq!(shoot(&mut host, camera, &hits, |_| ASPHALT, told), by_depth, "{cleared}");
+        let given = SurfaceImages { normals: Some(&none), ..SurfaceImages::default() };
+        assert_eq!(shoot(&mut host, camera, &hits, |_| ASPHALT, given), by_depth, "{cleared}");
     }
 }
 

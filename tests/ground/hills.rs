@@ -102,9 +102,9 @@ fn hit(eye: DVec3, d: DVec3) -> Option<DVec3> {
     None
 }
 
-/// What the host says beside colour and depth.
+/// Images of surfaces that the host gives beside colour and depth, and flags of the frame.
 #[derive(Clone, Copy, Default)]
-pub struct Told<'a> {
+pub struct SurfaceImages<'a> {
     pub classes: Option<&'a wgpu::Texture>,
     pub normals: Option<&'a wgpu::Texture>,
     pub flags: u32,
@@ -116,7 +116,7 @@ pub fn shoot(
     camera: Camera,
     hits: &[Option<DVec3>],
     albedo: impl Fn(DVec2) -> [f64; 3],
-    told: Told<'_>,
+    given: SurfaceImages<'_>,
 ) -> Vec<[f64; 3]> {
     let light = host.context.scene_at(camera.position, host.context.time_s()).unwrap();
     let color = |p: &DVec3| {
@@ -139,9 +139,9 @@ pub fn shoot(
     let depth = host.depth_24(&depths);
     let frame = Frame {
         depth_mapping: MAPPING,
-        surface_classes: told.classes,
-        normals: told.normals,
-        flags: FrameFlags(told.flags),
+        surface_classes: given.classes,
+        normals: given.normals,
+        flags: FrameFlags(given.flags),
         ..Frame::new(host.next_frame(), camera, &host.color, Some(&depth))
     };
     host.view.record(&host.context, &frame, Stages::SURFACE.with(Stages::TONE)).unwrap();

@@ -7,12 +7,12 @@ use welkin::{
 
 use crate::{
     SETTLED,
-    scenes::{Bench, Shot},
+    scenes::{Bench, PlanScene},
 };
 
 /// A yard under clear air, in which air and fog are not needed.
-fn near() -> Shot {
-    Shot { weather: "clear", tolerance: 0.05, ..Shot::yard() }
+fn near() -> PlanScene {
+    PlanScene { weather: "clear", tolerance: 0.05, ..PlanScene::yard() }
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn another_view_that_loads_a_plan_draws_the_same_parts_at_once() {
     assert_eq!(bench.plain.plan().rungs(), plan.rungs());
     assert_eq!(bench.plain.save_plan().unwrap(), text);
     // Whatever comes: a jump, another weather.
-    let fog = Shot { weather: "fog", ..near.clone() };
+    let fog = PlanScene { weather: "fog", ..near.clone() };
     bench.set(&fog);
     bench.draw(&fog, false, FrameFlags::CUT);
     assert_eq!(bench.plain.plan().rungs(), plan.rungs());
@@ -72,7 +72,7 @@ fn a_plan_that_is_no_plan_changes_nothing() {
 #[test]
 fn a_pinned_plan_says_what_it_does_not_keep() {
     let mut bench = Bench::new();
-    let fog = Shot { weather: "fog", ..Shot::yard() };
+    let fog = PlanScene { weather: "fog", ..PlanScene::yard() };
     bench.set(&fog);
     let mut pinned = |rungs: [usize; 5], tolerance, milliseconds| {
         let budget = Budget { tolerance, milliseconds, ..Budget::pinned(&rungs) };

@@ -9,7 +9,7 @@ mod scenes;
 mod textures;
 mod time;
 
-use scenes::{Bench, Shot};
+use scenes::{Bench, PlanScene};
 use welkin::plan::{Budget, GaveWay, Reason, Wish, difference, estimate::WORST};
 
 /// Frames until a gauge has answered and what it chose has faded.
@@ -28,7 +28,7 @@ fn planned_pictures_are_sufficient_and_minimal() {
     let scenes = if std::env::var_os("WELKIN_ACCEPT").is_some() { 112 } else { 28 };
     let (mut left_out, mut planned_less, mut exceeded, mut needless) = (0, 0, 0, Vec::new());
     for seed in 0..scenes {
-        let shot = Shot::seeded(seed);
+        let shot = PlanScene::seeded(seed);
         bench.set(&shot);
         let everything = bench.everything(&shot);
         let (planned, plan) = bench.planned(&shot, SETTLED);
@@ -75,7 +75,7 @@ fn planned_pictures_are_sufficient_and_minimal() {
 #[test]
 fn parts_fade_without_a_step_and_come_back_when_the_weather_does() {
     let mut bench = Bench::new();
-    let near = Shot { weather: "clear", tolerance: 0.03, ..Shot::yard() };
+    let near = PlanScene { weather: "clear", tolerance: 0.03, ..PlanScene::yard() };
     bench.set(&near);
     let mut last = bench.everything(&near);
     let mut worst = 0.0f64;
@@ -88,7 +88,7 @@ fn parts_fade_without_a_step_and_come_back_when_the_weather_does() {
     assert_eq!(plan.parts[0].reason, Reason::WithinTolerance, "{plan:?}");
     let worth = plan.parts[0].last().p95;
     assert!(worth > 0.01 && worst <= worth / 4.0, "{worst}: a part worth {worth} fades over several frames");
-    let fog = Shot { weather: "fog", ..near.clone() };
+    let fog = PlanScene { weather: "fog", ..near.clone() };
     bench.set(&fog);
     let (planned, plan) = bench.planned(&fog, 12);
     assert!(plan.parts[1].reason == Reason::Needed && plan.parts[1].share == 1.0, "{plan:?}");
@@ -98,7 +98,7 @@ fn parts_fade_without_a_step_and_come_back_when_the_weather_does() {
 #[test]
 fn pure_frames_and_hosts_without_a_tolerance_get_everything() {
     let mut bench = Bench::new();
-    let near = Shot { weather: "clear", tolerance: 0.05, ..Shot::yard() };
+    let near = PlanScene { weather: "clear", tolerance: 0.05, ..PlanScene::yard() };
     bench.set(&near);
     bench.planned(&near, SETTLED);
     let pure = bench.pure(&near);
@@ -113,7 +113,7 @@ fn pure_frames_and_hosts_without_a_tolerance_get_everything() {
 #[test]
 fn a_budget_out_of_range_is_refused_and_the_last_one_stays() {
     let mut bench = Bench::new();
-    let near = Shot { weather: "clear", tolerance: 0.05, ..Shot::yard() };
+    let near = PlanScene { weather: "clear", tolerance: 0.05, ..PlanScene::yard() };
     bench.set(&near);
     bench.planned(&near, SETTLED);
     for tolerance in [0.0, -1.0, 1.5, f64::NAN, f64::INFINITY] {
@@ -127,7 +127,7 @@ fn a_budget_out_of_range_is_refused_and_the_last_one_stays() {
 #[test]
 fn a_budget_of_time_is_kept_by_leaving_out_and_room_brings_parts_back() {
     let mut bench = Bench::new();
-    let yard = Shot { weather: "mist", tolerance: 0.05, ..Shot::yard() };
+    let yard = PlanScene { weather: "mist", tolerance: 0.05, ..PlanScene::yard() };
     bench.set(&yard);
     // A fake clock: every part's work takes its share of 10 ms, then of 20 ms, then of 10 ms again.
     let budget = Budget { milliseconds: Some(12.0), ..Budget::default() };

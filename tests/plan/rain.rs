@@ -9,7 +9,7 @@ use welkin::{
 
 use crate::{
     SETTLED,
-    scenes::{Bench, SIZE, Shot},
+    scenes::{Bench, PlanScene, SIZE},
 };
 
 /// Its place among the parts, and its rungs.
@@ -23,15 +23,15 @@ const fn rain_at(rung: usize) -> [usize; 4] {
 /// Presets in which rain falls.
 const RAINY: [&str; 6] = ["drizzle", "rain", "heavy_rain", "showers", "thunderstorm", "freezing_rain"];
 
-fn rainy(seed: u64) -> Shot {
+fn rainy(seed: u64) -> PlanScene {
     let weather = RAINY[seed as usize % RAINY.len()];
     let tolerance = [0.002, 0.005, 0.01, 0.02][(seed / 6) as usize % 4];
-    let shot = Shot::seeded(seed);
+    let shot = PlanScene::seeded(seed);
     // High up none falls.
     let height_m = shot.height_m.min(30.0);
     let name = format!("{weather} seed {seed}");
     let far_m = shot.far_m.min(2000.0);
-    Shot { name, weather, tolerance, height_m, far_m, particles: true, ..shot }
+    PlanScene { name, weather, tolerance, height_m, far_m, particles: true, ..shot }
 }
 
 /// Mean and deviation from pixel to pixel of blocks of 24 x 18 pixels, over their mean and a hundredth of white.
@@ -102,7 +102,8 @@ fn rain_is_drawn_as_the_picture_needs_it() {
 fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
     let mut bench = Bench::new();
     for seed in [1, 2, 9] {
-        let shot = Shot { tolerance: 0.01, height_m: 2.0, sun_deg: 30.0, far_m: 80.0, fov_deg: 50.0, ..rainy(seed) };
+        let shot =
+            PlanScene { tolerance: 0.01, height_m: 2.0, sun_deg: 30.0, far_m: 80.0, fov_deg: 50.0, ..rainy(seed) };
         bench.set(&shot);
         // Both at the same moments: curtains of rain go by.
         let mut pictures = [vec![], vec![]];
@@ -126,7 +127,8 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
 fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
     let mut bench = Bench::new();
     for seed in [1, 2, 7] {
-        let shot = Shot { tolerance: 0.5, height_m: 2.0, sun_deg: 30.0, far_m: 300.0, fov_deg: 50.0, ..rainy(seed) };
+        let shot =
+            PlanScene { tolerance: 0.5, height_m: 2.0, sun_deg: 30.0, far_m: 300.0, fov_deg: 50.0, ..rainy(seed) };
         bench.set(&shot);
         let mut found = [RainSettings::default(), RainSettings::TRAINER].map(|settings| {
             bench.view.set_rain(settings).unwrap();
@@ -148,7 +150,7 @@ fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
 #[test]
 fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
     let mut bench = Bench::new();
-    let shot = Shot { weather: "rain", tolerance: 0.3, particles: true, ..Shot::yard() };
+    let shot = PlanScene { weather: "rain", tolerance: 0.3, particles: true, ..PlanScene::yard() };
     bench.set(&shot);
     let settings = RainSettings { model: RainModel::Drops, ..RainSettings::default() };
     bench.view.set_rain(settings).unwrap();
@@ -169,7 +171,7 @@ fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
 #[test]
 fn dry_air_has_no_rain_to_leave_out() {
     let mut bench = Bench::new();
-    let shot = Shot { weather: "overcast", ..rainy(1) };
+    let shot = PlanScene { weather: "overcast", ..rainy(1) };
     assert!(Weather::preset("overcast").unwrap().precipitation == Default::default());
     bench.set(&shot);
     let (_, plan) = bench.planned(&shot, SETTLED);

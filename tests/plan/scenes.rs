@@ -19,7 +19,7 @@ pub const SIZE: (u32, u32) = (192, 108);
 
 /// One scene as a host would set it up.
 #[derive(Clone, Debug)]
-pub struct Shot {
+pub struct PlanScene {
     pub name: String,
     pub weather: &'static str,
     pub sun_deg: f64,
@@ -42,7 +42,7 @@ fn chance(seed: u64, draw: u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-impl Shot {
+impl PlanScene {
     pub fn seeded(seed: u64) -> Self {
         let names: Vec<&'static str> = Weather::preset_names().collect();
         let weather = names[seed as usize % names.len()];
@@ -122,7 +122,7 @@ impl Bench {
     }
 
     /// Weather, light and the host's picture of a scene; the tables are brought to it whole.
-    pub fn set(&mut self, shot: &Shot) {
+    pub fn set(&mut self, shot: &PlanScene) {
         self.time_s += 10.0;
         let weather = Weather::preset(shot.weather).unwrap();
         self.context.set_weather(&weather, self.time_s, 0.0).unwrap();
@@ -167,7 +167,7 @@ impl Bench {
         put(&self.depth, bytemuck::cast_slice(&self.host.1), 4);
     }
 
-    pub fn draw(&mut self, shot: &Shot, planned: bool, flags: FrameFlags) -> Vec<f64> {
+    pub fn draw(&mut self, shot: &PlanScene, planned: bool, flags: FrameFlags) -> Vec<f64> {
         self.upload();
         self.frame_id += 1;
         let frame = Frame {
@@ -187,7 +187,7 @@ impl Bench {
     }
 
     /// The picture with everything in it.
-    pub fn everything(&mut self, shot: &Shot) -> Vec<f64> {
+    pub fn everything(&mut self, shot: &PlanScene) -> Vec<f64> {
         self.draw(shot, false, FrameFlags::NO_HISTORY)
     }
 
@@ -198,7 +198,7 @@ impl Bench {
     }
 
     /// The picture that the planned view draws after so many frames.
-    pub fn planned(&mut self, shot: &Shot, frames: u64) -> (Vec<f64>, Plan) {
+    pub fn planned(&mut self, shot: &PlanScene, frames: u64) -> (Vec<f64>, Plan) {
         self.view.set_budget(Budget { tolerance: Some(shot.tolerance), ..Budget::default() }).unwrap();
         let mut picture = self.draw(shot, true, FrameFlags(0));
         for _ in 1..frames {
@@ -208,17 +208,17 @@ impl Bench {
     }
 
     /// The picture of a host without a budget.
-    pub fn unplanned(&mut self, shot: &Shot) -> (Vec<f64>, Plan) {
+    pub fn unplanned(&mut self, shot: &PlanScene) -> (Vec<f64>, Plan) {
         (self.draw(shot, true, FrameFlags(0)), self.view.plan().clone())
     }
 
     /// A picture that may not depend on earlier ones.
-    pub fn pure(&mut self, shot: &Shot) -> Vec<f64> {
+    pub fn pure(&mut self, shot: &PlanScene) -> Vec<f64> {
         self.draw(shot, true, FrameFlags::NO_HISTORY)
     }
 
     /// The picture with its parts at just these rungs.
-    pub fn pinned(&mut self, shot: &Shot, rungs: &[usize]) -> Vec<f64> {
+    pub fn pinned(&mut self, shot: &PlanScene, rungs: &[usize]) -> Vec<f64> {
         self.view.set_budget(Budget::pinned(rungs)).unwrap();
         self.draw(shot, true, FrameFlags(0))
     }

@@ -5,7 +5,7 @@ use welkin::{
     plan::{Budget, Reason},
 };
 
-use crate::scenes::{Bench, Shot};
+use crate::scenes::{Bench, PlanScene};
 
 /// A machine on which the parts cost other shares of a pixel than where the constants were measured: its time of a frame
 /// by the host's own pixels, ms.
@@ -32,7 +32,7 @@ fn times_are_predicted_within_a_quarter_in_seeded_scenes() {
     // Of frames whose scene and parts are some frames old, and of all.
     let (mut settled, mut all) = (Vec::new(), Vec::new());
     for seed in 0..24 {
-        let shot = Shot::seeded(seed);
+        let shot = PlanScene::seeded(seed);
         bench.set(&shot);
         // Without time to spare for everything in most of them.
         let budget = Budget { tolerance: Some(shot.tolerance), milliseconds: Some(11.0), ..Budget::default() };
@@ -66,7 +66,7 @@ fn times_are_predicted_within_a_quarter_in_seeded_scenes() {
 #[test]
 fn a_report_says_what_was_predicted_and_what_was_found() {
     let mut bench = Bench::new();
-    let near = Shot { weather: "mist", tolerance: 0.2, ..Shot::yard() };
+    let near = PlanScene { weather: "mist", tolerance: 0.2, ..PlanScene::yard() };
     bench.set(&near);
     bench.draw(&near, true, FrameFlags(0));
     let unplanned = bench.view.report().prediction;
@@ -92,8 +92,8 @@ fn a_report_says_what_was_predicted_and_what_was_found() {
 #[test]
 fn tables_that_follow_the_air_take_longer_where_there_is_no_time_for_them() {
     let mut bench = Bench::new();
-    let clear = Shot { weather: "clear", ..Shot::yard() };
-    let smoke = Shot { weather: "smoke", ..Shot::yard() };
+    let clear = PlanScene { weather: "clear", ..PlanScene::yard() };
+    let smoke = PlanScene { weather: "smoke", ..PlanScene::yard() };
     // Frames with work on tables after a change of air, where a frame takes 10 ms.
     let mut frames_with = |budget: f64| {
         bench.set(&clear);

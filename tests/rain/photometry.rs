@@ -262,21 +262,21 @@ fn paint(host: &Host) {
 
 /// What a part of a picture shows.
 #[derive(Clone, Copy, PartialEq)]
-enum Shown {
+enum PicturePart {
     Sky,
     Hills,
     Meadow,
 }
 
-fn shown(host: &Host) -> Vec<Shown> {
+fn shown(host: &Host) -> Vec<PicturePart> {
     let (w, h) = host.size;
     let of = |i: u32| {
         let at = DVec2::new(f64::from(i % w) + 0.5, f64::from(i / w) + 0.5);
         let ndc = DVec2::new(2.0 * at.x / f64::from(w) - 1.0, 1.0 - 2.0 * at.y / f64::from(h));
         match host.cast(ndc) {
-            None => Shown::Sky,
-            Some((p, _)) if p.length() > 100.0 => Shown::Hills,
-            Some(_) => Shown::Meadow,
+            None => PicturePart::Sky,
+            Some((p, _)) if p.length() > 100.0 => PicturePart::Hills,
+            Some(_) => PicturePart::Meadow,
         }
     };
     (0..w * h).map(of).collect()
@@ -298,7 +298,7 @@ fn frames(host: &mut Host, settings: RainSettings) -> Vec<Vec<[u8; 3]>> {
 }
 
 /// Share of the pixels of a part that change by more than 2 of 255 from frame to frame.
-fn changing(frames: &[Vec<[u8; 3]>], parts: &[Shown], part: Shown) -> f64 {
+fn changing(frames: &[Vec<[u8; 3]>], parts: &[PicturePart], part: PicturePart) -> f64 {
     let mut counts = (0, 0);
     for pair in frames.windows(2).take(2) {
         for ((a, b), _) in pair[0].iter().zip(&pair[1]).zip(parts).filter(|(_, p)| **p == part) {
@@ -309,14 +309,14 @@ fn changing(frames: &[Vec<[u8; 3]>], parts: &[Shown], part: Shown) -> f64 {
 }
 
 /// How alike what changes is `dx` and `dy` pixels off, before the hills: 1 where it is the same.
-fn alike(frames: &[Vec<[u8; 3]>], parts: &[Shown], width: usize, (dx, dy): (usize, usize)) -> f64 {
+fn alike(frames: &[Vec<[u8; 3]>], parts: &[PicturePart], width: usize, (dx, dy): (usize, usize)) -> f64 {
     let (mut both, mut own) = (0.0, 0.0);
     // Frames that have no streak in common.
     for pair in frames.windows(2).skip(2) {
         let change = |i: usize| f64::from(pair[1][i][1]) - f64::from(pair[0][i][1]);
         for i in 0..parts.len().saturating_sub(dx + dy * width) {
             let there = i + dx + dy * width;
-            if i % width + dx < width && parts[i] == Shown::Hills && parts[there] == Shown::Hills {
+            if i % width + dx < width && parts[i] == PicturePart::Hills && parts[there] == PicturePart::Hills {
                 both += change(i) * change(there);
                 own += 0.5 * (change(i).powi(2) + change(there).powi(2));
             }
@@ -343,7 +343,8 @@ fn trainees_see_rain_by_day_and_no_snow() {
     let mut seen = |name: &str, settings: RainSettings| {
         let frames = frames(&mut host, settings);
         save(&host, &frames[2], &format!("rain_by_day_{name}.png"));
-        let [sky, hills, meadow] = [Shown::Sky, Shown::Hills, Shown::Meadow].map(|p| changing(&frames, &parts, p));
+        let [sky, hills, meadow] =
+            [PicturePart::Sky, PicturePart::Hills, PicturePart::Meadow].map(|p| changing(&frames, &parts, p));
         let [along, across] = [(0, 5), (2, 0)].map(|step| alike(&frames, &parts, size.0 as usize, step));
         println!(
             "| +RA | 1/{:.0} | {} | {:.1} | {:.1} | {:.1} | {along:.2} | {across:.2} |",
@@ -382,7 +383,7 @@ fn a_gain_keeps_the_mean_of_what_lies_far_off_and_is_said_in_the_report() {
             paint(&host);
             host.record(Stages::ALL.without(Stages::TONE)).unwrap();
             let pixels = host.pixels();
-            for (p, _) in pixels.iter().zip(&parts).filter(|(_, s)| **s == Shown::Hills) {
+            for (p, _) in pixels.iter().zip(&parts).filter(|(_, s)| **s == PicturePart::Hills) {
                 (0..3).for_each(|i| sums[i] += f64::from(p[i]));
             }
         }

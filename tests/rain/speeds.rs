@@ -4,13 +4,13 @@
 use welkin::rain::drops::{density_factor, terminal_speed_m_s};
 
 /// Air and water at a temperature (C) and pressure (Pa).
-struct Air {
+struct AirState {
     density: f64,
     viscosity: f64,
     free_path_m: f64,
 }
 
-impl Air {
+impl AirState {
     fn at(temperature_c: f64, pressure_pa: f64) -> Self {
         let kelvin = temperature_c + 273.15;
         let viscosity = (1.718 + 0.0049 * temperature_c) * 1e-5;
@@ -20,7 +20,7 @@ impl Air {
 }
 
 /// Terminal speed, m/s, of a water drop of `d` metres (Beard 1976, regimes 2 and 3: 19 micrometres to 7 mm).
-fn beard(air: &Air, d: f64) -> f64 {
+fn beard(air: &AirState, d: f64) -> f64 {
     let (gravity, surface_tension, excess) = (9.806_65, 0.0728, 998.2 - air.density);
     let series = |x: f64, b: &[f64]| b.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let reynolds = if d < 1.07e-3 {
@@ -44,7 +44,7 @@ fn sizes() -> impl Iterator<Item = f64> {
 
 #[test]
 fn speeds_follow_the_drag_of_falling_spheres_and_flattened_drops() {
-    let laboratory = Air::at(20.0, 101_325.0);
+    let laboratory = AirState::at(20.0, 101_325.0);
     for mm in sizes() {
         let off = terminal_speed_m_s(mm) / beard(&laboratory, mm * 1e-3) - 1.0;
         let allowed = if mm < 0.7 { 0.025 } else { 0.01 };
@@ -55,8 +55,8 @@ fn speeds_follow_the_drag_of_falling_spheres_and_flattened_drops() {
 /// The exponent 0.4 (Foote and du Toit 1969) stands for all sizes; the law of drag says how much each gains.
 #[test]
 fn thin_air_lets_drops_fall_faster_by_the_law_of_drag() {
-    let level = Air::at(15.0, 101_325.0);
-    for (altitude, air) in [(2000.0, Air::at(2.0, 79_495.0)), (5000.0, Air::at(-17.5, 54_020.0))] {
+    let level = AirState::at(15.0, 101_325.0);
+    for (altitude, air) in [(2000.0, AirState::at(2.0, 79_495.0)), (5000.0, AirState::at(-17.5, 54_020.0))] {
         for mm in sizes().filter(|mm| *mm >= 0.5) {
             let want = beard(&air, mm * 1e-3) / beard(&level, mm * 1e-3);
             let off = density_factor(air.density) / want - 1.0;

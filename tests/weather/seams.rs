@@ -82,6 +82,8 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         rain_mm_h,
         drizzle_mm_h,
         snow_mm_h,
+        grain_share: _,
+        crystal_share: _,
         ice_pellets_mm_h,
         hail_mm_h,
         freezing,
@@ -90,6 +92,8 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         liquid_extinction_per_m,
         solid_extinction_per_m,
     } = precipitation;
+    // The shares of its kinds may leap where there is no snow.
+    out.extend(precipitation.snow_kinds_mm_h());
     out.extend([rain_mm_h, drizzle_mm_h, snow_mm_h, ice_pellets_mm_h, hail_mm_h, freezing, showers, thunder]);
     out.extend([liquid_extinction_per_m, solid_extinction_per_m]);
     for slab in clouds {

@@ -18,6 +18,7 @@ use welkin::{
 };
 
 use super::world::World;
+use crate::coarse_sky::coarse_sky;
 
 /// Pixels of every picture.
 pub const SIZE: (u32, u32) = (240, 135);
@@ -166,21 +167,6 @@ pub struct Scene {
     pub tier_0: bool,
 }
 
-/// A sky that is built in an instant.
-fn coarse() -> SkySettings {
-    SkySettings {
-        orders: 4,
-        suns: 32,
-        altitudes: 14,
-        zeniths: 11,
-        azimuths: 7,
-        rule_zeniths: 6,
-        rule_azimuths: 8,
-        build_panels: 2,
-        ..SkySettings::default()
-    }
-}
-
 impl Scene {
     /// A clear day in the yard, drawn in one call without history.
     pub fn new(name: &str, weather: Weather) -> Self {
@@ -210,7 +196,7 @@ impl Scene {
             time_s: 10.0,
             flags: FrameFlags::NO_HISTORY,
             rain: RainSettings::default(),
-            sky: coarse(),
+            sky: coarse_sky(),
             tone: ToneCurve::default(),
             exposure: None,
             ground: GroundModel::default(),

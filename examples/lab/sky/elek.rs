@@ -15,8 +15,8 @@ use welkin::gpu::{Device, readback};
 use welkin::sky::Planet;
 use welkin::sky::candidates::ElekTable;
 
-use super::{Drawn, Pixel, Veil, camera_group, camera_layout, moving, sized};
-use crate::scenes::{Air, SkyScene};
+use super::{Pixel, SkyDraw, Veil, camera_group, camera_layout, moving, sized};
+use crate::scenes::{SkyAir, SkyScene};
 use crate::timing::{target, timed};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -59,7 +59,7 @@ pub struct Elek {
 }
 
 impl Elek {
-    /// Makes the textures and passes; [`Drawn::rebuild`] fills them.
+    /// Makes the textures and passes; [`SkyDraw::rebuild`] fills them.
     pub fn new(device: &Arc<Device>, table: ElekTable) -> Result<Self> {
         let gpu = &device.device;
         let source = wgpu::ShaderSource::Wgsl(include_str!("elek.wgsl").into());
@@ -105,7 +105,7 @@ impl Elek {
         Ok(Self {
             device: device.clone(),
             table,
-            planet: Air::Clear.planet(),
+            planet: SkyAir::Clear.planet(),
             uniform: uniform.clone(),
             build: [
                 pass("build", &[Some(&build_layout)], &[FORMAT]),
@@ -145,7 +145,7 @@ impl Elek {
     }
 }
 
-impl Drawn for Elek {
+impl SkyDraw for Elek {
     fn rebuild(&mut self, planet: &Planet) -> Result<f64> {
         self.planet = *planet;
         let mut seconds = 0.0;

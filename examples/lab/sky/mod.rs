@@ -13,7 +13,7 @@ use welkin::sky::{Lamp, Observer, Planet, SkySettings, SkyTables, SkyVolume};
 use welkin::{Result, Status};
 
 use crate::picture::Picture;
-use crate::scenes::{Air, SkyScene};
+use crate::scenes::{SkyAir, SkyScene};
 use crate::timing::{target, timed};
 
 pub mod elek;
@@ -92,7 +92,7 @@ pub struct TrueScene {
 }
 
 /// The truth of all scenes of an air, from `out/lab` where it was computed before.
-pub fn truth(scenes: &[SkyScene], air: Air, size: (u32, u32), quick: bool) -> Result<Vec<TrueScene>> {
+pub fn truth(scenes: &[SkyScene], air: SkyAir, size: (u32, u32), quick: bool) -> Result<Vec<TrueScene>> {
     let planet = air.planet();
     let resolution = if quick { Resolution::QUICK } else { Resolution::FINE };
     let options = Truth { disc_strips: 3, resolution, threads: 2, ..Default::default() };
@@ -174,7 +174,7 @@ fn keep(path: &PathBuf, numbers: &[f64]) -> Result<()> {
 }
 
 /// A way to draw a sky, ready.
-pub trait Drawn {
+pub trait SkyDraw {
     /// Builds what depends on the planet, s.
     fn rebuild(&mut self, planet: &Planet) -> Result<f64>;
     /// The air in every pixel.
@@ -187,11 +187,13 @@ pub trait Drawn {
 ///
 /// # Errors
 /// GPU faults; what is no sky.
-pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn Drawn>> {
+pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn SkyDraw>> {
     match candidate.method {
         Method::Sky(settings) => Ok(Box::new(Library::new(device, &settings)?)),
         Method::SkyElek(table) => Ok(Box::new(elek::Elek::new(device, table)?)),
-        Method::Fog(_) | Method::Rain(_) => Err(welkin::Error::range("candidate", "one of the sky", candidate.name)),
+        Method::Fog(_) | Method::Rain(_) | Method::Stars(_) => {
+            Err(welkin::Error::range("candidate", "one of the sky", candidate.name))
+        }
     }
 }
 
@@ -212,7 +214,7 @@ impl Library {
     /// GPU faults.
     pub fn new(device: &Arc<Device>, settings: &SkySettings) -> Result<Self> {
         let mut tables = SkyTables::new(device, settings)?;
-        let planet = Air::Clear.planet();
+        let planet = SkyAir::Clear.planet();
         build(device, &mut tables, &planet)?;
         let mut probe = Probe::with_tables(tables, &planet)?;
         let volume = SkyVolume::new(probe.tables())?;
@@ -290,7 +292,7 @@ pub fn sized(slot: &mut Option<wgpu::Texture>, device: &Device, size: (u32, u32)
     slot.insert(texture).create_view(&Default::default())
 }
 
-impl Drawn for Library {
+impl SkyDraw for Library {
     fn rebuild(&mut self, planet: &Planet) -> Result<f64> {
         build(&self.device, self.probe.tables(), planet)
     }
@@ -309,7 +311,7 @@ impl Drawn for Library {
     }
 
     fn frame(&mut self, size: (u32, u32), step: usize, follows: bool) -> Result<f64> {
-        let planet = Air::Clear.planet();
+        let planet = SkyAir::Clear.planet();
         let view = sized(&mut self.target, &self.device, size);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
         self.volume.prepare(&mut encoder, self.probe.tables(), &moving(&planet, step, follows))?;

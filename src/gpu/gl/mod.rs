@@ -13,7 +13,7 @@
 //! OpenGL counts rows from the bottom, wgpu from the top. wgpu's backend turns every vertex shader's y round
 //! (`gl_Position.y` is negated), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image is the
 //! other way round, and rows are never copied to mend that. Instead:
-//! - Geometry: multiply wgpu's clip-space y by -1 ([`flip_clip`] of the projection). The two turns cancel, and wgpu's
+//! - Geometry: multiply wgpu's clip-space y by -1 ([`CLIP_Y_SIGN`]). The two turns cancel, and wgpu's
 //!   front faces are clockwise then (`wgpu::FrontFace::Cw`), because it does not know of this turn.
 //! - Full-screen passes: `@builtin(position).xy` is the host's texel, counted from its first row, in colour and depth
 //!   alike: `textureLoad` needs no turn. Only the way from texel to ray does: y in clip space is `2 (y + 0.5) / h - 1`
@@ -125,8 +125,3 @@ pub struct GlHostDesc {
 
 /// Sign of clip-space y with which wgpu's picture comes out the right way up in a host's image.
 pub const CLIP_Y_SIGN: f32 = -1.0;
-
-/// A projection (column-major, wgpu's clip space) whose picture comes out the right way up in a host's image.
-pub fn flip_clip(projection: glam::Mat4) -> glam::Mat4 {
-    glam::Mat4::from_scale(glam::Vec3::new(1.0, CLIP_Y_SIGN, 1.0)) * projection
-}

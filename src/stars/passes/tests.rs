@@ -7,6 +7,7 @@ use crate::{
     light::luminance,
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, Place, ViewRays},
     stars::{Heavens, catalogue, reference},
+    textures::texture,
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -35,7 +36,7 @@ impl Night {
     /// Draws the stars and reads them back; `depth` is written over the left half of the picture, beyond it is the far end.
     fn draw(&mut self, view: &StarView<'_>, depth: Option<StarDepth<'_>>) -> Vec<[f64; 3]> {
         let device = self.device.clone();
-        let target = texture(&device, view.size, FORMAT, 1);
+        let target = texture(&device, view.size.into(), FORMAT, 1);
         self.pass.prepare(&device, &self.settings, view, FORMAT, depth).unwrap();
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let target_view = target.create_view(&Default::default());
@@ -59,24 +60,10 @@ impl Night {
     }
 }
 
-fn texture(device: &Device, size: [u32; 2], format: wgpu::TextureFormat, sample_count: u32) -> wgpu::Texture {
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | if sample_count == 1 { wgpu::TextureUsages::COPY_SRC } else { wgpu::TextureUsages::empty() },
-        view_formats: &[],
-    })
-}
-
 /// A depth texture that holds one depth.
 fn depth_of(device: &Device, size: [u32; 2], samples: u32, depth: f32) -> wgpu::TextureView {
-    let view = texture(device, size, wgpu::TextureFormat::Depth32Float, samples).create_view(&Default::default());
+    let view =
+        texture(device, size.into(), wgpu::TextureFormat::Depth32Float, samples).create_view(&Default::default());
     let mut encoder = device.device.create_command_encoder(&Default::default());
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

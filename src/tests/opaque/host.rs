@@ -13,18 +13,7 @@ pub struct Host {
 }
 
 pub fn texture(device: &Device, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-    use wgpu::TextureUsages as U;
-    let copied = if samples == 1 { U::COPY_DST } else { U::empty() };
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: U::TEXTURE_BINDING | U::COPY_SRC | U::RENDER_ATTACHMENT | copied,
-        view_formats: &[],
-    })
+    crate::textures::texture(device, SIZE, format, samples)
 }
 
 pub fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
