@@ -106,6 +106,12 @@ static bool evening_clouds(demo *d)
     return cloudy(d, l, 2) && sun_at(d, 300, 7);
 }
 
+static bool above_clouds(demo *d)
+{
+    wk_cloud_layer l = layer(WK_CLOUD_STRATOCUMULUS, 0.85, 900.0);
+    return cloudy(d, &l, 1) && sun_at(d, 310, 14);
+}
+
 static bool cloud_shadows(demo *d)
 {
     wk_cloud_layer l = layer(WK_CLOUD_CUMULUS, 0.4, 1500.0);
@@ -202,12 +208,14 @@ static bool hail(demo *d)
 static bool wet_road(demo *d)
 {
     wk_weather w = weather_here(40e3, 0.6);
+    wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.4, 1200.0);
     w.has = WK_WEATHER_HAS_SURFACE_STATE;
     w.surface_state = WK_SURFACE_STANDING_WATER;
     w.wind_speed_m_s = 2.0;
     w.wind_from_deg = 250.0;
     /* Against the sun, as a photographer would: a stop less. */
-    return sun_at(d, 255, 9) && set(d, &w, NULL) &&
+    return sun_at(d, 255, 9) && set(d, &w, &heaps) &&
+           weather_check(wk_context_set_cloud_model(d->weather.context, WK_CLOUD_MODEL_VOLUME)) &&
            weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -1.0));
 }
 
@@ -348,6 +356,7 @@ const shot SHOTS[] = {
     {"fair_cumulus", "Fair-weather cumulus", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, fair_cumulus, WORLD, NULL},
     {"evening_clouds", "Cumulus and altocumulus, low sun", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, evening_clouds, WORLD, NULL},
     {"cloud_shadows", "Shadows of cumulus", 0.0, -4.8, 500.0, SITE_VIEW_AZIMUTH_DEG + 4.0, -6.0, 60.0, cloud_shadows, WORLD, NULL},
+    {"above_clouds", "Stratocumulus from above, low sun", HIGH(2300.0, SITE_VIEW_AZIMUTH_DEG, -6.0, 50.0), above_clouds, NO_WORLD, NULL},
     {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL},
     {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
     {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},

@@ -11,19 +11,23 @@ const FLASH_TAKES: f32 = 0.2;
 // Farthest that the clouds' face is lit, m.
 const FLASH_FARTHEST: f32 = 60000.0;
 
-// Luminance of the clouds' face where a ray meets it. A source h from the face, which sends k h / (r^2 + h^2)^(3/2) at distance r
-// along it: of light that wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over pi.
-fn flash_on_clouds(d: vec3f) -> vec3f {
-    let way = frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
+// Along a ray to the level face of a deck, m; not above 0 where it does not meet it.
+fn flash_way(d: vec3f) -> f32 {
+    return frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
+}
+
+// Luminance of clouds where a ray meets their face. A source h from the face sends k h / R^3 to a place at distance R: of light that
+// wanders through a cloud, k is F s / (2 pi^2); of light that falls on it, I times its reflectance over pi.
+fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
     if way <= 0.0 || way > FLASH_FARTHEST {
         return vec3f(0.0);
     }
     var sum = 0.0;
     for (var i = 0u; i < frame.flash_count; i++) {
         let source = frame.flashes[i];
-        let aside = d.xy * way - source.position.xy;
+        let to = d * way - source.position;
         let h = source.height;
-        sum += source.clouds * h * pow(dot(aside, aside) + h * h, -1.5);
+        sum += source.clouds * h * pow(max(dot(to, to), h * h), -1.5);
     }
     // It ends softly where it is cut off.
     let left = exp(-frame.flash_haze * way) * (1.0 - smoothstep(0.5, 1.0, way / FLASH_FARTHEST));

@@ -1,5 +1,6 @@
 // What hangs in the sky: clouds, and stars behind the sky's own light; in a pixel of the picture, or in any direction from the camera.
 //!include "between/air.wgsl"
+//!include "between/flash.wgsl"
 //!include "common/octahedron.wgsl"
 
 // Layers of the sky. The last is what stands behind the sky's own light, in the night floor's place: stars and the glow between them.
@@ -19,7 +20,7 @@ const ROUND_SIDE: f32 = 96.0;
 struct Hung {
     // Of clouds: their light, with the exposure on it, and what they let through.
     clouds: vec4f,
-    // log2 of the distances between which they stand, m; the share of direct light at what the host drew.
+    // log2 of the distances between which they stand, m, or 0; the share of direct light at what the host drew.
     reach: vec3f,
     // cd/m^2, behind the sky's own light.
     behind: vec3f,
@@ -31,7 +32,7 @@ fn hung_in(pixel: vec2i, range: f32) -> Hung {
     if CLOUDS {
         hung.clouds = textureLoad(sky_layers, pixel, 0, 0);
     }
-    if CLOUDS && range < RANGE_SKY {
+    if CLOUDS && (FLASH || range < RANGE_SKY) {
         hung.reach = textureLoad(sky_layers, pixel, 1, 0).rgb;
     }
     if STARS {

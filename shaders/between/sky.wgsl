@@ -1,6 +1,5 @@
 // The sky in a direction, fog left out: behind everything in the picture, in mirrors, in the cube map.
 //!include "between/hung.wgsl"
-//!include "between/flash.wgsl"
 
 // How much of what hangs behind the sky's own light stands in the night floor's place.
 var<private> behind_share: f32;
@@ -26,7 +25,9 @@ fn open_sky(d: vec3f, clear: vec3f, hung: Hung) -> vec3f {
 fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
     var light = with_clouds(Veil(behind, vec3f(0.0)), hung, RANGE_SKY).light;
     if FLASH {
-        light += flash_on_clouds(d) * cloud_cover(hung);
+        let known = CLOUDS && hung.reach.y > 0.0;
+        let way = select(flash_way(d), exp2(0.5 * (hung.reach.x + hung.reach.y)), known);
+        light += flash_on_clouds(d, way) * cloud_cover(hung);
     }
     return light;
 }

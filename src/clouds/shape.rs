@@ -22,6 +22,9 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
+/// Number of the map at which a cloud reaches the layer's top, at least: one place of seventy. Where more did, tops would be cut flat.
+const HIGHEST: f64 = 2.2;
+
 /// Columns whose mean stands for all.
 const COLUMNS: usize = 32;
 
@@ -57,7 +60,7 @@ impl Shape {
             scale_m: slab.scale_m,
             extinction_per_m: slab.optical_depth / slab.thickness_m,
             threshold,
-            dome: mix(sheet, 0.4, slab.fibre),
+            dome: mix(sheet, 0.4, slab.fibre).max(HIGHEST - threshold),
             rough: mix(mix(mix(0.35, 0.5, slab.cellular), 0.9, heaps), 0.8, slab.fibre),
             soft: mix(mix(0.3, 0.12, heaps), 1.2, slab.fibre),
             cellular: slab.cellular,

@@ -11,7 +11,7 @@ pub(crate) fn yes(b: bool) -> f64 {
 }
 
 /// Most constants that the effects may add.
-const MOST: usize = 40;
+const MOST: usize = 48;
 
 /// A list of constants, without allocation.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use welkin::{
+    clouds::CloudModel,
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, FrameFlags, Shared, Stages, View},
     gpu::readback,
@@ -355,4 +356,32 @@ fn pictures_to_look_at() {
             println!("{name} {k}: mean {:.4} most {:.1} cd/m^2", mean(&picture), most(&picture));
         }
     }
+}
+
+/// Between clouds nothing glows, and of clouds most where the flash is.
+#[test]
+fn a_flash_lights_the_clouds_about_it_and_not_the_gaps_between_them() {
+    let weather = Weather::from_metar("LOWI 121150Z 00000KT 9999 SCT030CB 18/12 Q1015").unwrap().weather;
+    let mut night = Night::new(&weather, (96, 54));
+    night.context.set_cloud_model(CloudModel::Volume);
+    (night.forward, night.depth) = (DVec3::new(0.0, 1.0, 0.45), None);
+    let flash = DVec3::new(0.0, 6000.0, 0.0);
+    night.context.trigger_flash(&at(1.0, flash, FlashKind::InCloud)).unwrap();
+    let (dark, lit) = (night.pure(0.5), night.pure(1.01));
+    let glow: Vec<f64> = lit.iter().zip(&dark).map(|(lit, dark)| luminance(lit) - luminance(dark)).collect();
+    let camera = night.camera();
+    let brightest = (0..glow.len()).max_by(|a, b| glow[*a].total_cmp(&glow[*b])).unwrap();
+    let toward = ray(&camera, (brightest as u32 % 96, brightest as u32 / 96), night.size);
+    let level = toward.truncate().normalize().angle_to(flash.truncate().normalize()).abs().to_degrees();
+    let mut sorted = glow.clone();
+    sorted.sort_by(f64::total_cmp);
+    let at = |share: f64| sorted[(sorted.len() as f64 * share) as usize] / glow[brightest];
+    println!(
+        "glow of {:.2} cd/m^2 {level:.0} deg aside; a tenth of the picture below {:.1e} of it, half below {:.2}",
+        glow[brightest],
+        at(0.1),
+        at(0.5)
+    );
+    assert!(level < 30.0, "{level}");
+    assert!(at(0.1) < 0.01 && at(0.5) < 0.3, "{} {}", at(0.1), at(0.5));
 }
