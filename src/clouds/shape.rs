@@ -62,7 +62,7 @@ impl Shape {
             threshold,
             dome: mix(sheet, 0.4, slab.fibre).max(HIGHEST - threshold),
             rough: mix(mix(mix(0.35, 0.5, slab.cellular), 0.9, heaps), 0.8, slab.fibre),
-            soft: mix(mix(0.3, 0.12, heaps), 1.2, slab.fibre),
+            soft: mix(mix(mix(0.3, 0.12, heaps), 0.8, slab.cellular), 1.2, slab.fibre),
             cellular: slab.cellular,
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
