@@ -377,11 +377,11 @@ fn a_flash_lights_the_clouds_about_it_and_not_the_gaps_between_them() {
     sorted.sort_by(f64::total_cmp);
     let at = |share: f64| sorted[(sorted.len() as f64 * share) as usize] / glow[brightest];
     println!(
-        "glow of {:.2} cd/m^2 {level:.0} deg aside; a tenth of the picture below {:.1e} of it, half below {:.2}",
+        "glow of {:.2} cd/m^2 {level:.0} deg aside; a tenth of the picture below {:.1e} of it, half below {:.4}",
         glow[brightest],
         at(0.1),
         at(0.5)
     );
     assert!(level < 30.0, "{level}");
-    assert!(at(0.1) < 0.01 && at(0.5) < 0.3, "{} {}", at(0.1), at(0.5));
+    assert!(at(0.1) < 0.01 && at(0.5) < 0.05, "{} {}", at(0.1), at(0.5));
 }
