@@ -107,7 +107,7 @@ pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgp
     texture.create_view(&Default::default())
 }
 
-/// All layers of a texture, also of one that has a single layer.
+/// All layers of a texture. OpenGL finds nothing in a single one.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),

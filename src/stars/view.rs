@@ -88,7 +88,9 @@ impl StarsView {
     }
 
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
-        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
+        // OpenGL takes a texture for an array by its layers: of one alone nothing would be read as an array.
+        let layers = if device.caps().backend == wgpu::Backend::Gl { 2 } else { 1 };
+        let size = wgpu::Extent3d { depth_or_array_layers: layers, ..color.size() };
         if self.layer.as_ref().is_some_and(|(texture, ..)| texture.size() != size) {
             self.layer = None;
         }
@@ -106,7 +108,11 @@ impl StarsView {
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             });
-            let view = texture.create_view(&Default::default());
+            let view = texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
             let layers = bind::as_layers(&texture);
             (texture, view, layers)
         });
@@ -242,7 +248,9 @@ impl DrawnEffect for StarsView {
     }
 
     fn bytes(&self) -> u64 {
-        let layer = self.layer.as_ref().map_or(0, |(t, ..)| 8 * u64::from(t.width()) * u64::from(t.height()));
+        let layer = self.layer.as_ref().map_or(0, |(t, ..)| {
+            8 * u64::from(t.depth_or_array_layers()) * u64::from(t.width()) * u64::from(t.height())
+        });
         layer + self.passes.as_ref().map_or(0, |passes| passes.0.bytes() + passes.1.bytes())
     }
 

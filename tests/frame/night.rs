@@ -26,24 +26,30 @@ pub struct Night {
     view: View,
     color: wgpu::Texture,
     frame_id: u64,
+    cd_m2_per_unit: f64,
 }
 
 impl Night {
     pub fn new(size: (u32, u32)) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        Self::on(device, size, wgpu::TextureFormat::Rgba32Float)
+    }
+
+    fn on(device: Arc<Device>, size: (u32, u32), format: wgpu::TextureFormat) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, coarse()).unwrap();
         context.set_clock(NIGHT, 0.0).unwrap();
         context.set_moon(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -60.0 })).unwrap();
         let view = View::new(&context).unwrap();
-        let color = target(&device, size);
-        Self { device, context, view, color, frame_id: 0 }
+        let color = target(&device, size, format);
+        Self { device, context, view, color, frame_id: 0, cd_m2_per_unit: 1.0 }
     }
 
     /// The picture, cd/m^2, of a camera that looks to an azimuth and elevation, degrees.
     pub fn picture(&mut self, camera: &Camera) -> Vec<[f32; 4]> {
         self.frame_id += 1;
-        let frame = Frame::new(self.frame_id, *camera, &self.color, None);
+        let mut frame = Frame::new(self.frame_id, *camera, &self.color, None);
+        frame.cd_m2_per_unit = self.cd_m2_per_unit;
         self.view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
         readback::rgba(&self.device, &self.color).unwrap()
     }
@@ -54,7 +60,7 @@ impl Night {
     }
 }
 
-fn target(device: &Device, (width, height): (u32, u32)) -> wgpu::Texture {
+fn target(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -62,7 +68,7 @@ fn target(device: &Device, (width, height): (u32, u32)) -> wgpu::Texture {
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
+        format,
         usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
         view_formats: &[],
     })
@@ -140,6 +146,33 @@ fn stars_send_the_same_light_at_every_size_of_the_picture() {
 }
 
 #[test]
+fn opengl_shows_the_same_stars() {
+    let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };
+    let Ok(device) = Device::headless(&options) else {
+        eprintln!("no OpenGL here");
+        return;
+    };
+    let size = (160, 90);
+    let camera = camera(150.0, 40.0);
+    // OpenGL ES draws into half floats at most.
+    let half = wgpu::TextureFormat::Rgba16Float;
+    let vulkan = Device::headless(&DeviceOptions::default()).unwrap();
+    let [here, there] = [vulkan, device].map(|device| {
+        let mut night = Night::on(device, size, half);
+        night.cd_m2_per_unit = 1e-3;
+        let picture = night.picture(&camera);
+        let mean = picture.iter().map(|p| f64::from(p[1])).sum::<f64>() / picture.len() as f64;
+        let most = picture.iter().fold(0f32, |most, p| most.max(p[1]));
+        [mean, f64::from(most)]
+    });
+    println!("mean and brightest pixel, mcd/m^2: {here:.6?}, with OpenGL {there:.6?}");
+    assert!(here[1] > 10.0 * here[0], "there are stars");
+    for (here, there) in here.into_iter().zip(there) {
+        assert!((there / here - 1.0).abs() < 0.02, "{there} with OpenGL, {here} without");
+    }
+}
+
+#[test]
 fn the_light_of_stars_does_not_flicker_while_the_camera_turns() {
     let size = (320, 180);
     let mut night = Night::new(size);
@@ -206,7 +239,7 @@ fn the_layer_of_stars_rests_while_nothing_moves() {
     assert_eq!(night.view.report().passes, 2, "the heavens turned");
     assert!(later != first);
     // Another picture's size takes another layer.
-    night.color = target(&night.device, (320, 180));
+    night.color = target(&night.device, (320, 180), wgpu::TextureFormat::Rgba32Float);
     night.picture(&camera(150.0, 40.0));
     assert_eq!(night.view.report().passes, 2);
 }
