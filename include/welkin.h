@@ -2950,8 +2950,8 @@ wk_status wk_context_get_light_at(const wk_context *context,
                                   uint32_t light_size);
 
 /**
- * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog and
- * precipitation count, the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
+ * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
+ * precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
  * your header.
  * Thread: concurrent.
  */
@@ -2979,8 +2979,8 @@ wk_status wk_context_get_between_at(const wk_context *context,
 
 /**
  * Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
- * north, up) at the place, of length 1 within 0.001. There the air, fog, rain and snow before it leave 5 % of the light of 550 nm, and
- * so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
+ * north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn as a volume before it leave 5 % of the
+ * light of 550 nm, and so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
  */
@@ -3031,7 +3031,7 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * Queries: the sky's light by direction
  *
  * For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
- * picture shows it where the host drew nothing. It has the clear air, the closed part of the cloud deck, fog with what
+ * picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with what
  * falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
  * (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
  *
@@ -3853,7 +3853,7 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
-/** The veil of the view's last frame: air, fog, the weather's rain, and rain areas. */
+/** The veil of the view's last frame: air, clouds drawn as a volume, fog, the weather's rain, and rain areas. */
 typedef struct wk_frame_textures {
     /** sizeof(wk_frame_textures) of your header. */
     uint32_t struct_size;
@@ -3920,7 +3920,7 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * ====================================================================================================
  * A cube map of what stands around the camera
  *
- * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its cloud deck, fog and
+ * For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its clouds, fog and
  * rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
  * itself), stars and the host's objects; the night's glow is even. Its axes are those of the host's world: a shader looks
  * it up by the reflected direction as it is. Level m of the 7 is what a mirror of roughness m/6 shows (the distribution of Trowbridge

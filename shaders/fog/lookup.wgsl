@@ -221,7 +221,8 @@ fn ray_course(u: FogUniform, h0: f32, mu: f32, t: f32) -> RayCourse {
     return RayCourse(end_altitude, end_mu, level, passes, falls, low, low_mu, before, after, high, bend);
 }
 
-// Where a ray enters and leaves a slab whose lower and upper end it meets after `reach`, counted from its lowest place.
+// Distances from the eye at which a ray enters and leaves a slab. `reach`: distances of the slab's lower and upper end from the ray's
+// lowest place.
 fn slab_ends(c: RayCourse, t: f32, reach: vec2f) -> vec2f {
     let near = min(reach.x, c.before);
     let far = min(reach.y, c.before);

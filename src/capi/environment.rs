@@ -1,6 +1,6 @@
 //! A cube map of what stands around the camera
 //!
-//! For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its cloud deck, fog and
+//! For reflections in the host's own things: paint, water, windows. Six faces of 64 x 64 texels show the sky with its clouds, fog and
 //! rain as far as the horizon, and the planet's ground below, without the discs of sun and moon (the host lights by those
 //! itself), stars and the host's objects; the night's glow is even. Its axes are those of the host's world: a shader looks
 //! it up by the reflected direction as it is. Level m of the 7 is what a mirror of roughness m/6 shows (the distribution of Trowbridge

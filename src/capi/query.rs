@@ -320,8 +320,8 @@ unsafe fn light(
     })
 }
 
-/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog and
-/// precipitation count, the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
+/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. Air, haze, fog,
+/// precipitation and clouds drawn as a volume count, a deck and the host's objects do not. `segment_size` and `between_size` are the sizes of an element in
 /// your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
@@ -392,8 +392,8 @@ unsafe fn way(
 }
 
 /// Gets the slant visual range from a place at a simulation time, m: how far a black object is seen along a direction, a vector (east,
-/// north, up) at the place, of length 1 within 0.001. There the air, fog, rain and snow before it leave 5 % of the light of 550 nm, and
-/// so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
+/// north, up) at the place, of length 1 within 0.001. There the air, fog, rain, snow and clouds drawn as a volume before it leave 5 % of the
+/// light of 550 nm, and so 5 % of its contrast. Infinite where more is left at the end of the air or on the planet's ground.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]

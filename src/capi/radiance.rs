@@ -1,7 +1,7 @@
 //! Queries: the sky's light by direction
 //!
 //! For sensors, reflections and lighting that the host computes itself: how bright the sky is towards a direction, as the
-//! picture shows it where the host drew nothing. It has the clear air, the closed part of the cloud deck, fog with what
+//! picture shows it where the host drew nothing. It has the clear air, clouds as the model draws them, fog with what
 //! falls in it, the night's glow, and below the horizon the planet's own ground. It has no discs of sun and moon
 //! (wk_context_get_light has their light), no stars and planets, no rain areas, and nothing that the host drew.
 //!

@@ -25,7 +25,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_veil.rs"));
 
-/// The veil of the view's last frame: air, fog, the weather's rain, and rain areas.
+/// The veil of the view's last frame: air, clouds drawn as a volume, fog, the weather's rain, and rain areas.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_frame_textures {

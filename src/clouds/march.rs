@@ -70,7 +70,7 @@ struct March {
     distance: f64,
 }
 
-/// Ends of the way to the sun, and depth to the sides: see `cloud_sun_way` and `cloud_depths`.
+/// A place inside of a layer's cloud.
 struct AtPlace<'a> {
     of: &'a Lit<'a>,
     position_m: DVec3,
@@ -260,6 +260,7 @@ impl AtPlace<'_> {
         depth
     }
 
+    /// Scaled depths of cloud about it: `cloud_depths`.
     fn depths(&self, to_sun: DVec3) -> Depths {
         let s = &self.of.field.shape;
         let scaled = s.extinction_per_m * self.of.scale;

@@ -9,7 +9,7 @@
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures.
 //!
-//! The deck is drawn by the composition itself (`shaders/frame/composite.wgsl`).
+//! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
 //! # Error
 //! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of what falls on the cube

@@ -233,7 +233,7 @@ impl CloudPasses {
         self.picture = None;
     }
 
-    /// The picture that will hold the clouds once what is wanted is made.
+    /// The layers that the composition reads: those that this draw writes, or else those that were written last.
     pub fn layers(&self, wanted: &Wanted) -> Option<wgpu::TextureView> {
         let picture = self.picture.as_ref()?;
         let which = if wanted.resolve { picture.to_make(wanted.is_begun) } else { picture.newest };

@@ -1,7 +1,11 @@
 //! The clouds in all directions from the camera, for what shows more than the picture: mirrors on the ground, the cube map. A frame makes some
 //! rows of them anew; `shaders/between/hung.wgsl` looks them up below the picture of the first layer.
 
-use super::{picture::SEEN, rows::Rows, shadow_map::Standing};
+use super::{
+    picture::SEEN,
+    rows::{self, Rows},
+    shadow_map::Standing,
+};
 use crate::{
     error::Result,
     gpu::{
@@ -78,23 +82,8 @@ impl Round {
         let rests = self.around == Some(here);
         let holds = self.around.is_some_and(|before| !is_pure && !here.leaps_from(&before));
         self.around = Some(here);
-        let Some((first, rows)) = self.rows.due(SIDE, ROWS, rests, holds) else { return 0 };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("clouds all round"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_scissor_rect(0, first, SIDE, rows);
-        pass.set_pipeline(&self.pipeline);
-        for (i, group) in groups.iter().enumerate() {
-            pass.set_bind_group(i as u32, *group, &[]);
-        }
-        pass.draw(0..3, 0..1);
+        let Some((first, count)) = self.rows.due(SIDE, ROWS, rests, holds) else { return 0 };
+        rows::draw(encoder, &self.view, (SIDE, first, count), &self.pipeline, groups);
         1
     }
 

@@ -22,6 +22,32 @@ impl Rows {
     }
 }
 
+/// Draws these rows of a map by a full-screen pipeline, and leaves the others.
+pub(super) fn draw(
+    encoder: &mut wgpu::CommandEncoder,
+    map: &wgpu::TextureView,
+    (width, first, rows): (u32, u32, u32),
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[&wgpu::BindGroup],
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("rows of clouds"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: map,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_scissor_rect(0, first, width, rows);
+    pass.set_pipeline(pipeline);
+    for (i, group) in groups.iter().enumerate() {
+        pass.set_bind_group(i as u32, *group, &[]);
+    }
+    pass.draw(0..3, 0..1);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

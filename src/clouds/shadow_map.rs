@@ -3,7 +3,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{field::Shape, rows::Rows, shadow::LOWEST, tables::CloudTables, uniforms::ShadowUniform};
+use super::{
+    field::Shape,
+    rows::{self, Rows},
+    shadow::LOWEST,
+    tables::CloudTables,
+    uniforms::ShadowUniform,
+};
 use crate::{
     error::Result,
     gpu::{
@@ -130,7 +136,7 @@ impl ShadowMap {
         let rests = self.standing == Some(here);
         let holds = self.standing.is_some_and(|b| !is_pure && !here.leaps_from(&b));
         self.standing = Some(here);
-        let Some((first, rows)) = self.rows.due(TEXELS, ROWS, rests, holds) else { return };
+        let Some((first, count)) = self.rows.due(TEXELS, ROWS, rests, holds) else { return };
         let solid = tables.solid.view();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadows of clouds"),
@@ -143,20 +149,7 @@ impl ShadowMap {
                 bind::buffer(7, &self.block),
             ],
         });
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadows of clouds"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_scissor_rect(0, first, TEXELS, rows);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
+        rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&group]);
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::MutexGuard;
 use glam::DVec3;
 
 use crate::{
+    clouds::CloudRays,
     context::{Context, Light, Scene},
     error::{Error, Result, Status},
     fog::{Between, CONTRAST_THRESHOLD, Law, LowAir, Viewpoint, koschmieder_visibility_m},
@@ -33,7 +34,8 @@ impl Context {
         if distance < 1e-3 {
             return Err(Error::range("to", "at least a millimetre from the other end", to));
         }
-        let through = self.through(&scene, from, offset, time_s)?;
+        let clouds = self.cloud_rays(&scene, time_s)?;
+        let through = self.through(&scene, clouds.as_ref(), from, offset, time_s)?;
         // The logarithm of 1 has a sign of its own.
         let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
@@ -53,7 +55,9 @@ impl Context {
         let Some((_, end, _)) = Ray::new(&medium, scene.place.altitude_m, unit.z).in_air(&medium) else {
             return Ok(f64::INFINITY);
         };
-        let is_seen = |d: f64| Ok(self.through(&scene, position, unit * d, time_s)?[1] > CONTRAST_THRESHOLD);
+        let clouds = self.cloud_rays(&scene, time_s)?;
+        let is_seen =
+            |d: f64| Ok(self.through(&scene, clouds.as_ref(), position, unit * d, time_s)?[1] > CONTRAST_THRESHOLD);
         let (mut near, mut far) = (0.0, 1f64.min(end));
         while is_seen(far)? {
             if far >= end {
@@ -69,7 +73,14 @@ impl Context {
     }
 
     /// Share of light per channel that is left over `offset` metres (east, north, up) from a scene's place.
-    fn through(&self, scene: &Scene, from: DVec3, offset: DVec3, time_s: f64) -> Result<[f64; 3]> {
+    fn through(
+        &self,
+        scene: &Scene,
+        clouds: Option<&CloudRays<'_>>,
+        from: DVec3,
+        offset: DVec3,
+        time_s: f64,
+    ) -> Result<[f64; 3]> {
         let distance = offset.length();
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
@@ -85,7 +96,7 @@ impl Context {
             let fog = low.transmittance(&view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
-        let clouds = self.cloud_rays(scene, time_s)?.map_or(0.0, |clouds| clouds.depth(offset));
+        let clouds = clouds.map_or(0.0, |clouds| clouds.depth(offset));
         let left = (-clouds - self.areas_depth(from, offset, time_s, &scene.conditions)?).exp();
         Ok(through.map(|t| (t * left).min(1.0)))
     }

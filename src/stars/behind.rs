@@ -1,4 +1,4 @@
-//! What stands behind the sky's own light towards one direction, in f64: the twin of `night_light` in `shaders/frame/composite.wgsl` and of
+//! What stands behind the sky's own light towards one direction, in f64: the twin of `night_light` in `shaders/between/sky.wgsl` and of
 //! the layer that it reads, without the points.
 
 use glam::DVec3;
