@@ -14,7 +14,7 @@ use std::{
 
 use crate::{
     almanac::sun::Utc,
-    clouds::{CloudsView, HeldClouds},
+    clouds::{self, CloudsView, HeldClouds},
     error::Result,
     fog::{self, FogUniform, FogView, HeldFog},
     glass::GlassView,
@@ -156,6 +156,7 @@ pub const PARTS: &[Part] = &[
     sky::candidates::SKY,
     rain::candidates::RAIN,
     stars::candidates::STARS,
+    clouds::candidates::CLOUDS,
 ];
 
 /// Two parts of the list that cost more beside each other, and how much under the lamps of a scene.

@@ -24,16 +24,37 @@ struct Hung {
     reach: vec3f,
     // cd/m^2, behind the sky's own light.
     behind: vec3f,
+    // How far the sky is a deck, and what it leaves of the discs of sun and moon.
+    deck: f32,
+    disc: f32,
+}
+
+// Without clouds but a deck.
+fn hung_bare() -> Hung {
+    return Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor, frame.deck_cover, frame.direct_share);
+}
+
+// With clouds drawn as a volume in the deck's place, as far as they are.
+fn hung_with(clouds: vec4f) -> Hung {
+    var hung = hung_bare();
+    if CLOUDS {
+        hung.clouds = mix(hung.clouds, clouds, frame.clouds_drawn);
+        hung.deck = mix(hung.deck, select(0.0, 1.0, DECK_BEHIND), frame.clouds_drawn);
+        hung.disc = mix(hung.disc, 1.0, frame.clouds_drawn);
+    }
+    return hung;
 }
 
 // In a pixel of the picture, or one of its samples, where something is seen at this range.
 fn hung_in(pixel: vec2i, range: f32) -> Hung {
-    var hung = Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor);
+    var clouds = vec4f(0.0, 0.0, 0.0, 1.0);
     if CLOUDS {
-        hung.clouds = textureLoad(sky_layers, pixel, 0, 0);
+        clouds = textureLoad(sky_layers, pixel, 0, 0);
     }
+    var hung = hung_with(clouds);
     if CLOUDS && (FLASH || range < RANGE_SKY) {
         hung.reach = textureLoad(sky_layers, pixel, 1, 0).rgb;
+        hung.reach.z = mix(frame.cloud_shadow.w, hung.reach.z, frame.clouds_drawn);
     }
     if STARS {
         hung.behind = textureLoad(sky_layers, pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
@@ -43,18 +64,13 @@ fn hung_in(pixel: vec2i, range: f32) -> Hung {
 
 // In a direction, in or outside of the picture: clouds without their distance, and no stars.
 fn hung_toward(d: vec3f) -> Hung {
-    var hung = Hung(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0, 0.0, 1.0), frame.night_floor);
+    var clouds = vec4f(0.0, 0.0, 0.0, 1.0);
     if CLOUDS {
         let size = vec2f(textureDimensions(sky_layers));
         let at = vec2f(0.5, size.y - ROUND_SIDE + 0.5) + octahedron_place(d) * (ROUND_SIDE - 1.0);
-        hung.clouds = textureSampleLevel(sky_layers, sky_sampler, at / size, 0, 0.0);
+        clouds = textureSampleLevel(sky_layers, sky_sampler, at / size, 0, 0.0);
     }
-    return hung;
-}
-
-// How far the sky is a deck.
-fn deck_share() -> f32 {
-    return select(frame.deck_cover, select(0.0, 1.0, DECK_BEHIND), CLOUDS);
+    return hung_with(clouds);
 }
 
 // A deck hides all that is behind it.

@@ -18,7 +18,7 @@ fn clear_sky_above(d: vec3f) -> vec3f {
 
 // The sky above the horizon without what hangs before it: `clear` is its own light, with a disc that is seen in it.
 fn open_sky(d: vec3f, clear: vec3f, hung: Hung) -> vec3f {
-    return mix(clear * drawn.z + night_light(hung), frame.deck * overcast_gradation(d.z), deck_share());
+    return mix(clear * drawn.z + night_light(hung), frame.deck * overcast_gradation(d.z), hung.deck);
 }
 
 // What is behind, with clouds before it, and what flashes make of them.
@@ -40,5 +40,5 @@ fn sky_toward(d: vec3f) -> vec3f {
 
 // Share of what is behind that clouds hide.
 fn cloud_cover(hung: Hung) -> f32 {
-    return select(frame.flash_cover, 1.0 - hung.clouds.a * (1.0 - deck_share()), CLOUDS);
+    return select(frame.flash_cover, 1.0 - hung.clouds.a * (1.0 - hung.deck), CLOUDS);
 }

@@ -75,7 +75,11 @@ struct FrameUniform {
     cloud_shadow: vec4f,
     // Pixels of the picture.
     picture: vec2f,
-    pad: vec2f,
+    // How much of the clouds is drawn as a volume, not as a deck (src/plan), and how far their base lies over the camera, m.
+    clouds_drawn: f32,
+    clouds_over: f32,
+    // The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
+    mean_cloud: vec4f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

@@ -32,8 +32,8 @@ fn disc_light(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if !DISCS {
         return vec3f(0.0);
     }
-    let through = select(frame.direct_share, pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0), CLOUDS);
-    return max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * through), vec3f(0.0));
+    let through = select(1.0, pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0), CLOUDS);
+    return max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * (through * hung.disc)), vec3f(0.0));
 }
 
 // What stands behind all that the host drew and behind clouds: the sky, or the planet's own ground with the air before it.

@@ -28,7 +28,8 @@ pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 /// drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
-/// Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK. Part of the saved state.
+/// Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK; a budget may draw it in place of a volume (WK_PART_CLOUDS). Part of the
+/// saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
 #[unsafe(no_mangle)]

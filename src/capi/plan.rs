@@ -52,6 +52,8 @@ pub const WK_PART_SKY: wk_part = 2;
 pub const WK_PART_RAIN: wk_part = 3;
 /// Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light).
 pub const WK_PART_STARS: wk_part = 4;
+/// Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK).
+pub const WK_PART_CLOUDS: wk_part = 5;
 
 /// Which optional fields of a wk_part_wish are set.
 pub type wk_part_wish_has_flags = u32;

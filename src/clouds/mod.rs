@@ -15,9 +15,7 @@
 //! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of what falls on the cube
 //! (`cargo test --lib clouds::probe -- --nocapture`). Of the cover that is seen: 3 points (`clouds::cover`).
 //!
-//! # What is not here
-//! No parts for the plan and no candidates for the lab: the volume is not the default before it is cheap enough.
-
+pub mod candidates;
 pub mod cover;
 pub mod field;
 mod held;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{
     CloudModel,
@@ -105,6 +105,41 @@ impl Overhead {
     /// Whether some of it leaves gaps.
     pub fn is_broken(&self) -> bool {
         self.layers().iter().any(|layer| layer.slab.cover < 1.0)
+    }
+}
+
+impl Overhead {
+    /// Whether any of it may be seen along a direction.
+    pub fn lies_toward(&self, scene: &Scene, direction: DVec3) -> bool {
+        let at_m = scene.place.altitude_m;
+        self.layers().iter().any(|layer| {
+            let (base, top) = (layer.shape.base_m, layer.shape.base_m + layer.shape.thickness_m);
+            (direction.z > 0.0 && top > at_m) || (direction.z < 0.0 && base < at_m)
+        })
+    }
+
+    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of the lowest of them lies over it, m.
+    /// From below half of what is seen is lit from above and half through the cloud, from above all is lit.
+    pub fn on_the_mean(&self, scene: &Scene) -> ([f32; 4], f32) {
+        let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
+        for layer in self.layers() {
+            let (shape, cover) = (&layer.shape, layer.slab.cover);
+            let of = light_on(scene, shape, 1.0);
+            // Bohren 1987 (American Journal of Physics 55, 524): what even cloud lets through, of g 0.85.
+            let through = 2.0 / (2.0 + 0.15 * layer.slab.optical_depth);
+            let is_over = shape.base_m > scene.place.altitude_m;
+            let seen = if is_over { 0.5 } else { 1.0 - through };
+            let level = scene.brighter().direction.z.max(0.0);
+            for (i, light) in light.iter_mut().enumerate() {
+                *light += cover * clear * seen * (of.sun[i] * level / PI + of.above[i]);
+            }
+            over = over
+                .min(if is_over { shape.base_m } else { shape.base_m + shape.thickness_m } - scene.place.altitude_m);
+            clear *= 1.0 - cover;
+        }
+        let cover = 1.0 - clear;
+        let [r, g, b] = light.map(|v| (v / cover.max(1e-6)) as f32);
+        ([r, g, b, cover as f32], over as f32)
     }
 }
 

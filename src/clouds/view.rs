@@ -4,6 +4,7 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::{
     CloudModel,
+    candidates::{CLOUDS, clouds_work},
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
     round::Around,
@@ -14,7 +15,7 @@ use super::{
 use crate::{
     error::Result,
     moment::{Moment, Scene},
-    stage::{Composition, Drawing, DrawnEffect, Frame, Recording, Sampling, Shot, Stages, Texture, yes},
+    stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
 };
 
 /// Side of the squares of pixels of which one is marched a frame.
@@ -79,6 +80,18 @@ impl CloudsView {
         told && stages.has(Stages::SURFACE)
             && shot.frame.depth.is_some()
             && self.overhead.as_ref().is_some_and(Overhead::is_broken)
+    }
+
+    /// Share of a picture's rays that lead towards the clouds.
+    fn share_of_rays(&self, shot: &Shot<'_>) -> f64 {
+        const SIDE: u32 = 8;
+        let Some(overhead) = &self.overhead else { return 0.0 };
+        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
+        let count = (0..SIDE * SIDE).filter(|i| {
+            let ray = shot.rays.view_ray(DVec2::new(at(i % SIDE), at(i / SIDE)));
+            overhead.lies_toward(&shot.now.scene, shot.now.scene.world_to_enu * ray.direction)
+        });
+        count.count() as f64 / f64::from(SIDE * SIDE)
     }
 
     /// What earlier calls of a frame have made.
@@ -189,8 +202,20 @@ impl DrawnEffect for CloudsView {
         Ok(())
     }
 
+    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        put(&CLOUDS, self.is_there(shot.frame, stages), &[clouds_work(shot.pixels(), self.share_of_rays(shot))]);
+    }
+
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some();
+        to.block.clouds_drawn = shot.share(&CLOUDS, 0);
+        if let Some(overhead) = &self.overhead {
+            (to.block.mean_cloud, to.block.clouds_over) = overhead.on_the_mean(&shot.now.scene);
+        }
+        let is_drawn = to.block.clouds_drawn > 0.0;
+        if !is_drawn {
+            self.before = None;
+        }
+        let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
         to.between("CLOUDS", yes(is_there), yes(is_there));
         let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);

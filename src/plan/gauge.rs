@@ -1,7 +1,7 @@
 //! The gauge: one small pass that sees what each part of the weather is worth in a picture, read back without waiting.
 //!
 //! A few frames lie between the pass and its answer, so a plan follows a picture, never leads it. Costs 2304 pixels of
-//! four compositions: a hundredth of a picture of 1280 x 720, and only in every [`EVERY`]th frame.
+//! four compositions (seven with clouds): a hundredth of a picture of 1280 x 720, and only in every [`EVERY`]th frame.
 
 use std::sync::{
     Arc,
@@ -34,8 +34,8 @@ const FAILED: u32 = 4;
 /// Values of `override` constants.
 type Constants = Vec<(&'static str, f64)>;
 
-/// Compositions with something left out or put in its place, at most.
-pub const CHANNELS: usize = 4;
+/// What the gauge finds the worth of, at most.
+pub const CHANNELS: usize = 5;
 
 /// What the gauge saw at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -155,7 +155,7 @@ impl Gauge {
         if let Ok(bytes) = self.buffer.get_mapped_range(..) {
             let half = |b: &[u8], i: usize| half::bf16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32();
             self.samples.extend(bytes.chunks_exact(16).map(|b| {
-                let composed = std::array::from_fn(|i| half(b, i));
+                let composed = [0, 1, 2, 3, 7].map(|i| half(b, i));
                 Sample { composed, kind: half(b, 4), luminance: half(b, 5), hidden: half(b, 6) }
             }));
         }

@@ -456,7 +456,9 @@ impl Choices {
             for (part, spec) in self.ladder.parts.iter().enumerate() {
                 let steps = self.ladder.steps(part);
                 match (spec.worth, unseen) {
-                    (Worth::Composed(channel), _) => changes[steps].fill(sample.composed[channel]),
+                    (Worth::Composed(channel) | Worth::Estimated(channel), _) => {
+                        changes[steps].fill(sample.composed[channel])
+                    }
                     (Worth::Unseen(channel), Some(unseen)) => {
                         let (x, y) = (i % GRID.0 as usize, i / GRID.0 as usize);
                         let ndc = DVec2::new(half(x, GRID.0), -half(y, GRID.1));

@@ -60,7 +60,11 @@ pub(crate) struct FrameUniform {
     pub cloud_shadow: [f32; 4],
     /// Pixels of the picture.
     pub picture: [f32; 2],
-    pub pad: [f32; 2],
+    /// How much of the clouds is drawn as a volume, not as a deck, and how far their base lies over the camera, m.
+    pub clouds_drawn: f32,
+    pub clouds_over: f32,
+    /// The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
+    pub mean_cloud: [f32; 4],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -120,7 +124,9 @@ pub(crate) fn uniform(
         flashes: [FlashUniform::default(); MAX_FLASH_LAMPS],
         cloud_shadow: [0.0; 4],
         picture: [color.width() as f32, color.height() as f32],
-        pad: [0.0; 2],
+        clouds_drawn: 0.0,
+        clouds_over: 0.0,
+        mean_cloud: [0.0; 4],
     }
 }
 
@@ -165,7 +171,10 @@ mod tests {
                 flash_scattering,
                 flashes,
                 cloud_shadow,
-                picture
+                picture,
+                clouds_drawn,
+                clouds_over,
+                mean_cloud
             ]
         );
         shader::assert_layout!(

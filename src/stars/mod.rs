@@ -28,8 +28,8 @@
 //!
 //! # Glow
 //! Airglow of 145 S10 at the zenith (Benn and Ellison 1998), brighter below by van Rhijn 1921; zodiacal light by table 16 of Leinert et
-//! al. 1998; the Milky Way as a disc of stars and dust with the luminosity of Flynn et al. 2006, less the catalogue's own stars
-//! ([`galaxy`]). 1 S10, a star of magnitude 10 a square degree, is 8.34e-7 cd/m^2. The air dims all three and scatters the dome's mean back.
+//! al. 1998; starlight as Pioneer 10 mapped it beyond the planets' dust (Leinert et al. 1998, tables 37 and 38; [`starlight`]), between
+//! its places as a disc of stars and dust with the luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, a star of magnitude 10 a square degree, is 8.34e-7 cd/m^2. The air dims all three and scatters the dome's mean back.
 //!
 //! # Settings
 //! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
@@ -50,7 +50,8 @@
 //! | planets, 1950 to 2100 | VSOP87 (libastro) | 0.03 degrees |
 //! | planets' magnitudes | Skyfield (Mallama and Hilton 2018) | 0.03 |
 //! | light of drawn stars, 320x180 to 1280x720 | their illuminance | 2 % |
-//! | zenith of a moonless night | 21.0 to 22.1 mag/arcsec^2 measured | inside |
+//! | starlight, 869 places | Pioneer 10's map | 7.9 % (root mean square), 2 % of the whole |
+//! | zenith of a moonless night | 20.9 to 22.1 mag/arcsec^2 measured | inside |
 //!
 //! Not in it: twinkling, glare in the eye, variable stars, the discs of planets (points up to the field of strong binoculars), clouds
 //! and dark clouds of the Milky Way, airglow's waves and its layer as seen from orbit.
@@ -70,6 +71,7 @@ pub mod places;
 pub mod planets;
 pub mod reference;
 pub mod settings;
+pub mod starlight;
 pub mod uniforms;
 mod view;
 

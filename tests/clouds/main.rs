@@ -5,6 +5,7 @@ mod drawn;
 mod elsewhere;
 #[path = "../frame/lookup.rs"]
 mod lookup;
+mod plan;
 mod shadows;
 #[path = "../support/textures.rs"]
 mod textures;

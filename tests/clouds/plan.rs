@@ -1,0 +1,68 @@
+//! Where a picture does with a deck in place of a volume.
+
+use glam::DVec3;
+use welkin::{
+    clouds::CloudModel,
+    frame::{FrameFlags, PARTS},
+    light::luminance,
+    plan::{Budget, PartPlan, Reason},
+};
+
+use crate::drawn::{BROKEN, SIZE, Sky};
+
+/// Frames until a gauge has answered and what it chose has faded.
+const SETTLED: u32 = 60;
+
+/// A depth that is near but for so many rows of sky below the picture's top.
+fn slit(sky: &Sky, rows: u32) -> wgpu::Texture {
+    let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
+    let texels: Vec<f32> = (0..SIZE.0 * SIZE.1).map(|i| if i / SIZE.0 < rows { 0.0 } else { 0.1 }).collect();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.0), rows_per_image: None };
+    sky.device.queue.write_texture(depth.as_image_copy(), bytemuck::cast_slice(&texels), layout, depth.size());
+    depth
+}
+
+/// What a settled plan says of the clouds in a picture with so many rows of sky, and that picture.
+fn planned(report: &str, rows: u32, tolerance: f64) -> (PartPlan, Vec<[f64; 3]>) {
+    let mut sky = Sky::new(report, CloudModel::Volume);
+    sky.view.set_budget(Budget { tolerance: Some(tolerance), ..Budget::default() }).unwrap();
+    let depth = slit(&sky, rows);
+    let forward = DVec3::new(0.0, 1.0, 0.35);
+    let mut picture = Vec::new();
+    for _ in 0..SETTLED {
+        picture = sky.look(forward, 2.0, Some(&depth), FrameFlags(0));
+    }
+    let place = PARTS.iter().position(|part| part.name == "clouds").unwrap();
+    (sky.view.plan().parts[place], picture)
+}
+
+/// What a context whose model is the deck draws there.
+fn deck(report: &str, rows: u32) -> Vec<[f64; 3]> {
+    let mut sky = Sky::new(report, CloudModel::Deck);
+    let depth = slit(&sky, rows);
+    sky.look(DVec3::new(0.0, 1.0, 0.35), 2.0, Some(&depth), FrameFlags::NO_HISTORY)
+}
+
+#[test]
+fn a_sky_seen_through_a_slit_needs_no_volume_and_one_that_fills_the_picture_does() {
+    let (clouds, picture) = planned(BROKEN, 2, 0.15);
+    assert_eq!((clouds.reason, clouds.rung), (Reason::WithinTolerance, 1), "{clouds:?}");
+    let wanted = deck(BROKEN, 2);
+    let sky = 2 * SIZE.0 as usize;
+    let apart = picture.iter().zip(&wanted).take(sky).map(|(a, b)| (luminance(a) / luminance(b) - 1.0).abs());
+    let worst = apart.fold(0.0, f64::max);
+    assert!(worst < 1e-3, "what is left is the deck's picture: {worst}");
+    let (clouds, _) = planned(BROKEN, SIZE.1, 0.05);
+    assert_eq!((clouds.reason, clouds.share), (Reason::Needed, 1.0), "{clouds:?}");
+    assert!(clouds.last().p95 > 0.1 && clouds.work > 0.5 * f64::from(SIZE.0 * SIZE.1), "{clouds:?}");
+}
+
+#[test]
+fn an_overcast_ceiling_is_a_deck_already_and_fog_hides_all_clouds() {
+    let (clouds, _) = planned("LOWI 121150Z 00000KT 9999 OVC020 18/12 Q1015", SIZE.1, 0.01);
+    assert_eq!(clouds.reason, Reason::Absent, "{clouds:?}");
+    let (clouds, picture) = planned("LOWI 121150Z 00000KT 0050 FG SCT030 12/12 Q1015", SIZE.1, 0.01);
+    let wanted = deck("LOWI 121150Z 00000KT 0050 FG SCT030 12/12 Q1015", SIZE.1);
+    for i in (0..picture.len()).step_by(400) { println!("{:?} {:?}", picture[i], wanted[i]); }
+    assert_eq!((clouds.reason, clouds.rung), (Reason::WithinTolerance, 1), "{clouds:?}");
+}
