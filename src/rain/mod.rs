@@ -28,7 +28,6 @@ mod passes;
 mod query;
 mod settings;
 mod shaft;
-pub mod source;
 pub mod splash;
 mod step_pass;
 mod stone_pass;
