@@ -76,7 +76,7 @@ impl EvenCloud {
 /// through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+/// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
 pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     cloud.check()?;
     let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: cloud.asymmetry });

@@ -27,7 +27,7 @@ const NEAR_M: f64 = 1e-6;
 /// The contrast is measured in the drawn picture: the difference between a white and a black target behind the fog.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+/// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
 pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<Vec<[f64; 2]>> {
     check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
     for d in distances_m {
