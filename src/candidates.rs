@@ -1,8 +1,8 @@
 //! The ways to draw each effect that are charted against each other, of all rooms.
 //!
 //! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and bytes. The lab
-//! (`examples/lab`) draws every candidate, measures its cost and its [`Difference`](crate::plan::Difference) from the f64 reference, and
-//! charts them; of what is [`Candidate::offered`], only those are worth a choice that no other beats in both.
+//! (`examples/lab`) draws every candidate, and older systems' beside them, measures its cost and its
+//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them; of what is [`Candidate::offered`], only those are worth a choice that no other beats in both.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};
@@ -18,8 +18,8 @@ use crate::{
     error::{Error, Result},
     fog::candidates::FogMethod,
     plan::{Listed, Work},
-    rain::{RainSettings, candidates::RainMethod},
-    sky::{SkyModel, SkySettings, candidates::ElekTable},
+    rain::RainSettings,
+    sky::{SkyModel, SkySettings},
     stars::candidates::StarMethod,
 };
 
@@ -62,12 +62,10 @@ impl Effect {
 pub enum Method {
     /// Settings for [`crate::sky::SkyTables::new`].
     Sky(SkySettings),
-    /// A table of single scattering as of 2008: what the lab compares with, not drawn by the library.
-    SkyElek(ElekTable),
     /// A way to draw fog.
     Fog(FogMethod),
-    /// A way to draw rain.
-    Rain(RainMethod),
+    /// Settings for [`crate::frame::View::set_rain`].
+    Rain(RainSettings),
     /// A way to draw the night sky.
     Stars(StarMethod),
 }
@@ -93,9 +91,8 @@ impl Candidate {
         match self.method {
             Method::Sky(s) => s == SkySettings::default() && s.model == SkyModel::default(),
             Method::Fog(m) => m == FogMethod::default(),
-            Method::Rain(m) => m == RainMethod::Offered(RainSettings::default()),
+            Method::Rain(s) => s == RainSettings::default(),
             Method::Stars(m) => m == StarMethod::default(),
-            Method::SkyElek(_) => false,
         }
     }
 }
@@ -110,11 +107,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
         listed.into_iter().map(one).collect()
     }
     match effect {
-        Effect::Sky => {
-            let mut sky = all(effect, crate::sky::candidates::candidates(), Method::Sky);
-            sky.extend(all(effect, crate::sky::candidates::elek(), Method::SkyElek));
-            sky
-        }
+        Effect::Sky => all(effect, crate::sky::candidates::candidates(), Method::Sky),
         Effect::Fog => all(effect, crate::fog::candidates::candidates(), Method::Fog),
         Effect::Rain => all(effect, crate::rain::candidates::candidates(), Method::Rain),
         Effect::Stars => all(effect, crate::stars::candidates::candidates(), Method::Stars),

@@ -185,7 +185,7 @@ pub(crate) fn shown(text: &str) -> std::borrow::Cow<'_, str> {
 }
 
 /// What is wrong with a text that should be TOML: line, column and fault, without the line itself, which may be a whole state.
-pub(crate) fn toml_fault(text: &str, e: &toml::de::Error) -> String {
+pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
         return format!("TOML parse error: {}", shown(e.message()));
     };

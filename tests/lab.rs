@@ -6,6 +6,8 @@
 #[path = "rain/brute.rs"]
 #[allow(dead_code)] // The rain's own tests need more of it.
 mod brute;
+#[path = "../examples/lab/candidates.rs"]
+mod candidates;
 #[path = "../examples/lab/canvas.rs"]
 mod canvas;
 #[path = "../examples/lab/chart.rs"]
@@ -18,6 +20,8 @@ mod coarse_sky;
 mod command;
 #[path = "../examples/lab/compare.rs"]
 mod compare;
+#[path = "../examples/lab/effect_charts.rs"]
+mod effect_charts;
 #[path = "../examples/lab/fog.rs"]
 mod fog;
 #[path = "../examples/lab/front.rs"]
@@ -42,6 +46,8 @@ mod report;
 mod scenes;
 #[path = "../examples/lab/sky/mod.rs"]
 mod sky;
+#[path = "../examples/lab/source_lod.rs"]
+mod source_lod;
 #[path = "../examples/lab/stability/mod.rs"]
 mod stability;
 #[path = "../examples/lab/stars.rs"]
@@ -53,10 +59,10 @@ mod timing;
 
 use std::path::{Path, PathBuf};
 
+use candidates::{Effect, candidate, candidates};
 use picture::Picture;
 use stability::{Axis, Cell, Map, Panel, borders, numbers, particles, sky_maps};
 use store::{Journal, Table};
-use welkin::candidates::{Effect, candidates};
 use welkin::rain::{drops::relax, integrated::step};
 
 /// A directory of its own, removed afterwards.
@@ -381,8 +387,7 @@ fn two_ways_to_draw_rain_are_compared_block_by_block() {
     let device = welkin::gpu::Device::headless(&Default::default()).unwrap();
     let steady = scenes::rain()[1];
     let mut host = rain::Host::new(&device, &steady, (80, 40)).unwrap();
-    let one = |name| welkin::candidates::candidate(Effect::Rain, name).unwrap().method;
-    let welkin::candidates::Method::Rain(veil) = one("veil") else { panic!("no rain") };
+    let veil = candidate(Effect::Rain, "veil").unwrap();
     let (a, b) = (host.drawn_by(&veil).unwrap(), host.drawn_by(&veil).unwrap());
     // The same twice: nothing is brighter.
     assert!(a.brighter(&b, 1.0).iter().all(|d| d.abs() < 1e-9) && a.last == b.last);
@@ -459,7 +464,7 @@ fn the_committed_sky_chart_says_what_is_drawn_today() {
     let scene = scenes::SKY.into_iter().find(|s| s.name == "noon").unwrap();
     let truth = sky::truth(&[scene], scene.air, sky::SIZE, true).unwrap().remove(0);
     for name in ["directional-eighth", "isotropic-eighth"] {
-        let mut drawn = sky::make(&device, &welkin::candidates::candidate(Effect::Sky, name).unwrap()).unwrap();
+        let mut drawn = sky::make(&device, &candidate(Effect::Sky, name).unwrap()).unwrap();
         drawn.rebuild(&scene.air.planet()).unwrap();
         let pixels = sky::pixels(&scene, sky::SIZE);
         let veils = drawn.veils(&scene, &pixels).unwrap();
@@ -519,12 +524,7 @@ fn the_committed_rain_chart_says_what_is_drawn_today() {
     let truth = host.truth(1).unwrap();
     println!("truth in {:?}", start.elapsed());
     for name in ["veil", "cones"] {
-        let welkin::candidates::Method::Rain(method) =
-            welkin::candidates::candidate(Effect::Rain, name).unwrap().method
-        else {
-            panic!("no rain")
-        };
-        let mut errors = host.drawn_by(&method).unwrap().errors(&truth.0, truth.1);
+        let mut errors = host.drawn_by(&candidate(Effect::Rain, name).unwrap()).unwrap().errors(&truth.0, truth.1);
         errors.sort_by(f64::total_cmp);
         let now = welkin::plan::difference::percentile(&errors, 0.95);
         let then = charted("rain.csv", name, &format!("p95_{}", light.name));

@@ -334,48 +334,73 @@ fn words_of(identifier: &str) -> Vec<String> {
     words
 }
 
-/// The identifiers of a file of Rust that name an effect; its comments and texts left out.
-fn effects_named_in(text: &str) -> BTreeSet<String> {
-    const NAMES: [&str; 15] = [
+/// The words of a file of Rust that name an effect or what only one has, in identifiers and in texts: messages, labels, names of shaders'
+/// constants. Its comments are left out.
+fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String> {
+    const NAMES: [&str; 6] = ["star", "stars", "sea", "ground", "windscreen", "mist"];
+    // What they begin with: fogged, clouds, snowy, raining.
+    const BEGIN: [&str; 14] = [
         "sky",
-        "star",
-        "stars",
         "cloud",
-        "clouds",
+        "deck",
         "fog",
+        "haze",
         "rain",
+        "hail",
         "snow",
-        "ground",
+        "flake",
         "glass",
-        "windscreen",
-        "sea",
         "lightning",
+        "thunder",
+        "puddle",
         "soil",
-        "flakes",
     ];
     // What light does at a place is no effect.
-    const LIGHT: [&str; 4] = ["ground", "ground_albedo", "sky_lux", "GroundLight"];
+    const LIGHT: [&str; 6] = ["ground", "ground_albedo", "sky_lux", "GroundLight", "deck_cd_m2", "deck_cover"];
     let code: String = text.lines().map(|l| l.split("//").next().expect("a first part").to_string() + "\n").collect();
-    let outside_texts: String = code.split('"').step_by(2).collect::<Vec<_>>().join(" ");
-    let identifiers = outside_texts.split(|c: char| !c.is_alphanumeric() && c != '_');
-    let names = |i: &&str| words_of(i).iter().any(|w| NAMES.contains(&w.as_str()));
-    identifiers.filter(names).filter(|i| !LIGHT.contains(i)).map(str::to_string).collect()
+    let is_name = |w: &String| NAMES.contains(&w.as_str()) || BEGIN.iter().any(|b| w.starts_with(b));
+    let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let names = |i: &&str| words_of(i).iter().any(is_name) && !LIGHT.contains(i);
+    let in_texts = code.split('"').skip(1).step_by(2).filter(|text| constants.contains(*text));
+    words.filter(names).chain(in_texts).map(str::to_string).collect()
+}
+
+/// The `override` constants that the effects' own shaders have and those of what lies between, and the frame's do not: `FOG`, `AIR`.
+fn constants_of_effects() -> BTreeSet<String> {
+    let named = |line: &str| Some(line.strip_prefix("override ")?.split(':').next()?.trim().to_string());
+    let of = |is_meant: fn(&str) -> bool| -> BTreeSet<String> {
+        let texts = files("shaders", "wgsl").into_iter().filter(|f| is_meant(&f.0)).map(|f| read(&f.1));
+        texts.flat_map(|text| text.lines().filter_map(named).collect::<Vec<_>>()).collect()
+    };
+    let theirs = of(|folder| EFFECTS.contains(&folder) || folder == "between");
+    // What stands about the camera is of the surroundings.
+    let around = ["SHELTER", "LAMPS"];
+    theirs.difference(&of(|folder| folder == "frame")).filter(|c| !around.contains(&c.as_str())).cloned().collect()
 }
 
 #[test]
 fn identifiers_that_name_an_effect_are_found() {
-    let found = effects_named_in("let x = self.set_rain_areas(GroundView::new(\"fog\"), sky_lux); // snow\n");
-    assert_eq!(found, BTreeSet::from(["GroundView".to_string(), "set_rain_areas".to_string()]));
+    let of = |text: &str| effects_named_in(text, &BTreeSet::from(["AIR".to_string()])).into_iter().collect::<Vec<_>>();
+    let text = "let x = self.set_rain_areas(GroundView::new(\"fog\"), sky_lux); // snow\n";
+    assert_eq!(of(text), ["GroundView", "fog", "set_rain_areas"]);
+    assert_eq!(of("let fogged = value(\"SKY_MARCH\") > 0.0 && start;\n"), ["SKY_MARCH", "fogged"]);
+    assert_eq!(of("push((\"AIR\", conditions.air, DeckCover));\n"), ["AIR", "DeckCover"]);
+    let constants = constants_of_effects();
+    assert!(
+        ["AIR", "FOG", "CLOUDS", "SKY_MARCH", "DECK_CLOSED"].iter().all(|c| constants.contains(*c)),
+        "{constants:?}"
+    );
 }
 
 #[test]
 fn frame_and_context_name_no_effect() {
+    let constants = constants_of_effects();
     for (room, path) in files("src", "rs") {
         if room == "frame" || room == "context" {
-            let found = effects_named_in(&read(&path));
+            let found = effects_named_in(&read(&path), &constants);
             assert!(
                 found.is_empty(),
-                "{} names {found:?}: that belongs in src/effects.rs or src/front",
+                "{} names {found:?}: that belongs in an effect's room, src/effects.rs or src/front",
                 path.display()
             );
         }

@@ -47,18 +47,9 @@ impl Bench {
         let device = Device::headless(&DeviceOptions::default())?;
         let gpu = &device.device;
         let texture = |format| {
-            gpu.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: SIZE,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
+            use wgpu::TextureUsages as U;
+            let usage = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_DST;
+            welkin::gpu::flat_texture(gpu, "fog", (SIZE.width, SIZE.height), format, usage)
         };
         let (colour, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
         let target = texture(wgpu::TextureFormat::Rgba16Float).create_view(&Default::default());

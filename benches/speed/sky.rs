@@ -62,16 +62,8 @@ impl Sky {
             samples: 1,
         };
         let pipeline = fullscreen(device, &desc)?;
-        let target = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let target =
+            welkin::gpu::flat_texture(&device.device, "sky", SIZE, format, wgpu::TextureUsages::RENDER_ATTACHMENT);
         Ok(Self { tables, volume, pipeline, camera, target: target.create_view(&Default::default()) })
     }
 

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use welkin::candidates::{Candidate, Effect, candidate};
 use welkin::{Error, Result, Status};
 
+use crate::candidates::{Candidate, Effect, candidate};
 use crate::{chart, clouds, compare, growth, regression, report, stability};
 
 const USAGE: &str = "usage: lab chart [sky|fog|rain|stars|quadrature]    cost against error, with plots

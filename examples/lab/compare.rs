@@ -1,10 +1,11 @@
 //! `lab compare A B`: two candidates' pictures side by side, their difference amplified, the figures under them.
 
 use image::RgbImage;
-use welkin::candidates::{Candidate, Effect, Method, candidates};
+use welkin::candidates::Method as LibraryMethod;
 use welkin::plan::{Difference, difference::percentile};
 use welkin::{Error, Result};
 
+use crate::candidates::{Candidate, Effect, Method, candidates};
 use crate::canvas::{Anchor, Canvas, INK};
 use crate::chart::Lab;
 use crate::command::Options;
@@ -79,7 +80,7 @@ fn fog_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Pictu
 fn star_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Picture; 3]> {
     let mut host = stars::Host::new(&lab.device, &scenes::STARS[scene], stars::SIZE)?;
     let mut one = |c: &Candidate| match c.method {
-        Method::Stars(method) => host.picture(method),
+        Method::Library(LibraryMethod::Stars(method)) => host.picture(method),
         _ => Err(Error::range(c.name, "a way to draw stars", c.name)),
     };
     let [a, b] = [one(pair[0])?, one(pair[1])?];
@@ -109,11 +110,7 @@ fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4
 fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4]> {
     let mut host = rain::Host::new(&lab.device, &scenes::rain()[scene], rain::SIZE)?;
     let (truth, white) = host.truth(1)?;
-    let mut drawn = |c: &Candidate| match c.method {
-        Method::Rain(method) => host.drawn_by(&method),
-        _ => Err(Error::range(c.name, "a way to draw rain", c.name)),
-    };
-    let [a, b] = [drawn(pair[0])?, drawn(pair[1])?];
+    let [a, b] = [host.drawn_by(pair[0])?, host.drawn_by(pair[1])?];
     let figures = |x: &rain::Blocks, y: &rain::Blocks| {
         let mut errors = x.errors(y, white);
         errors.sort_by(f64::total_cmp);

@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use welkin::candidates::{Candidate, Method};
+use welkin::candidates::Method as LibraryMethod;
 use welkin::fog::candidates::FogMethod;
 use welkin::fog::reference::fog_along;
 use welkin::fog::{FogModel, Law, Viewpoint};
-use welkin::gpu::{Device, pass, readback, shader};
+use welkin::gpu::{Device, flat_texture, pass, readback, shader};
 use welkin::scene::depth::RANGE_SKY_M;
 use welkin::scene::{Camera, DepthMapping, ViewRays};
 use welkin::{Error, Result};
 
+use crate::candidates::{Candidate, Method};
 use crate::picture::Picture;
 use crate::scenes::FogScene;
 use crate::timing::{target, timed};
@@ -199,16 +200,13 @@ impl Bench {
     }
 
     fn upload(&self, format: wgpu::TextureFormat, size: (u32, u32), bytes: &[u8]) -> wgpu::TextureView {
-        let texture = self.device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("lab fog"),
-            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
+        let texture = flat_texture(
+            &self.device.device,
+            "lab fog",
+            size,
             format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        );
         let bytes_per_row = Some(bytes.len() as u32 / size.1);
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
         self.device.queue.write_texture(texture.as_image_copy(), bytes, rows, texture.size());
@@ -217,7 +215,7 @@ impl Bench {
 
     /// A candidate in a scene.
     pub fn make(&self, candidate: &Candidate, scene: &FogScene, host: &Host) -> Result<FogDraw> {
-        let Method::Fog(method) = candidate.method else {
+        let Method::Library(LibraryMethod::Fog(method)) = candidate.method else {
             return Err(Error::range("candidate", "one of the fog", candidate.name));
         };
         let gpu = &self.device.device;

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use welkin::candidates::{Effect, Method, candidate};
+use welkin::candidates::Method as LibraryMethod;
 use welkin::context::{Context, ContextDesc, GivenDirection};
 use welkin::frame::{Frame, Shared, Stages, View};
-use welkin::gpu::Device;
+use welkin::gpu::{Device, flat_texture};
 use welkin::rain::{RainModel, RainSettings};
 use welkin::scene::Camera;
 use welkin::sky::{SkySettings, SkyTables, SkyVolume};
 use welkin::weather::{CloudLayer, Weather, derive};
 use welkin::{Result, Status};
 
+use crate::candidates::{Effect, Method, candidate};
 use crate::chart::{Lab, say_what_moved, today};
 use crate::command::Options;
 use crate::front::growth;
@@ -123,7 +124,7 @@ fn sky_tables(series: &mut Series<'_>) -> Result<()> {
     let device = series.lab.device.clone();
     for name in ["directional-eighth", "directional-quarter", "directional-half", "directional"] {
         let c = candidate(Effect::Sky, name)?;
-        let Method::Sky(s) = c.method else { continue };
+        let Method::Library(LibraryMethod::Sky(s)) = c.method else { continue };
         let texels = c.work.shared_bytes as f64 / 8.0;
         series.point(("sky build", "texels", texels), || {
             let mut tables = SkyTables::new(&device, &s)?;
@@ -182,16 +183,13 @@ impl HostViews {
         context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 30.0 }))?;
         let size = (160, 90);
         let color = target(device, size, wgpu::TextureFormat::Rgba16Float);
-        let depth = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("lab depth"),
-            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Depth32Float,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
+        let depth = flat_texture(
+            &device.device,
+            "lab depth",
+            size,
+            wgpu::TextureFormat::Depth32Float,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        );
         let views = (0..count).map(|_| View::new(&context)).collect::<Result<Vec<_>>>()?;
         let mut this = Self { device: device.clone(), context, views, color, depth, next: 0 };
         this.frame()?;

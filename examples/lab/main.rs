@@ -6,6 +6,7 @@
 #[path = "../../tests/rain/brute.rs"]
 #[allow(dead_code)] // The tests need more of it.
 mod brute;
+mod candidates;
 mod canvas;
 mod chart;
 mod clouds;
@@ -13,6 +14,7 @@ mod clouds;
 mod coarse_sky;
 mod command;
 mod compare;
+mod effect_charts;
 mod fog;
 mod front;
 mod growth;
@@ -25,6 +27,7 @@ mod regression;
 mod report;
 mod scenes;
 mod sky;
+mod source_lod;
 mod stability;
 mod stars;
 mod store;

@@ -6,22 +6,24 @@
 use std::{f64::consts::PI, sync::Arc, time::Instant};
 
 use glam::{DMat3, DVec2, DVec3};
-use welkin::Result;
+use welkin::candidates::Method as LibraryMethod;
 use welkin::context::{Context, ContextDesc, GivenDirection, Scene};
 use welkin::fog::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m};
 use welkin::frame::{Frame, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::light::luminance;
 use welkin::rain::{
-    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, candidates::RainMethod, cones, drops, lattice, light,
-    sizes::DropSizes, source::SourceLod,
+    Classes, DropLight, Planes, RainModel, RainSettings, Shelter, cones, drops, lattice, light, sizes::DropSizes,
 };
 use welkin::scene::{Camera, HostLight};
 use welkin::sky::SkySettings;
 use welkin::weather::{Precipitation, PrecipitationKind, Weather};
+use welkin::{Error, Result};
 
 use crate::brute::Film;
+use crate::candidates::{Candidate, Method};
 use crate::scenes::RainScene;
+use crate::source_lod::SourceLod;
 use crate::timing::target;
 
 /// Size of the pictures whose error is measured.
@@ -181,10 +183,14 @@ impl Host {
     }
 
     /// Blocks of what a way to draw rain makes of the scene.
-    pub fn drawn_by(&mut self, method: &RainMethod) -> Result<Blocks> {
-        match method {
-            RainMethod::Offered(settings) => self.blocks(*settings),
-            RainMethod::Source(lod) => self.source(lod),
+    ///
+    /// # Errors
+    /// GPU faults; what is no rain.
+    pub fn drawn_by(&mut self, candidate: &Candidate) -> Result<Blocks> {
+        match candidate.method {
+            Method::Library(LibraryMethod::Rain(settings)) => self.blocks(settings),
+            Method::SourceLod(lod) => self.source(&lod),
+            _ => Err(Error::range("candidate", "one of the rain", candidate.name)),
         }
     }
 

@@ -1,9 +1,10 @@
 //! The scenes over which errors are measured.
 
-use welkin::candidates::Effect;
 use welkin::fog::{FogLayer, FogLight, Patches, Phase, Profile, koschmieder_extinction_per_m};
 use welkin::sky::Planet;
 use welkin::{Error, Result};
+
+use crate::candidates::Effect;
 
 /// Which air a sky scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use welkin::Result;
-use welkin::gpu::Device;
+use welkin::gpu::{Device, flat_texture};
 use welkin::plan::difference::percentile;
 
 /// A fixed load: 64 exponentials in every pixel of 320x180.
@@ -77,19 +77,16 @@ pub fn timed(device: &Device, encoder: wgpu::CommandEncoder) -> Result<f64> {
 
 /// A texture to draw into and to read.
 pub fn target(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("lab"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+    flat_texture(
+        &device.device,
+        "lab",
+        (width, height),
         format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+        wgpu::TextureUsages::RENDER_ATTACHMENT
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC
             | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
+    )
 }
 
 /// How a time compares with the baseline.

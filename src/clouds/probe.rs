@@ -6,21 +6,20 @@ use std::f64::consts::PI;
 use bytemuck::Zeroable as _;
 
 use super::{
-    cover::seen_over_seeds,
     tables::{LightTables, sampler},
     transport::{Scattering, Transport},
     uniforms::{CloudsUniform, LayerUniform, MediumUniform},
 };
 use crate::{
-    error::{Error, Result, Status, check_range},
+    error::{Result, check_range},
     gpu::{
         Device,
         bind::{self, Slot},
+        flat_texture,
         pass::{self, FullscreenDesc},
         readback,
     },
     light::{Phase, PhaseLobes},
-    weather::CloudKind,
 };
 
 /// Rays a face, along each side of its tile.
@@ -77,7 +76,7 @@ impl EvenCloud {
 /// through without being scattered, or scattered straight on, is in it. Of a slab base and top alone.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+/// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
 pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     cloud.check()?;
     let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: cloud.asymmetry });
@@ -127,16 +126,13 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
 
 fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32; 4]>> {
     let gpu = &device.device;
-    let target = gpu.create_texture(&wgpu::TextureDescriptor {
-        label: Some("cloud probe"),
-        size: wgpu::Extent3d { width: 6 * SIDE, height: SIDE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let target = flat_texture(
+        gpu,
+        "cloud probe",
+        (6 * SIDE, SIDE),
+        wgpu::TextureFormat::Rgba16Float,
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+    );
     let mut tables = LightTables::new(device, [Transport::new(*of), Transport::new(*of)]);
     tables.update(device, cloud.cosine);
     let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
@@ -174,56 +170,6 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32;
     pass::draw(&mut encoder, "cloud probe", &pipeline, &[&group], &target.create_view(&Default::default()));
     device.submit_and_wait(encoder)?;
     readback::rgba(device, &target)
-}
-
-/// Answers CSV rows `tau,g,mu0,albedo` with `R,T` appended: the shares of the incident flux that a slab reflects and lets through,
-/// direct and diffuse together.
-///
-/// # Errors
-/// [`Status::Parse`] with line and column; GPU faults.
-pub fn slab_csv(device: &Device, text: &str) -> Result<String> {
-    let mut lines = text.lines();
-    let header = lines.next().unwrap_or_default().trim();
-    if header != "tau,g,mu0,albedo" {
-        return Err(Error::new(Status::Parse, "line 1, column 1: the header must be `tau,g,mu0,albedo`"));
-    }
-    let mut out = String::from("tau,g,mu0,albedo,R,T\n");
-    for (i, line) in lines.enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let at =
-            |column: usize, what: &str| Error::new(Status::Parse, format!("line {}, column {column}: {what}", i + 2));
-        let fields: Vec<&str> = line.split(',').collect();
-        if fields.len() != 4 {
-            return Err(at(1, "four numbers are wanted"));
-        }
-        let mut numbers = [0.0; 4];
-        let mut column = 1;
-        for (to, field) in numbers.iter_mut().zip(&fields) {
-            *to = field.trim().parse().map_err(|_| at(column, &format!("`{field}` is no number")))?;
-            column += field.chars().count() + 1;
-        }
-        let [tau, asymmetry, cosine, albedo] = numbers;
-        let cloud = EvenCloud { depths: [f64::INFINITY, f64::INFINITY, tau], asymmetry, albedo, cosine };
-        let flux = fluxes(device, &cloud).map_err(|e| at(1, &e.to_string()))?;
-        out.push_str(&format!("{},{:.6},{:.6}\n", line.trim(), flux[5], flux[4]));
-    }
-    Ok(out)
-}
-
-/// Places from which a seed's sky is looked at.
-const PLACES: usize = 64;
-
-/// `mean,spread` of the cover that a genus is seen to have over seeds, where `cover` of the sky is asked for.
-///
-/// # Errors
-/// [`Status::Parse`] for a genus that there is not.
-pub fn cover_csv(genus: &str, cover: f64, seeds: u64) -> Result<String> {
-    let kind = CloudKind::ALL.iter().find(|k| **k != CloudKind::Unknown && k.name() == genus);
-    let kind = kind.ok_or_else(|| {
-        let names: Vec<&str> = CloudKind::ALL.iter().filter(|k| **k != CloudKind::Unknown).map(|k| k.name()).collect();
-        Error::new(Status::Parse, format!("`{genus}` is no genus; there are {}", names.join(", ")))
-    })?;
-    let [mean, spread] = seen_over_seeds(*kind, cover, seeds, PLACES)?;
-    Ok(format!("mean,spread\n{mean:.6},{spread:.6}\n"))
 }
 
 #[cfg(test)]
@@ -285,18 +231,5 @@ mod tests {
             }
             assert!(got.iter().sum::<f64>() < 1.05, "light is made");
         }
-    }
-
-    #[test]
-    fn questions_of_the_probe_are_checked() {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
-        let says = |text: &str| slab_csv(&device, text).unwrap_err().to_string();
-        assert!(says("tau,g\n").contains("line 1"));
-        assert!(says("tau,g,mu0,albedo\n1,0.85,1\n").contains("line 2"));
-        assert!(says("tau,g,mu0,albedo\n1,x,1,1\n").contains("line 2, column 3"));
-        assert!(
-            says("tau,g,mu0,albedo\n1,0.99,1,1\n").contains("`g`")
-                || says("tau,g,mu0,albedo\n1,0.99,1,1\n").contains("g ")
-        );
     }
 }

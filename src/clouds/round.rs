@@ -9,7 +9,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, flat_texture,
         pass::{self, FullscreenDesc},
     },
 };
@@ -41,16 +41,13 @@ pub(super) struct Round {
 impl Round {
     /// With the layouts of the march.
     pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout]) -> Result<Self> {
-        let texture = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("clouds all round"),
-            size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: SEEN,
-            usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let texture = flat_texture(
+            &device.device,
+            "clouds all round",
+            (SIDE, SIDE),
+            SEEN,
+            wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        );
         let desc = FullscreenDesc {
             shader: "clouds/round.wgsl",
             entry: "round",

@@ -15,6 +15,7 @@ use crate::{
     gpu::{
         Device,
         bind::{self, Slot},
+        flat_texture,
         pass::{self, FullscreenDesc},
     },
     moment::Moment,
@@ -83,16 +84,13 @@ pub(super) fn lie<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> 
 impl ShadowMap {
     pub fn new(device: &Device) -> Result<Self> {
         let format = wgpu::TextureFormat::R8Unorm;
-        let texture = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shadows of clouds"),
-            size: wgpu::Extent3d { width: TEXELS, height: TEXELS, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
+        let texture = flat_texture(
+            &device.device,
+            "shadows of clouds",
+            (TEXELS, TEXELS),
             format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        );
         let slots = [
             (1, Slot::Uniform(size_of::<super::uniforms::CloudsUniform>())),
             (2, Slot::Filtered),

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::Device,
+    gpu::{Device, flat_texture},
     light::{Phase, PhaseLobes},
     noise::NoiseTexture,
 };
@@ -24,16 +24,13 @@ pub(super) const SUN_MOVED: f64 = 2e-3;
 const ICE_ASYMMETRY: f64 = 0.77;
 
 fn texture(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::Texture {
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: FORMAT,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
+    flat_texture(
+        &device.device,
+        label,
+        (width, height),
+        FORMAT,
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+    )
 }
 
 fn write_halves(device: &Device, texture: &wgpu::Texture, origin: (u32, u32), width: u32, texels: &[[f32; 4]]) {

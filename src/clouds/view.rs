@@ -216,7 +216,8 @@ impl DrawnEffect for CloudsView {
             self.before = None;
         }
         let is_there = self.is_there(shot.frame, to.stages) && self.passes.is_some() && is_drawn;
-        to.between("CLOUDS", yes(is_there), yes(is_there));
+        to.between_and_veil("CLOUDS", yes(is_there), yes(is_there));
+        to.between("DECK_CLOSED", 0.0, yes(to.block.deck_cover >= 1.0));
         let deck = yes(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
         to.between("DECK_BEHIND", deck, deck);
         let shadows = is_there && self.casts_shadows(shot, to.asked);

@@ -64,7 +64,7 @@ impl Context {
 
     fn saved(&self) -> Result<String> {
         if self.behind.is_some() {
-            let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the ground remain";
+            let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the simulation remain";
             return Err(Error::new(Status::WrongOrder, format!("{wanted} up to {} s", self.world.time_s)));
         }
         let fault = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));

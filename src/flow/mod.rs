@@ -46,7 +46,7 @@
 //! still while air passes them ([`FlowField::set_obstacles`] moves them between steps, without their velocity). Rough ground has
 //! no drag of its own beyond sticking. The box does not move with a viewer. Inside of things the answer is that of the air beside them.
 //! Drag of a cube and reattachment behind one are not measured. Turbulence below a cell has no
-//! model, but for the eddy viscosity of [`probe::wind_csv`]'s steady scenes.
+//! model, but for the eddy viscosity of the steady scenes of `probe wind`.
 
 mod advect;
 mod field;
@@ -56,7 +56,6 @@ mod obstacles;
 mod openings;
 mod pressure;
 pub mod probe;
-mod scene;
 mod sides;
 #[cfg(test)]
 mod tests;

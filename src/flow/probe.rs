@@ -1,11 +1,9 @@
-//! Flows whose answers others have published, as CSV: `probe cavity`, `probe taylor-green`; and `probe wind`, the wind in a scene.
+//! Flows whose answers others have published.
 
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
 use glam::DVec3;
 
-pub use super::scene::wind_csv;
 use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
 use crate::error::{Error, Result, Status, check_range};
 
@@ -39,21 +37,6 @@ pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
     Err(Error::new(Status::Unsupported, format!("the flow in the cavity does not rest at a Reynolds number of {re}")))
 }
 
-/// [`cavity`] as CSV: `y,u`, m and m/s, from the floor to the lid on the vertical centre line.
-///
-/// # Errors
-/// As [`cavity`].
-pub fn cavity_csv(re: f64, n: u32) -> Result<String> {
-    let field = cavity(re, n)?;
-    let mut out = String::from("y,u\n");
-    let middles = (0..n).map(|j| (f64::from(j) + 0.5) / f64::from(n));
-    for y in std::iter::once(0.0).chain(middles).chain([1.0]) {
-        let u = field.velocity_at(DVec3::new(0.5, y, 0.0)).x;
-        let _ = writeln!(out, "{y},{u}");
-    }
-    Ok(out)
-}
-
 /// Whirls without viscosity (Taylor and Green 1937), which stand still for ever: the share of their kinetic energy that is left after
 /// they have turned for 2 pi seconds, on `n` by `n` cells, in steps in which the fastest air passes `cfl` cells.
 ///
@@ -78,12 +61,4 @@ pub fn taylor_green(n: u32, cfl: f64, scheme: Scheme) -> Result<f64> {
         field.step(TAU / steps)?;
     }
     Ok(field.kinetic_energy() / before)
-}
-
-/// [`taylor_green`] as CSV: `kinetic_energy_kept`.
-///
-/// # Errors
-/// As [`taylor_green`].
-pub fn taylor_green_csv(n: u32, cfl: f64, scheme: Scheme) -> Result<String> {
-    Ok(format!("kinetic_energy_kept\n{}\n", taylor_green(n, cfl, scheme)?))
 }

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use super::{
     multigrid::Level,
     pressure::Pressure,
-    probe::{cavity, taylor_green, wind_csv},
+    probe::{cavity, taylor_green},
     *,
 };
 use crate::error::Status;
@@ -404,49 +404,4 @@ fn bad_input_is_refused_by_name_and_leaves_the_field() {
     }
     assert_eq!(field.velocity_at(DVec3::splat(5.0)), before);
     assert_eq!(Scheme::from_name("upwind").expect_err("no scheme").field(), Some("scheme"));
-}
-
-const SCENE: &str = "cells = [24, 20, 10]\ncell_m = [4, 4, 3]\ncorner_m = [100, 50, 10]\n\
-                     [wind]\nspeed_m_s = 8\nfrom_deg = 270\n\
-                     [terrain]\ncorner_m = [100, 50]\ncell_m = 50\nheights_m = [[12, 12, 12], [12, 12, 12]]\n\
-                     [[boxes]]\ncenter_m = [140, 90, 17]\nsize_m = [12, 16, 14]\n";
-
-fn wind_at(scene: &str, places: &str) -> Vec<DVec3> {
-    let out = wind_csv(scene, &format!("name,t,x,y,z\n{places}")).expect("winds");
-    let mut lines = out.lines();
-    assert_eq!(lines.next(), Some("name,t,x,y,z,u,v,w"));
-    let numbers = |l: &str| l.split(',').skip(5).map(|v| v.parse().expect("a number")).collect::<Vec<f64>>();
-    lines.map(|l| DVec3::from_slice(&numbers(l))).collect()
-}
-
-#[test]
-fn the_wind_in_a_scene_goes_round_its_box() {
-    let places = "lee,60,149,90,16\nbefore,0,104,90,22\nabove,60,140,90,32\nfront,60,131,90,16\ninside,60,140,90,17\n";
-    for scene in [SCENE.to_string(), format!("steady = true\n{SCENE}")] {
-        let [lee, before, above, front, inside] = wind_at(&scene, places)[..] else { panic!("five answers") };
-        println!("lee {lee:.2} before {before:.2} above {above:.2} front {front:.2} inside {inside:.2}");
-        // 10 m above the ground of 12 m stands the wind of the scene, before anything has reached it.
-        assert!((before.x - 8.0).abs() < 0.4 && before.y.abs() < 0.3, "{before}");
-        assert!(above.x > 8.8, "{above}");
-        assert!(lee.x < 3.5 && front.x < 5.0, "{lee} {front}");
-    }
-}
-
-#[test]
-fn bad_scenes_and_questions_are_refused_by_place() {
-    let refused = |scene: &str, text: &str, sentence: &str| {
-        let e = wind_csv(scene, text).expect_err(sentence).to_string();
-        assert!(e.contains(sentence), "{e}");
-    };
-    let good = "x,y,z,t\n110,60,20,0\n";
-    refused(&SCENE.replace("speed_m_s = 8", "speed_m_s = 500"), good, "wind.speed_m_s must be in [0, 150] m/s");
-    refused(&SCENE.replace("speed_m_s", "speed"), good, "line 5");
-    refused(&SCENE.replace("[24, 20, 10]", "[24, 20, 100000]"), good, "flow.cells[2]");
-    refused(&SCENE.replace("[12, 12, 12]]", "[12, 12]]"), good, "terrain.heights_m");
-    refused(&SCENE.replace("[12, 12, 12]]", "[12, nan, 12]]"), good, "flow.terrain");
-    refused(&SCENE.replace("[140, 90, 17]", "[940, 90, 17]"), good, "flow.boxes[0].center_m");
-    refused(SCENE, "x,y,z\n1,2,3\n", "line 1, column 1: no column t");
-    refused(SCENE, "x,y,z,t\n110,60,20,0\n110,6,20,0\n", "line 3, column 5: y must be a number in [50, 130]");
-    refused(SCENE, "x,y,z,t\n110,60,20\n", "line 2, column 10: 3 fields");
-    refused(SCENE, "", "a header");
 }

@@ -59,7 +59,7 @@ use crate::error::{Error, Result, check_range};
 
 pub use crate::{falling::FallingLayer, light::Phase, moment::MAX_EXTINCTION_PER_M};
 pub use laws::{CompatibilityLaw, DistanceKind, cull_distance_m};
-pub use probe::{probe, probe_csv};
+pub use probe::probe;
 pub use queries::{
     Between, extinction_of_rvr_per_m, lights_range_m, runway_visual_range_m, transmittance_between,
     vertical_visibility_m, visibility_between_m,

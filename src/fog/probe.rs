@@ -5,10 +5,11 @@ use glam::{DVec2, DVec3};
 
 use super::{FogLayer, FogLight, FogModel, FogUniform, Law, Profile, Viewpoint, koschmieder_extinction_per_m};
 use crate::{
-    error::{Error, Result, Status, check_range},
+    error::{Result, check_range},
     gpu::{
         Device,
         bind::{self, Slot},
+        flat_texture,
         pass::{self, FullscreenDesc},
         readback,
     },
@@ -26,7 +27,7 @@ const NEAR_M: f64 = 1e-6;
 /// The contrast is measured in the drawn picture: the difference between a white and a black target behind the fog.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] naming the parameter; GPU faults.
+/// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.
 pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<Vec<[f64; 2]>> {
     check_range("visibility_m", visibility_m, 1.0, 1e6, "m")?;
     for d in distances_m {
@@ -72,19 +73,7 @@ fn draw(
     height: u32,
 ) -> Result<Vec<[f32; 4]>> {
     let gpu = &device.device;
-    let size = wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 };
-    let texture = |format, usage| {
-        gpu.create_texture(&wgpu::TextureDescriptor {
-            label: Some("fog probe"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
-    };
+    let texture = |format, usage| flat_texture(gpu, "fog probe", (WIDTH, height), format, usage);
     // Software OpenGL renders no 32-bit floats.
     let wide = device.adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float).allowed_usages;
     let format = if wide.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
@@ -96,7 +85,7 @@ fn draw(
     let source =
         texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST);
     let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(WIDTH * 4), rows_per_image: None };
-    device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(depths), rows, size);
+    device.queue.write_texture(source.as_image_copy(), bytemuck::cast_slice(depths), rows, source.size());
     let block = |bytes: &[u8]| {
         let buffer = bind::block(gpu, "fog probe", bytes.len());
         device.queue.write_buffer(&buffer, 0, bytes);
@@ -137,43 +126,4 @@ fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
     let slots =
         [(0, Slot::Uniform(size_of::<DepthUniform>())), (1, Slot::Texels), (4, Slot::Uniform(size_of::<FogUniform>()))];
     bind::layout(gpu, "fog probe", wgpu::ShaderStages::FRAGMENT, &slots)
-}
-
-/// [`probe`] over CSV text: the header must have a column `distance_m`; every line comes back with `contrast` and
-/// `transmittance` appended. Blank lines are left out.
-///
-/// # Errors
-/// [`Status::Parse`] with line and column (both from 1, the column in characters); nothing is drawn then.
-pub fn probe_csv(device: &Device, visibility_m: f64, text: &str) -> Result<String> {
-    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty());
-    let fault = |line: usize, column: usize, what: String| {
-        Error::new(Status::Parse, format!("line {}, column {column}: {what}", line + 1))
-    };
-    let (first, header) = lines.next().ok_or_else(|| fault(0, 1, "a header with distance_m is missing".into()))?;
-    let names: Vec<&str> = header.split(',').map(str::trim).collect();
-    let index = names
-        .iter()
-        .position(|n| *n == "distance_m")
-        .ok_or_else(|| fault(first, 1, format!("no column distance_m among {names:?}")))?;
-    let mut kept = Vec::new();
-    let mut distances = Vec::new();
-    for (number, line) in lines {
-        let fields: Vec<&str> = line.split(',').collect();
-        if fields.len() != names.len() {
-            let what = format!("{} fields, the header has {}", fields.len(), names.len());
-            return Err(fault(number, line.chars().count() + 1, what));
-        }
-        let column = 1 + fields[..index].iter().map(|f| f.chars().count() + 1).sum::<usize>();
-        let value = fields[index].trim();
-        let distance =
-            value.parse::<f64>().map_err(|_| fault(number, column, format!("distance_m is no number: {value:?}")))?;
-        check_range("distance_m", distance, 0.0, 1e9, "m").map_err(|e| fault(number, column, e.to_string()))?;
-        kept.push(line);
-        distances.push(distance);
-    }
-    let mut out = format!("{header},contrast,transmittance\n");
-    for (line, [contrast, transmittance]) in kept.iter().zip(probe(device, visibility_m, &distances)?) {
-        out.push_str(&format!("{line},{contrast:.7},{transmittance:.7}\n"));
-    }
-    Ok(out)
 }

@@ -42,7 +42,7 @@ impl Variant {
         let [(composed, entry), _] = self.sampling.shaders();
         let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;
         let (name, entry) = if diagnoses { (self.sampling.diagnostic(), "diagnose") } else { (composed, entry) };
-        let clear = if self.constants.between.value("FOG") > 0.0 { "" } else { ":clear" };
+        let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
         (format!("{name}{clear}{dry}"), entry)
     }

@@ -120,7 +120,6 @@ impl View {
         let stages = composition.stages;
         let kinds = f64::from(shot.rays.depth_kinds());
         composition.between("DEPTH_KINDS", kinds, kinds);
-        composition.between("DECK_CLOSED", 0.0, yes(composition.block.deck_cover >= 1.0));
         let block = &composition.block;
         let target = [
             ("COLOR_SPACES", f64::from(1u32 << block.color_space)),
@@ -203,19 +202,19 @@ impl View {
         };
         let with = Drawing { composition, block: &self.uniform, surroundings: &self.surroundings };
         let own = self.effects.each().into_iter().find_map(|effect| effect.veil(shot, &with));
-        let (composite, between) = (self.composite.lock()?, &composition.whole.between);
+        let (composite, of_veil) = (self.composite.lock()?, composition.whole.of_veil);
         match &own {
             Some((shader, layout, own)) => {
                 // That of an effect has no colour in it.
                 let several = shot.frame.depth_layer().is_some_and(Layer::is_multisampled);
                 let sampling = if several { Sampling::Multi } else { Sampling::Single };
                 let layouts = [layout, composite.layouts(sampling)[1]];
-                froxels.draw(to, (shader, sampling, between), &layouts, &[own, tables])?;
+                froxels.draw(to, (shader, sampling, of_veil), &layouts, &[own, tables])?;
             }
             None => {
                 let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
                 let groups = [group, tables, self.surroundings.bind_group()];
-                froxels.draw(to, (Froxels::SHADER, sampling, between), &composite.layouts(sampling), &groups)?;
+                froxels.draw(to, (Froxels::SHADER, sampling, of_veil), &composite.layouts(sampling), &groups)?;
             }
         }
         to.passes += 1;

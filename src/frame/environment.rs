@@ -89,7 +89,7 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
 /// Light and weather at a camera, to see when they leap.
 #[derive(Clone, Copy, PartialEq)]
 struct Standing {
-    /// Of what doubles and halves, the logarithms; altitude, share of the deck.
+    /// Of what doubles and halves, the logarithms; altitude, share of a closed layer.
     sizes: [f64; 6],
     to_lamp: DVec3,
     world_to_enu: DMat3,
@@ -105,10 +105,10 @@ impl Standing {
     fn of(scene: &Scene) -> Self {
         let light = &scene.ground;
         let doubling = [light.total_lux, light.sky_lux[1], scene.deck_cd_m2[1], scene.conditions.visibility_m()];
-        let [total, level, deck, far] = doubling.map(|v| v.clamp(1e-12, 1e12).ln());
+        let [total, level, overhead, far] = doubling.map(|v| v.clamp(1e-12, 1e12).ln());
         Self {
             // Within a kilometre the air overhead changes by about a tenth.
-            sizes: [total, level, deck, far, scene.place.altitude_m / 1000.0, scene.deck_cover],
+            sizes: [total, level, overhead, far, scene.place.altitude_m / 1000.0, scene.deck_cover],
             to_lamp: scene.brighter().direction,
             world_to_enu: scene.world_to_enu,
         }

@@ -6,11 +6,11 @@
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, flat_texture,
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
-    stage::{Constant, Constants, Recording, Sampling, Stages},
+    stage::{Constants, Recording, Sampling, Stages},
 };
 
 /// Texels of one distance slice, and how many slices lie side by side and above each other.
@@ -35,7 +35,7 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
 /// Shader, samples of the host's images, constants.
-type FroxelKind = (&'static str, Sampling, [Constant; 3]);
+pub(super) type FroxelKind = (&'static str, Sampling, Constants);
 
 /// Pipelines held for a view: with and without fog, and an effect's own, over one host's images.
 const MOST_PIPELINES: usize = 8;
@@ -53,18 +53,15 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 impl Froxels {
     pub fn new(device: &Device) -> Self {
         let texture = |label| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: TILE.0 * TILES.0, height: TILE.1 * TILES.1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            flat_texture(
+                &device.device,
+                label,
+                (TILE.0 * TILES.0, TILE.1 * TILES.1),
+                FORMAT,
+                wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
+            )
         };
         let (light, through) = (texture("froxel light"), texture("froxel transmittance"));
         let views = [light.create_view(&Default::default()), through.create_view(&Default::default())];
@@ -78,16 +75,14 @@ impl Froxels {
     /// The shader that fills the textures where no effect has one of its own.
     pub const SHADER: &'static str = "frame/froxels.wgsl";
 
-    /// Fills the textures by a shader for depth of so many samples, with the constants of what lies between.
+    /// Fills the textures by a shader for depth of so many samples, with constants of what lies between.
     pub fn draw(
         &mut self,
         to: &mut Recording<'_>,
-        (shader, sampling, between): (&'static str, Sampling, &Constants),
+        (shader, sampling, constants): FroxelKind,
         layouts: &[&wgpu::BindGroupLayout],
         groups: &[&wgpu::BindGroup],
     ) -> Result<()> {
-        // The others would make a pipeline of many weathers.
-        let constants = ["FOG", "SKY_MARCH", "CLOUDS"].map(|name| (name, between.value(name)));
         let device = to.device;
         let pipeline = self.pipelines.get_or_make(
             |made| *made == (shader, sampling, constants),
@@ -98,7 +93,7 @@ impl Froxels {
                     entry: "froxels",
                     layouts,
                     targets: &[target.clone(), target],
-                    constants: &constants,
+                    constants: constants.all(),
                     samples: 1,
                 };
                 Ok(((shader, sampling, constants), pass::fullscreen(device, &desc)?))

@@ -5,7 +5,7 @@
 //! before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
 
 use super::composite::Variant;
-use crate::stage::Stages;
+use crate::{gpu::flat_texture, stage::Stages};
 
 /// Of the depth attachment: its values are exact.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -51,14 +51,14 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
 /// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
 /// where there is no more than one kind.
 pub(super) fn draws(all: &Variant) -> [Option<Variant>; 2] {
-    let (stages, between) = (all.stages, &all.constants.between);
+    let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
-    let fogged = stages.has(Stages::MEDIUM) && between.value("FOG") > 0.0;
-    let aired = stages.has(Stages::MEDIUM) && between.value("AIR") > 0.0;
+    let veils_all = stages.has(Stages::MEDIUM) && traits.veils_all;
+    let veils_drawn = veils_all || stages.has(Stages::MEDIUM) && traits.veils_drawn;
     let everywhere = stages.has(Stages::PARTICLES.with(Stages::TONE));
     let behind = stages.has(Stages::BACKGROUND);
     let whole = [Some(*all), None];
-    if all.samples > 1 || between.value("SKY_MARCH") > 0.0 || !has_depth {
+    if all.samples > 1 || traits.is_marched || !has_depth {
         return whole;
     }
     let far = Variant {
@@ -69,8 +69,8 @@ pub(super) fn draws(all: &Variant) -> [Option<Variant>; 2] {
     };
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     [
-        (behind || fogged || everywhere).then_some(far),
-        (fogged || aired || everywhere || stages.has(Stages::SURFACE)).then_some(drawn),
+        (behind || veils_all || everywhere).then_some(far),
+        (veils_drawn || everywhere || stages.has(Stages::SURFACE)).then_some(drawn),
     ]
 }
 
@@ -83,16 +83,8 @@ pub(super) struct KindAttachment {
 impl KindAttachment {
     /// For a picture of this size.
     pub fn new(device: &wgpu::Device, size: wgpu::Extent3d) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("kinds of pixels"),
-            size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let (size, usage) = ((size.width, size.height), wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let texture = flat_texture(device, "kinds of pixels", size, FORMAT, usage);
         let view = texture.create_view(&Default::default());
         Self { texture, view }
     }
@@ -143,12 +135,11 @@ impl KindAttachment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stage::{Pipeline, Sampling};
+    use crate::stage::{Pipeline, Sampling, Traits};
 
-    fn variant(stages: Stages, has_depth: bool, layer: f64) -> Variant {
-        let mut constants = Pipeline::NONE;
-        constants.between.push(("FOG", layer));
-        constants.between.push(("AIR", 1.0));
+    fn variant(stages: Stages, has_depth: bool, veils_all: bool) -> Variant {
+        let traits = Traits { veils_all, veils_drawn: true, is_marched: false };
+        let constants = Pipeline { traits, ..Pipeline::NONE };
         Variant {
             stages,
             format: wgpu::TextureFormat::Rgba16Float,
@@ -166,20 +157,20 @@ mod tests {
 
     #[test]
     fn a_draw_is_for_the_pixels_that_its_stages_change() {
-        let (behind, air, water) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
+        let (behind, between, surfaces) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
         use Pixels::{All, Drawn, Far};
-        for (stages, has_depth, layer, expected) in [
-            (behind.with(air), true, 0.0, &[Far, Drawn][..]),
-            (behind, true, 1.0, &[Far]),
-            (behind, false, 0.0, &[All]),
-            (air, true, 0.0, &[Drawn]),
-            (air, true, 1.0, &[Far, Drawn]),
-            (air, false, 1.0, &[All]),
-            (water, true, 1.0, &[Drawn]),
-            (Stages::TONE, true, 0.0, &[Far, Drawn]),
+        for (stages, has_depth, veils_all, expected) in [
+            (behind.with(between), true, false, &[Far, Drawn][..]),
+            (behind, true, true, &[Far]),
+            (behind, false, false, &[All]),
+            (between, true, false, &[Drawn]),
+            (between, true, true, &[Far, Drawn]),
+            (between, false, true, &[All]),
+            (surfaces, true, true, &[Drawn]),
+            (Stages::TONE, true, false, &[Far, Drawn]),
         ] {
-            let all = variant(stages, has_depth, layer);
-            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, layer {layer}");
+            let all = variant(stages, has_depth, veils_all);
+            assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, before all {veils_all}");
             assert_eq!(drawn(&Variant { samples: 4, ..all }), [All], "samples have depths of their own");
         }
     }

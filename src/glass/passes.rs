@@ -13,7 +13,7 @@ use crate::{
     gpu::{
         Device, KeptLayer, Layer,
         bind::Slot,
-        is_kept,
+        flat_texture, is_kept,
         pass::{self, FullscreenDesc},
         recent::Recent,
     },
@@ -56,18 +56,13 @@ pub(crate) struct GlassKit {
 }
 
 fn texture(device: &Device, label: &str, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+    flat_texture(
+        &device.device,
+        label,
+        (width, height),
         format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
+    )
 }
 
 pub(super) fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {

@@ -94,16 +94,7 @@ pub(crate) fn block(device: &wgpu::Device, label: &str, bytes: usize) -> wgpu::B
 
 /// A texture of one texel that stands for one that the host does not give: bound, not read.
 pub(crate) fn nothing(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("nothing"),
-        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
+    let texture = super::flat_texture(device, "nothing", (1, 1), format, wgpu::TextureUsages::TEXTURE_BINDING);
     texture.create_view(&Default::default())
 }
 

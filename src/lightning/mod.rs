@@ -40,7 +40,6 @@ mod held;
 pub mod light;
 pub mod limit;
 mod passes;
-pub mod probe;
 mod query;
 pub mod schedule;
 pub mod settings;

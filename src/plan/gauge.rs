@@ -11,7 +11,7 @@ use std::sync::{
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, flat_texture,
         pass::{self, FullscreenDesc},
     },
 };
@@ -63,16 +63,13 @@ pub(crate) struct Gauge {
 
 impl Gauge {
     pub fn new(device: &Device) -> Self {
-        let target = device.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("gauge"),
-            size: wgpu::Extent3d { width: GRID.0, height: GRID.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let target = flat_texture(
+            &device.device,
+            "gauge",
+            GRID,
+            FORMAT,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        );
         let view = target.create_view(&Default::default());
         let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("gauge"),

@@ -8,7 +8,7 @@
 //! small or too far is the fog's extinction; under a rain area of its own ([`RainArea`]) it is a column of rain, whose
 //! drops fall thinned by the area's rim near the camera and as a veil beyond.
 //!
-//! No `reference.rs`: each file has the f64 side of its own shader, and [`probe`] asks the shaders. No `held.rs`: drops follow from seed
+//! No `reference.rs`: each file has the f64 side of its own shader. No `held.rs`: drops follow from seed
 //! and time; those that are stepped ([`RainModel::Integrated`]) belong to a view and are not saved.
 
 mod area_pass;
@@ -25,11 +25,9 @@ pub mod light;
 mod local;
 mod open_pass;
 mod passes;
-pub mod probe;
 mod query;
 mod settings;
 mod shaft;
-pub mod source;
 pub mod splash;
 mod step_pass;
 mod stone_pass;

@@ -38,34 +38,6 @@ pub(crate) fn sky_work(lamps: u32) -> StepWork {
     StepWork { sky, ..StepWork::default() }
 }
 
-/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal axes,
-/// half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple scattering.
-/// The lab builds and draws it, to show what was gained.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ElekTable {
-    /// Texels along each axis; 128 and 256 were delivered.
-    pub side: u32,
-    /// Equal steps of every integral: 15 was called acceptable, 50 enough.
-    pub samples: u32,
-}
-
-impl ElekTable {
-    /// What it costs: a march to the sun at every step of every texel's march.
-    pub fn work(&self) -> Work {
-        let texels = f64::from(self.side).powi(3);
-        let flat = f64::from(self.side).powi(2);
-        let n = f64::from(self.samples + 1);
-        Work {
-            rebuild: Units { samples: texels * n * (n + 1.0) + flat * n, texels: 0.0, bytes: 8.0 * (texels + flat) },
-            view: Units::default(),
-            // One of the 3-D table; two of the optical depth where the ray meets the ground.
-            pixel: Units { samples: 1.0, texels: 2.0, bytes: 8.0 },
-            shared_bytes: (8.0 * (texels + flat)) as u64,
-            view_bytes: 0,
-        }
-    }
-}
-
 /// All candidates, each model from coarse to fine.
 pub fn candidates() -> Vec<Listed<SkySettings>> {
     let mut out = Vec::new();
@@ -92,15 +64,6 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
         add(name, SkySettings { march_cells, ..SkySettings::with_model(BruteForce) });
     }
     out
-}
-
-/// Tables as of 2008.
-pub fn elek() -> Vec<Listed<ElekTable>> {
-    let one = |(name, samples)| {
-        let method = ElekTable { side: 128, samples };
-        Listed { name, method, work: method.work(), offered: false }
-    };
-    [("elek-15", 15), ("elek-50", 50)].map(one).into()
 }
 
 fn coarsest(model: SkyModel) -> SkySettings {
@@ -306,7 +269,6 @@ mod tests {
                 assert!(cost(pair[1]) > cost(pair[0]), "{} {}", pair[0].name, pair[1].name);
             }
         }
-        assert!(elek().iter().any(|c| c.method.samples == 15));
     }
 
     #[test]

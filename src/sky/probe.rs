@@ -11,7 +11,7 @@ use super::{Lamp, Planet};
 use crate::error::{Error, Result, check_range};
 use crate::gpu::bind::Slot;
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
-use crate::gpu::{Device, readback};
+use crate::gpu::{Device, flat_texture, readback};
 
 /// What is asked along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,18 +160,7 @@ impl Probe {
 
     fn pass(&mut self, device: &Device, question: Question, rays: &[Ray]) -> Result<Vec<Answer>> {
         let height = (rays.len() as u32).div_ceil(WIDTH).max(1);
-        let texture = |format, usage| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("probe"),
-                size: wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
+        let texture = |format, usage| flat_texture(&device.device, "probe", (WIDTH, height), format, usage);
         let asked = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let questions = texture(wgpu::TextureFormat::Rgba32Float, asked);

@@ -9,7 +9,7 @@ use crate::{
     error::{Error, Result, Status},
     moment::{Light, Scene},
     plan::Price,
-    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, yes},
+    stage::{Composition, CostItem, DrawnEffect, Prepare, PutPart, Recording, Shot, Stages, Traits, yes},
 };
 
 /// The sky of a view.
@@ -84,9 +84,12 @@ impl DrawnEffect for SkyView {
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| shot.share(part, 0));
-        let march = yes(self.settings().model == SkyModel::BruteForce);
-        to.between("SKY_MARCH", march, march);
+        let is_marched = self.settings().model == SkyModel::BruteForce;
+        to.between_and_veil("SKY_MARCH", yes(is_marched), yes(is_marched));
         to.between("AIR", 1.0, yes(air > 0.0));
+        for (pipeline, veils_drawn) in [(&mut to.whole, true), (&mut to.least, air > 0.0)] {
+            pipeline.traits = Traits { veils_drawn, is_marched, ..pipeline.traits };
+        }
         to.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
         to.constant("CLEAR_SKY", 1.0, yes(sky > 0.0));
         to.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));

@@ -80,18 +80,38 @@ pub(crate) enum Block {
     OnSurfaces = 1,
 }
 
-/// The constants of a pipeline.
+/// By what the frame chooses a pipeline's shader and its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Traits {
+    /// Something lies before every pixel, those too on which the host drew nothing.
+    pub veils_all: bool,
+    /// Something lies before what the host drew.
+    pub veils_drawn: bool,
+    /// Rays are marched in every pixel alike: nothing is gained by a draw for each kind of pixels.
+    pub is_marched: bool,
+}
+
+/// The constants of a pipeline, and what follows of them for the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pipeline {
     /// Those that every shader has which draws through what lies between.
     pub between: Constants,
+    /// Those of them by which pipelines for hosts' own shaders differ; all of them would make a pipeline of many weathers.
+    pub of_veil: Constants,
     /// Those of the composition alone.
     pub composed: Constants,
+    /// Set by the effects beside their constants.
+    pub traits: Traits,
 }
 
 impl Pipeline {
     /// None.
-    pub const NONE: Self = Self { between: Constants::NONE, composed: Constants::NONE };
+    pub const NONE: Self = Self {
+        between: Constants::NONE,
+        of_veil: Constants::NONE,
+        composed: Constants::NONE,
+        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false },
+    };
 }
 
 /// What the effects add to the composition.
@@ -139,6 +159,13 @@ impl Composition {
     pub fn between(&mut self, name: &'static str, whole: f64, least: f64) {
         self.whole.between.push((name, whole));
         self.least.between.push((name, least));
+    }
+
+    /// The same of one by which pipelines for hosts' own shaders differ too.
+    pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
+        self.between(name, whole, least);
+        self.whole.of_veil.push((name, whole));
+        self.least.of_veil.push((name, least));
     }
 
     /// Adds a constant of the composition alone, likewise.

@@ -13,7 +13,7 @@ mod recording;
 mod target;
 mod uniform;
 
-pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, yes};
+pub(crate) use composition::{Block, Composition, Constant, Constants, Pipeline, Texture, Traits, yes};
 pub use diagnostic::Diagnostic;
 pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;

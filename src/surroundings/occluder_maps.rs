@@ -8,7 +8,7 @@ use crate::{
     gpu::{
         Device, Layer,
         bind::{self, Slot},
-        check_depth_format,
+        check_depth_format, flat_texture,
         pass::{self, FullscreenDesc},
     },
     scene::DepthUniform,
@@ -94,18 +94,8 @@ fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
 impl Table {
     fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         use wgpu::TextureUsages as U;
-        let make = |label, [width, height]: [u32; 2], usage| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
-                usage,
-                view_formats: &[],
-            })
-        };
+        let make =
+            |label, [width, height]: [u32; 2], usage| flat_texture(device, label, (width, height), FORMAT, usage);
         let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
         let part = |n: u32| size.map(|v| v / n);
         Self {

@@ -9,7 +9,7 @@ use crate::{
     context::{Context, ContextDesc, GivenDirection},
     fog::Law,
     frame::{Frame, Stages, View},
-    gpu::{Device, DeviceOptions, Shared},
+    gpu::{Device, DeviceOptions, Shared, flat_texture},
     planet::Planet,
     rain::RainArea,
     scene::Camera,
@@ -52,18 +52,7 @@ impl Host {
     }
 
     fn call(&mut self, stages: Stages) -> crate::Result<()> {
-        let texture = |format, usage| {
-            self.device.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d { width: 8, height: 4, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
+        let texture = |format, usage| flat_texture(&self.device.device, "host", (8, 4), format, usage);
         use wgpu::TextureUsages as U;
         let seen = U::TEXTURE_BINDING | U::RENDER_ATTACHMENT;
         let color = texture(wgpu::TextureFormat::Rgba16Float, seen | U::COPY_SRC | U::COPY_DST);

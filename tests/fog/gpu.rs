@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
-use welkin::gpu::{Device, DeviceOptions, pass, readback, shader};
+use welkin::gpu::{Device, DeviceOptions, flat_texture, pass, readback, shader};
 
 /// The device all tests of this file share.
 pub fn device() -> &'static Arc<Device> {
@@ -13,16 +13,7 @@ pub fn device() -> &'static Arc<Device> {
 const WIDTH: u32 = 64;
 
 fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::Texture {
-    device().device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage,
-        view_formats: &[],
-    })
+    flat_texture(&device().device, "host", (width, height), wgpu::TextureFormat::Rgba32Float, usage)
 }
 
 /// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform

@@ -7,7 +7,7 @@ use welkin::{
     almanac::{Utc, celestial::direction},
     context::{Context, GivenDirection},
     frame::{Frame, Shared, Stages, View},
-    gpu::{Device, DeviceOptions, readback},
+    gpu::{Device, DeviceOptions, flat_texture, readback},
     light::luminance,
     scene::{Camera, DepthMapping, ViewRays},
     stars::{Heavens, StarSettings, StarView, light::star_lux, reference},
@@ -62,16 +62,13 @@ impl Night {
 
 fn target(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
-    device.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+    flat_texture(
+        &device.device,
+        "host",
+        (width, height),
         format,
-        usage: U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
-        view_formats: &[],
-    })
+        U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC | U::COPY_DST,
+    )
 }
 
 fn camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {

@@ -12,8 +12,8 @@ use bytemuck::{Pod, Zeroable};
 use welkin::Result;
 use welkin::gpu::pass::draw;
 use welkin::gpu::{Device, readback};
+use welkin::plan::{Units, Work};
 use welkin::sky::Planet;
-use welkin::sky::candidates::ElekTable;
 
 use super::{Pixel, SkyDraw, Veil, camera_group, camera_layout, moving, sized};
 use crate::scenes::{SkyAir, SkyScene};
@@ -21,6 +21,33 @@ use crate::timing::{target, timed};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const WIDTH: u32 = 256;
+
+/// A table of light scattered once over (altitude, view zenith angle, sun zenith angle) as of Elek 2008, with equal axes,
+/// half floats, equal steps and the trapezoid rule, and with his phase function that imitates multiple scattering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElekTable {
+    /// Texels along each axis; 128 and 256 were delivered.
+    pub side: u32,
+    /// Equal steps of every integral: 15 was called acceptable, 50 enough.
+    pub samples: u32,
+}
+
+impl ElekTable {
+    /// What it costs: a march to the sun at every step of every texel's march.
+    pub fn work(&self) -> Work {
+        let texels = f64::from(self.side).powi(3);
+        let flat = f64::from(self.side).powi(2);
+        let n = f64::from(self.samples + 1);
+        Work {
+            rebuild: Units { samples: texels * n * (n + 1.0) + flat * n, texels: 0.0, bytes: 8.0 * (texels + flat) },
+            view: Units::default(),
+            // One of the 3-D table; two of the optical depth where the ray meets the ground.
+            pixel: Units { samples: 1.0, texels: 2.0, bytes: 8.0 },
+            shared_bytes: (8.0 * (texels + flat)) as u64,
+            view_bytes: 0,
+        }
+    }
+}
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use welkin::candidates::{Candidate, Method};
+use welkin::candidates::Method as LibraryMethod;
 use welkin::gpu::Device;
 use welkin::gpu::pass::{FullscreenDesc, draw, fullscreen};
 use welkin::sky::probe::{Probe, Question, Ray};
@@ -12,6 +12,7 @@ use welkin::sky::spectral::Conversion;
 use welkin::sky::{Lamp, Observer, Planet, SkySettings, SkyTables, SkyVolume};
 use welkin::{Result, Status};
 
+use crate::candidates::{Candidate, Method};
 use crate::picture::Picture;
 use crate::scenes::{SkyAir, SkyScene};
 use crate::timing::{target, timed};
@@ -189,11 +190,9 @@ pub trait SkyDraw {
 /// GPU faults; what is no sky.
 pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn SkyDraw>> {
     match candidate.method {
-        Method::Sky(settings) => Ok(Box::new(Library::new(device, &settings)?)),
-        Method::SkyElek(table) => Ok(Box::new(elek::Elek::new(device, table)?)),
-        Method::Fog(_) | Method::Rain(_) | Method::Stars(_) => {
-            Err(welkin::Error::range("candidate", "one of the sky", candidate.name))
-        }
+        Method::Library(LibraryMethod::Sky(settings)) => Ok(Box::new(Library::new(device, &settings)?)),
+        Method::Elek(table) => Ok(Box::new(elek::Elek::new(device, table)?)),
+        _ => Err(welkin::Error::range("candidate", "one of the sky", candidate.name)),
     }
 }
 

@@ -8,9 +8,9 @@
 
 use glam::DVec3;
 
-use super::{
+use welkin::rain::{
     Classes,
-    lattice::{Drop, random3, short_seed},
+    lattice::{Drop, random3},
 };
 
 /// Drops nearer than this are not drawn, m.
@@ -73,7 +73,7 @@ impl SourceLod {
     /// The drops about a camera at a moment of no account: their statistics are what is compared. Each hides its own,
     /// larger disc; `share` is 1.
     pub fn drops(&self, classes: &Classes, seed: u64) -> Vec<Drop> {
-        let seed = short_seed(seed);
+        let seed = (seed ^ (seed >> 32)) as u32;
         let growth = self.growth(classes);
         let all = classes.table.last().map_or(0.0, |row| f64::from(row[2]));
         let part = |r: u32| (f64::from(r) + 0.5) / 4_294_967_296.0;
@@ -105,8 +105,9 @@ impl SourceLod {
 
 #[cfg(test)]
 mod tests {
+    use welkin::weather::{Precipitation, PrecipitationKind, Weather, derive};
+
     use super::*;
-    use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
 
     fn classes(rate: f64) -> Classes {
         let weather = Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, rate), ..Weather::default() };

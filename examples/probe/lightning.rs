@@ -1,15 +1,13 @@
-//! Asks the schedule from a script: `probe lightning`.
+//! `probe lightning`: the flashes of a storm.
 
 use glam::DVec2;
-
-use super::schedule::Storm;
-use crate::error::{Result, check_range};
+use welkin::{Result, error::check_range, lightning::schedule::Storm};
 
 /// A storm's flashes over some hours from time 0, a line each.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] naming the parameter.
-pub fn flashes_csv(per_minute: f64, hours: f64) -> Result<String> {
+/// [`welkin::Status::InvalidArgument`] naming the parameter.
+pub fn flashes(per_minute: f64, hours: f64) -> Result<String> {
     check_range("hours", hours, 0.0, 1000.0, "h")?;
     let storm = Storm { seed: 0, per_minute, middle_m: DVec2::ZERO, radius_m: 3000.0 };
     storm.validate()?;

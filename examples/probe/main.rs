@@ -15,6 +15,15 @@
 //! ```
 //! Wrong input: line and column on standard error, exit code 2, nothing on standard output.
 
+mod clouds;
+mod csv;
+mod flow;
+mod fog;
+mod lightning;
+mod rain;
+mod scene;
+mod sky;
+
 use std::io::{Read as _, Write as _};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -86,7 +95,7 @@ fn sky(question: Question, rest: impl Iterator<Item = String>) -> Result<String>
     let model = options.get("--model").map_or(Ok(SkyModel::default()), SkyModel::from_name)?;
     let input = read_input()?;
     let mut probe = Probe::new(&device()?, &SkySettings::with_model(model), &planet)?;
-    welkin::sky::probe_csv(&mut probe, question, &input)
+    sky::rays(&mut probe, question, &input)
 }
 
 fn fog(rest: impl Iterator<Item = String>) -> Result<String> {
@@ -94,7 +103,7 @@ fn fog(rest: impl Iterator<Item = String>) -> Result<String> {
     let text = options.get("--visibility").ok_or_else(|| usage("--visibility is missing"))?;
     let visibility = text.parse().map_err(|_| usage(&format!("--visibility is no number: {text:?}")))?;
     let input = read_input()?;
-    welkin::fog::probe_csv(&*device()?, visibility, &input)
+    fog::distances(&*device()?, visibility, &input)
 }
 
 impl Options {
@@ -112,12 +121,12 @@ impl Options {
 fn cover(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--genus", "--okta", "--seeds"], rest)?;
     let (okta, seeds) = (options.number("--okta", 8.0)?, options.number("--seeds", 1e4)?);
-    welkin::clouds::probe::cover_csv(options.given("--genus")?, okta / 8.0, seeds.max(1.0) as u64)
+    clouds::cover(options.given("--genus")?, okta / 8.0, seeds.max(1.0) as u64)
 }
 
 fn lightning(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--rate", "--hours"], rest)?;
-    welkin::lightning::probe::flashes_csv(options.number("--rate", 60.0)?, options.number("--hours", 1000.0)?)
+    lightning::flashes(options.number("--rate", 60.0)?, options.number("--hours", 1000.0)?)
 }
 
 impl Options {
@@ -135,20 +144,20 @@ impl Options {
 
 fn cavity(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--re", "--n"], rest)?;
-    welkin::flow::probe::cavity_csv(options.any_number("--re")?, options.count("--n")?)
+    flow::centre_line(options.any_number("--re")?, options.count("--n")?)
 }
 
 fn taylor_green(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--n", "--cfl", "--scheme"], rest)?;
     let scheme = options.get("--scheme").map_or(Ok(Scheme::default()), Scheme::from_name)?;
-    welkin::flow::probe::taylor_green_csv(options.count("--n")?, options.any_number("--cfl")?, scheme)
+    flow::taylor_green(options.count("--n")?, options.any_number("--cfl")?, scheme)
 }
 
 fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--scene"], rest)?;
     let path = options.given("--scene")?;
     let text = std::fs::read_to_string(path).map_err(|e| Error::new(Status::Io, format!("{path}: {e}")))?;
-    welkin::flow::probe::wind_csv(&text, &read_input()?)
+    flow::wind(&text, &read_input()?)
 }
 
 fn run() -> Result<String> {
@@ -159,12 +168,10 @@ fn run() -> Result<String> {
         "aerial" => sky(Question::Aerial, arguments),
         "irradiance" => sky(Question::Irradiance, arguments),
         "fog" => fog(arguments),
-        "rain-speed" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::speed_csv(&read_input()?)),
-        "rain" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::rain_csv(&read_input()?)),
-        "ice" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::ice_csv(&read_input()?)),
-        "slab" => {
-            Options::parse(&[], arguments).and_then(|_| welkin::clouds::probe::slab_csv(&*device()?, &read_input()?))
-        }
+        "rain-speed" => Options::parse(&[], arguments).and_then(|_| rain::speeds(&read_input()?)),
+        "rain" => Options::parse(&[], arguments).and_then(|_| rain::rates(&read_input()?)),
+        "ice" => Options::parse(&[], arguments).and_then(|_| rain::ice(&read_input()?)),
+        "slab" => Options::parse(&[], arguments).and_then(|_| clouds::slabs(&*device()?, &read_input()?)),
         "cover" => cover(arguments),
         "lightning" => lightning(arguments),
         "cavity" => cavity(arguments),
