@@ -34,10 +34,10 @@ fn hung_for(k: u32, ray: ViewRay, seen: Hung) -> Hung {
         hung.deck = 0.0;
         hung.disc = 1.0;
     }
-    if k == IN_CLOUD {
+    let way = frame.clouds_over / select(ray.direction.z, 1e-4, abs(ray.direction.z) < 1e-4);
+    if k == IN_CLOUD && way > 0.0 {
         hung.clouds = vec4f(frame.mean_cloud.rgb * frame.exposure, 0.0);
-        let way = frame.clouds_over / select(ray.direction.z, 1e-4, abs(ray.direction.z) < 1e-4);
-        hung.reach = vec3f(vec2f(select(60.0, log2(max(way, 1.0)), way > 0.0)), 1.0);
+        hung.reach = vec3f(vec2f(log2(max(way, 1.0))), 1.0);
     }
     return hung;
 }
@@ -55,9 +55,6 @@ fn gauged(p: Looked) -> vec4u {
     let has_clouds = frame.mean_cloud.w > 0.0;
     let count = select(frame.compositions, IN_GAP + 1u, has_clouds);
     for (var k = 0u; k < count; k++) {
-        if k >= frame.compositions && k < WITH_DECK {
-            continue;
-        }
         drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
         behind_share = frame.behind.y * drawn.z;
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, hung_for(k, ray, p.hung)));
