@@ -4047,6 +4047,8 @@ typedef uint32_t wk_part;
 #define WK_PART_RAIN 3
 /** Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light). */
 #define WK_PART_STARS 4
+/** Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK). */
+#define WK_PART_CLOUDS 5
 
 /** What a host wants of one part. */
 typedef struct wk_part_wish {
@@ -5022,11 +5024,14 @@ typedef uint32_t wk_cloud_model;
 #define WK_CLOUD_MODEL_VOLUME 1
 
 /**
- * Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK. Part of the saved state.
+ * Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK; a budget may draw it in place of a volume (WK_PART_CLOUDS). Part of the
+ * saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
  */
-WK_API wk_status wk_context_set_cloud_model(wk_context *context, wk_cloud_model cloud_model);
+WK_API
+wk_status wk_context_set_cloud_model(wk_context *context,
+                                     wk_cloud_model cloud_model);
 
 /**
  * Gets the share of the direct light of sun or moon, whichever is brighter, that clouds let through to a place, in
