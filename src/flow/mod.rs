@@ -49,20 +49,31 @@
 //! model, but for the eddy viscosity of [`probe::wind_csv`]'s steady scenes.
 
 mod advect;
+mod desc;
+mod eddies;
 mod field;
+mod held;
 mod lattice;
+mod live;
+mod motion;
+mod moving;
 mod multigrid;
 mod obstacles;
 mod openings;
 mod pressure;
 pub mod probe;
+mod projection;
+mod saved;
 mod scene;
 mod sides;
 #[cfg(test)]
 mod tests;
+mod walls;
 
 pub use advect::Scheme;
+pub use desc::{WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls};
 pub use field::{FlowField, FlowSettings, MAX_SPEED_M_S};
+pub(crate) use held::HeldFlow;
 pub use obstacles::{FlowBox, FlowObstacles, Heights};
 pub use pressure::{PressureMethod, Solved};
 pub use sides::Side;
