@@ -2,9 +2,41 @@
 //!
 //! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8): with a_ij = du_j/dx_i and b_ij = sum over m of h_m^2 a_mi a_mj,
 //! nu = c sqrt(B / (a_ij a_ij)), B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2, and c = 2.5 C_S^2 with C_S = 0.17 of isotropic
-//! turbulence, 0.07. It is zero in parallel shear and at walls, and wants no averages and no distance from a wall.
+//! turbulence, 0.07. It is zero in parallel shear and at walls, and wants no averages and no distance from a wall. What keeps up the
+//! shear over the ground is [`GroundMixing`].
 
 use super::lattice::{Faces, Lattice};
+
+/// How the whirls over the ground mix the mean wind: kappa u* z up to a longest way (Prandtl 1925). With the stress of rough walls
+/// ([`super::walls`]) the logarithmic profile is then in balance, which comes in over the sides.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GroundMixing {
+    /// kappa u*, m/s; 0: none.
+    pub speed_m_s: f32,
+    /// The longest way, m.
+    pub most_m: f32,
+    /// Height of the ground in the middle of each column of cells, m.
+    pub ground_m: Vec<f32>,
+}
+
+impl GroundMixing {
+    /// The largest viscosity that it makes, m2/s.
+    pub fn most_m2_s(&self) -> f64 {
+        f64::from(self.speed_m_s * self.most_m)
+    }
+
+    /// Adds it to the viscosity of cells.
+    pub fn add(&self, lattice: &Lattice, cells: &mut [f32]) {
+        if self.speed_m_s <= 0.0 {
+            return;
+        }
+        let columns = lattice.n[0] * lattice.n[1];
+        lattice.each_cell(|i, cell, _| {
+            let height_m = (i[2] as f32 + 0.5) * lattice.h[2] - self.ground_m[cell % columns];
+            cells[cell] += self.speed_m_s * height_m.clamp(0.0, self.most_m);
+        });
+    }
+}
 
 /// 2.5 C_S^2 (Vreman 2004, section II).
 const C: f32 = 0.07;

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     advect::{Carrier, Scheme},
+    eddies::GroundMixing,
     lattice::{Faces, Lattice},
     obstacles::{FlowObstacles, Shares},
     openings::Openings,
@@ -68,6 +69,7 @@ pub struct FlowField {
     pub(super) outer: Faces,
     pub(super) openings: Openings,
     pub(super) walls: Walls,
+    pub(super) mixing: GroundMixing,
     pub(super) pressure: Pressure,
     pub(super) velocity: Faces,
     /// What steps are made in; the first keeps the middle of the step before.
@@ -131,6 +133,7 @@ impl FlowField {
             outer,
             openings,
             walls: Walls::default(),
+            mixing: GroundMixing::default(),
             pressure,
             scratch: [lattice.zeros(), lattice.zeros(), lattice.zeros()],
             last_dt: 0.0,

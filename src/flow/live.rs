@@ -39,8 +39,9 @@ const FEWEST_CELLS: u32 = 8;
 const ANCHORED_M: f64 = 10_000.0;
 /// Cells from the sides and the top over which the field goes over into the weather's wind.
 const RIM_CELLS: f32 = 4.0;
-/// Longest eddies that mix the mean wind, m, and cells: what is longer the field itself shows.
-const MIXING: (f64, f64) = (10.0, 2.5);
+/// Longest way of whirls that mix the mean wind, m, and cells; with gusts, one cell: what is longer the field itself shows.
+const MIXING_M: f64 = 10.0;
+const STEADY_CELLS: f64 = 2.5;
 /// Von Karman's constant.
 const KAPPA: f64 = 0.4;
 /// Winds over this are not solved for, m/s.
@@ -99,9 +100,11 @@ impl Inflow {
         v.clamp_length_max(MOST_WIND_M_S)
     }
 
-    /// How the mean wind is mixed by the whirls in it: kappa u* l (Prandtl 1925).
-    fn mixing_m2_s(&self, cell_m: DVec3) -> f64 {
-        KAPPA * self.profile.friction_velocity_m_s() * MIXING.0.min(MIXING.1 * cell_m.min_element())
+    /// Lets the whirls that the field does not show mix its air.
+    fn mix(&self, field: &mut FlowField, cell_m: DVec3, ground_m: impl Fn(DVec2) -> f64) {
+        let cells = if self.is_steady { STEADY_CELLS } else { 1.0 };
+        let speed = KAPPA * self.profile.friction_velocity_m_s();
+        field.set_mixing(speed, MIXING_M.min(cells * cell_m.min_element()), ground_m);
     }
 }
 
@@ -307,11 +310,12 @@ impl Live {
         let inflow = Inflow::new(world, self.time_s, WindFieldMode::Steady);
         let scenery = Scenery::new(world, self, self.time_s);
         let ground = |p: DVec2| scenery.ground_m(p);
-        let boxes: Vec<FlowBox> = scenery.boxes().collect();
+        // Round what moves no air is steady.
+        let boxes: Vec<FlowBox> = scenery.boxes().filter(|b| b.velocity_m_s == DVec3::ZERO).collect();
         let obstacles = FlowObstacles { terrain: Some(&ground), boxes: &boxes };
         let set = settings(&self.desc, inflow.profile.roughness_length_m, level);
-        let set = FlowSettings { viscosity_m2_s: inflow.mixing_m2_s(set.cell_m), ..set };
         let mut field = FlowField::new(&set, &obstacles, |p| inflow.at(p.z - ground(p.truncate())))?;
+        inflow.mix(&mut field, set.cell_m, ground);
         let (left_s, left_parts) = if goes_on {
             field.take_coarse(&self.field);
             (f64::INFINITY, FINER_PARTS)
@@ -350,7 +354,6 @@ impl Live {
             self.start_at(world, start.level - 1, true)?;
             return Ok(false);
         }
-        self.field.set_viscosity(0.0)?;
         (self.standing, self.stood, self.rests, self.awake_s) = (None, [0; 2], false, 0.0);
         self.solved_for = [f64::INFINITY; 3];
         Ok(true)
@@ -420,9 +423,7 @@ impl Live {
         if self.desc.walls == WindWalls::Rough {
             self.field.set_roughness(inflow.profile.roughness_length_m)?;
         }
-        if is_steady {
-            self.field.set_viscosity(inflow.mixing_m2_s(self.desc.cell_m))?;
-        }
+        inflow.mix(&mut self.field, self.desc.cell_m, ground);
         self.field.set_wind(|p| inflow.at(p.z - ground(p.truncate())))?;
         self.field.fill_ghosts();
         let seconds = end_s - self.time_s;

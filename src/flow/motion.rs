@@ -138,18 +138,20 @@ impl FlowField {
     /// `spare` is room.
     fn mix(&mut self, wind: &Faces, dt: f64, spare: &mut Faces, v: &mut Faces) {
         let even = self.settings.viscosity_m2_s;
-        if even > 0.0 || self.settings.has_eddies {
+        let ground = self.mixing.most_m2_s();
+        if even + ground > 0.0 || self.settings.has_eddies {
             let lattice = &self.lattice;
             let inverse: f64 = lattice.axes().map(|a| f64::from(lattice.h[a]).powi(-2)).sum();
-            let parts = (2.0 * even * dt * inverse / 0.9).ceil().max(1.0);
+            let parts = (2.0 * (even + ground) * dt * inverse / 0.9).ceil().max(1.0);
             let mut cells = std::mem::take(&mut self.divergence);
             cells.fill(0.0);
             if self.settings.has_eddies {
                 eddies::viscosity(lattice, v, &mut cells);
                 // The rest of what one explicit step may mix.
-                let most = ((0.45 * parts / (dt * inverse) - even).max(0.0)) as f32;
+                let most = ((0.45 * parts / (dt * inverse) - even - ground).max(0.0)) as f32;
                 cells.iter_mut().for_each(|nu| *nu = nu.min(most));
             }
+            self.mixing.add(lattice, &mut cells);
             for _ in 0..parts as u32 {
                 for c in lattice.axes() {
                     spare[c].copy_from_slice(&v[c]);

@@ -1,6 +1,6 @@
 //! What changes about a field while air flows through it: the outer wind, obstacles, and where the box is.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::{
     FlowField, FlowObstacles,
@@ -48,14 +48,14 @@ impl FlowField {
         Ok(())
     }
 
-    /// Another viscosity, m2/s, \[0, 1e6\].
-    ///
-    /// # Errors
-    /// [`crate::Status::InvalidArgument`].
-    pub fn set_viscosity(&mut self, viscosity_m2_s: f64) -> Result<()> {
-        check_range("flow.viscosity_m2_s", viscosity_m2_s, 0.0, 1e6, "m2/s")?;
-        self.settings.viscosity_m2_s = viscosity_m2_s;
-        Ok(())
+    /// How whirls over the ground mix the wind: kappa u*, m/s, the longest way, m, and the height of the ground at places of the box, m.
+    pub(super) fn set_mixing(&mut self, speed_m_s: f64, most_m: f64, ground_m: impl Fn(DVec2) -> f64) {
+        let Self { lattice, mixing, .. } = self;
+        (mixing.speed_m_s, mixing.most_m) = (speed_m_s as f32, most_m as f32);
+        mixing.ground_m.clear();
+        let place = |i: usize, a: usize| (i as f64 + 0.5) * f64::from(lattice.h[a]);
+        let columns = (0..lattice.n[1]).flat_map(|j| (0..lattice.n[0]).map(move |i| (i, j)));
+        mixing.ground_m.extend(columns.map(|(i, j)| ground_m(DVec2::new(place(i, 0), place(j, 1))) as f32));
     }
 
     /// Another roughness length of walls, m, \[0, 5\].
@@ -161,11 +161,6 @@ impl FlowField {
     /// Length of the last step, s, and the largest change of a velocity in it, m/s.
     pub(super) fn last_step(&self) -> (f64, f32) {
         (self.last_dt, self.last_change_m_s)
-    }
-
-    /// Kinematic viscosity, m2/s.
-    pub(super) fn viscosity_m2_s(&self) -> f64 {
-        self.settings.viscosity_m2_s
     }
 
     /// The same to be restored, and the length of the last step, s, with the largest change in it, m/s.

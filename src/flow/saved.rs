@@ -52,7 +52,6 @@ pub(super) struct SavedField {
     solved_for: [f64; 3],
     awake_s: f64,
     rests: bool,
-    viscosity_m2_s: f64,
     last_dt_s: f64,
     last_change_m_s: f32,
     desc: SavedDesc,
@@ -110,7 +109,6 @@ impl SavedField {
             solved_for: live.solved_for,
             awake_s: live.awake_s,
             rests: live.rests,
-            viscosity_m2_s: live.field.viscosity_m2_s(),
             last_dt_s,
             last_change_m_s,
             desc: SavedDesc::of(&live.desc),
@@ -141,7 +139,6 @@ impl SavedField {
         }
         let anchor = Anchor { origin: anchor_m, to_enu: axes, altitude_m: self.anchor_altitude_m };
         let mut live = Live::saved(world, desc, anchor, self.corner, self.time_s)?;
-        live.field.set_viscosity(self.viscosity_m2_s)?;
         let (all, last_dt_s, last_change_m_s) = live.field.numbers_mut();
         (*last_dt_s, *last_change_m_s) = (self.last_dt_s, self.last_change_m_s);
         if !read(&self.numbers, all) {

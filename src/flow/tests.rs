@@ -1,5 +1,7 @@
 //! The field against published flows, and against what it promises.
 
+mod bluff;
+
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
 use super::{

@@ -226,7 +226,7 @@ fn what_moves_pushes_the_air_before_it() {
     assert_eq!(run(DVec3::ZERO), [DVec3::ZERO; 3]);
     let [before, behind, beside] = run(dvec3(5.0, 0.0, 0.0));
     println!("before {before:.2} behind {behind:.2} beside {beside:.2}");
-    assert!(before.x > 1.0 && behind.x > 1.0 && beside.x < 0.3, "{before} {behind} {beside}");
+    assert!(before.x > 1.0 && behind.x > 1.0 && beside.x < 0.1, "{before} {behind} {beside}");
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn bad_fields_and_states_are_refused_and_leave_the_one_that_runs() {
 }
 
 #[test]
-fn smooth_walls_let_the_air_by_the_ground_pass_faster() {
+fn over_rough_ground_the_wind_keeps_its_profile_and_smooth_walls_do_not_slow_it() {
     let near = |walls: WindWalls| {
         let mut bench = Bench::new(WindFieldMode::Running);
         bench.world.set.shelters.clear();
@@ -272,6 +272,9 @@ fn smooth_walls_let_the_air_by_the_ground_pass_faster() {
         bench.wind(dvec3(20.0, 0.0, 0.5)).length()
     };
     let [rough, smooth] = [WindWalls::Rough, WindWalls::Smooth].map(near);
-    println!("rough {rough:.2} m/s, smooth {smooth:.2} m/s");
-    assert!(rough < smooth, "{rough} {smooth}");
+    let mut bench = Bench::new(WindFieldMode::Running);
+    bench.world.time_s = 20.0;
+    let comes = bench.wind(dvec3(20.0, 0.0, 0.5)).length();
+    println!("comes with {comes:.2} m/s, rough {rough:.2} m/s, smooth {smooth:.2} m/s");
+    assert!(rough < smooth && (rough / comes - 1.0).abs() < 0.2, "{rough} {smooth} {comes}");
 }
