@@ -1,5 +1,5 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky).
+//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky, wind).
 
 mod clouds;
 mod copies;
