@@ -36,7 +36,9 @@ fn air_at(p: vec3f) -> vec3f {
     if !WIND {
         return stepping.air;
     }
-    return wind_at(stepping.wind, p, stepping.air);
+    let place = wind_place(stepping.wind, p);
+    let found = textureSampleLevel(wind_values, wind_sampler, place, 0.0);
+    return wind_at(stepping.wind, place, found, stepping.air);
 }
 
 // A part of a cell as a number of 2^-32, wrapped.

@@ -64,12 +64,12 @@ const MEMORY_BYTES: [u64; 2] = [1 << 20, 16 << 30];
 const LONGEST: f64 = 8.0;
 
 impl WindFieldDesc {
-    /// Bytes of memory that a field of this size takes, at most: `cargo test --lib flow -- --nocapture memory` compares.
+    /// Bytes of memory that a field of this size takes at most, by the arrays that it holds.
     pub fn bytes(&self) -> u64 {
         let product = |more: u64| self.cells.iter().map(|n| u64::from(*n) + more).product::<u64>();
-        // Of each face with ghosts three components of seven velocities, open shares and layers; of each cell pressures and their
-        // equation on all grids; of each corner what queries and shaders read.
-        product(5) * 3 * (7 * 4 + 4 + 1 + 8) + product(0) * (22 * 4) + product(1) * 16
+        // Of each face with ghosts five velocities, open shares and what pushes, twice, its layer and its place in lists; of each cell
+        // pressures and their equation on all grids; of each corner what queries and shaders read.
+        product(5) * 3 * (9 * 4 + 1 + 12) + product(0) * (22 * 4) + product(1) * 24
     }
 
     /// Refuses what is no field, by name.

@@ -48,7 +48,7 @@
 //! V-cycles for a tenth of the residual: 1.0 at 64^2 round a box, 9 sweeps of the grid each; over-relaxation needs 11 times the
 //! work there (`cargo test --lib flow -- --nocapture multigrid`). A step of the default scheme takes two projections. It grows with the
 //! cells alone: twice the cells take 1.8 to 2 times as long (`cargo bench --bench speed -- wind`). Memory:
-//! [`WindFieldDesc::bytes`], 250 to 300 bytes a cell. One thread, no device; the same bits on every run.
+//! [`WindFieldDesc::bytes`], about 300 bytes a cell. One thread, no device; the same bits on every run.
 //!
 //! # Not here yet
 //!
