@@ -53,8 +53,8 @@
 //! # Not here yet
 //!
 //! No shader steps a field. Air that comes in has no turbulence but the weather's gusts, and behind a cube on the floor of a channel the flow
-//! comes back to the floor 2.7 to 3.0 edges behind it in place of 1.6 (Martinuzzi and Tropea 1993) with 8 cells an edge. Inside of things the
-//! answer is that of the air beside them. No heat.
+//! comes back to the floor 3.5 edges behind it in place of 1.6 (Martinuzzi and Tropea 1993) with 8 cells an edge (`.. floor` with
+//! `WELKIN_ACCEPT=1`). Inside of things the answer is that of the air beside them. No heat.
 
 mod advect;
 mod desc;
