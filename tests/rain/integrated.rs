@@ -176,7 +176,7 @@ fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
     other.context.load(&state).unwrap();
     assert_eq!(other.context.state_hash().unwrap(), host.context.state_hash().unwrap());
     assert_eq!(falls(&other, lee), falls(&host, lee));
-    [&mut host, &mut other].map(|h| h.context.update(2.6).unwrap());
+    [&mut host, &mut other].into_iter().for_each(|h| h.context.update(2.6).unwrap());
     assert_eq!(other.context.state_hash().unwrap(), host.context.state_hash().unwrap());
     // A grid of the host's blows in its place, and its end leaves the field.
     host.context.set_wind_grid(Some(WindGrid { origin: DVec3::splat(-15.0), ..updraught() })).unwrap();
