@@ -267,6 +267,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
 /** wk_part_wish */
 #define WK_STRUCT_TYPE_PART_WISH 61
+/** wk_wind_field */
+#define WK_STRUCT_TYPE_WIND_FIELD 48
+/** wk_wind_field_report */
+#define WK_STRUCT_TYPE_WIND_FIELD_REPORT 49
 /** wk_stars */
 #define WK_STRUCT_TYPE_STARS 62
 /** wk_lightning */
@@ -4672,7 +4676,8 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at and on rain of WK_RAIN_MODEL_INTEGRATED. Everything else follows the weather's
+ * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on rain of
+ * WK_RAIN_MODEL_INTEGRATED, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's
  * wind.
  * ====================================================================================================
  */
@@ -4744,6 +4749,169 @@ WK_API wk_status wk_context_set_wind_grid(wk_context *context, const wk_wind_gri
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Wind round terrain and buildings
+ *
+ * A context can solve for the wind in a box of air about a place: it goes round the terrain of
+ * wk_context_set_ground_grid and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
+ * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
+ * lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
+ * ====================================================================================================
+ */
+
+/** How a wind field is led through time. */
+typedef uint32_t wk_wind_field_mode;
+
+/**
+ * The mean wind: solved for over the first moments after the wind or an obstacle has changed, then it rests at no cost.
+ * Gusts are as strong, against the weather's, as the mean is there.
+ */
+#define WK_WIND_FIELD_STEADY 0
+/**
+ * The wind with gusts and the whirls that obstacles shed, stepped all the time. docs/wind-field.md says what sizes a core
+ * keeps up with.
+ */
+#define WK_WIND_FIELD_RUNNING 1
+
+/** What terrain and boxes do to air that passes along them. */
+typedef uint32_t wk_wind_walls;
+
+/** They slow it, by the weather's roughness length. */
+#define WK_WIND_WALLS_ROUGH 0
+/** It slides. */
+#define WK_WIND_WALLS_SMOOTH 1
+
+/**
+ * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and top
+ * it goes over into the weather's wind.
+ */
+typedef struct wk_wind_field {
+    /** sizeof(wk_wind_field) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WIND_FIELD. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin: no higher than the lowest ground
+     * that matters. Where it moves the field follows by whole cells. Default 0, 0, 0.
+     */
+    double floor_center_m[3];
+    /**
+     * Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4, 4, 4.
+     */
+    double cell_m[3];
+    /** Number of cells east, north and up. Range [8, 4096] each, default 128, 128, 32. */
+    uint32_t cells[3];
+    /** A WK_WIND_FIELD_ constant, default WK_WIND_FIELD_STEADY. */
+    wk_wind_field_mode mode;
+    /** A WK_WIND_WALLS_ constant, default WK_WIND_WALLS_ROUGH. */
+    wk_wind_walls walls;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * Memory that the field may take, bytes; more is refused, and the message says how much is needed. Range [1048576,
+     * 17179869184], default 1073741824.
+     */
+    uint64_t most_bytes;
+} wk_wind_field;
+
+/** Every field of `wk_wind_field` at its default. */
+#define WK_WIND_FIELD_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_wind_field), \
+    /* struct_type */ WK_STRUCT_TYPE_WIND_FIELD, \
+    /* next */ NULL, \
+    /* floor_center_m */ { 0.0, 0.0, 0.0 }, \
+    /* cell_m */ { 4.0, 4.0, 4.0 }, \
+    /* cells */ { 128, 128, 32 }, \
+    /* mode */ WK_WIND_FIELD_STEADY, \
+    /* walls */ WK_WIND_WALLS_ROUGH, \
+    /* reserved0 */ 0, \
+    /* most_bytes */ UINT64_C(1073741824) \
+}
+
+/** How a wind field stands. */
+typedef struct wk_wind_field_report {
+    /** sizeof(wk_wind_field_report) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WIND_FIELD_REPORT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * 1: there is a field. 0: none is set, its time has not come, or its first steady state is still being solved for; all
+     * else is 0 then.
+     */
+    uint32_t present;
+    /** 1: it is steady and rests; nothing is stepped. */
+    uint32_t rests;
+    /** Simulation time of the field, s: the present, or up to one step before it. */
+    double time_s;
+    /**
+     * Simulation time at which it last began from a steady field, s: when it was first set, after a leap of more than 60 s,
+     * or far off.
+     */
+    double begun_s;
+    /** Length of its steps, s. */
+    double step_s;
+    /** Its lowest corner, farthest to the south-west, in the host's world, m. */
+    double corner_m[3];
+    /** The largest component of the wind anywhere in it, m/s. */
+    double fastest_m_s;
+    /** Memory that it may take, bytes. */
+    uint64_t bytes;
+} wk_wind_field_report;
+
+/** Every field of `wk_wind_field_report` at its default. */
+#define WK_WIND_FIELD_REPORT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_wind_field_report), \
+    /* struct_type */ WK_STRUCT_TYPE_WIND_FIELD_REPORT, \
+    /* next */ NULL, \
+    /* present */ 0, \
+    /* rests */ 0, \
+    /* time_s */ 0.0, \
+    /* begun_s */ 0.0, \
+    /* step_s */ 0.0, \
+    /* corner_m */ { 0.0, 0.0, 0.0 }, \
+    /* fastest_m_s */ 0.0, \
+    /* bytes */ UINT64_C(0) \
+}
+
+/**
+ * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. The same
+ * size, mode and walls at another place move it by whole cells; anything else begins it anew. wk_context_update leads it in
+ * steps on a grid anchored at time 0, whatever is drawn: the same on every channel. It begins with the steady field of its
+ * first moment. Part of the saved state. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
+ */
+WK_API
+wk_status wk_context_set_wind_field(wk_context *context,
+                                    const wk_wind_field *wind_field,
+                                    double start_time_s);
+
+/**
+ * How the wind field stands now.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a structure that is none.
+ */
+WK_API wk_status wk_context_get_wind_field_report(const wk_context *context, wk_wind_field_report *out_report);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WIND_FIELD_INIT`. `struct_size` is `sizeof(wk_wind_field)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_wind_field_init(wk_wind_field *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WIND_FIELD_REPORT_INIT`. `struct_size` is `sizeof(wk_wind_field_report)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_wind_field_report_init(wk_wind_field_report *out,
+                                    uint32_t struct_size);
 
 /*
  * ====================================================================================================

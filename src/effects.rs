@@ -16,6 +16,7 @@ use crate::{
     almanac::sun::Utc,
     clouds::{self, CloudsView, HeldClouds},
     error::Result,
+    flow::HeldFlow,
     fog::{self, FogUniform, FogView, HeldFog},
     glass::GlassView,
     gpu::{Device, Shared},
@@ -79,6 +80,8 @@ pub(crate) const COUPLINGS: Couplings = Couplings { dim: fog::dim, night_lux: st
 /// What a context holds of the effects for all its views.
 pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
+    /// Before the others, which may ask for the wind.
+    pub flow: HeldFlow,
     pub fog: HeldFog,
     pub ground: HeldGround,
     pub stars: HeldStars,
@@ -88,6 +91,7 @@ pub(crate) struct Held {
 
 /// The same as it was loaded.
 pub(crate) struct LoadedHeld {
+    flow: HeldFlow,
     fog: HeldFog,
     ground: LoadedGround,
     stars: HeldStars,
@@ -105,6 +109,7 @@ impl Held {
         let sky = FollowedSky::new(device, &library, &desc.sky, desc.cache_dir.clone())?;
         Ok(Self {
             sky: Arc::new(Mutex::new(sky)),
+            flow: HeldFlow::default(),
             fog: HeldFog::default(),
             ground: HeldGround::new(desc.ground, desc.seed),
             stars: HeldStars::default(),
@@ -114,13 +119,13 @@ impl Held {
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 5] {
-        [&mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds, &mut self.lightning]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 6] {
+        [&mut self.flow, &mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds, &mut self.lightning]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 5] {
-        [&self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
+    pub fn all(&self) -> [&dyn HeldEffect; 6] {
+        [&self.flow, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -129,12 +134,20 @@ impl Held {
     /// [`crate::Status::Parse`] naming what does not fit.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
         // Each takes out what is its own, even where another's is wrong.
+        let flow = HeldFlow::read(world, state);
         let fog = HeldFog::read(state);
         let ground = self.ground.read(world, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
         let clouds = HeldClouds::read(state);
         let lightning = self.lightning.read(state);
-        Ok(LoadedHeld { fog: fog?, ground: ground?, stars: stars?, clouds: clouds?, lightning: lightning? })
+        Ok(LoadedHeld {
+            flow: flow?,
+            fog: fog?,
+            ground: ground?,
+            stars: stars?,
+            clouds: clouds?,
+            lightning: lightning?,
+        })
     }
 
     /// Shows what was loaded, and leaves what was before in its place.
@@ -142,10 +155,12 @@ impl Held {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
         self.ground.take_up(&mut other.ground);
+        world.set.terrain = self.ground.heights();
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
         std::mem::swap(&mut self.lightning, &mut other.lightning);
         world.night = self.stars.night();
+        self.flow.take_up(world, &mut other.flow);
     }
 }
 

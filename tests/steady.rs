@@ -15,16 +15,20 @@ use std::{
         Arc, Mutex,
         atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering::Relaxed},
     },
+    time::Duration,
 };
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use welkin::{
+    Status,
     almanac::Utc,
     capi::{abi, context::*, device::*, frame::*, status::*, texture::*, timeline::*, view::*},
     context::{Context, ContextDesc},
+    flow::{WindFieldDesc, WindFieldMode},
     frame::{Frame, Shared, Stages, View},
     glass::{Windscreen, WiperArm},
     gpu::{Device, DeviceOptions},
+    rain::{Planes, Shelter},
     scene::{Camera, WorldKind},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
@@ -458,11 +462,38 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
 }
 
 // One test, since the counters belong to the whole process.
+/// A wind field round a house, stepped with gusts and steady.
+fn wind_fields_allocate_nothing() {
+    for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
+        let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
+        let device = Device::headless(&options).unwrap();
+        let mut context =
+            Context::new(device.clone(), Arc::new(Shared::new(&device).unwrap()), ContextDesc::default()).unwrap();
+        let house = Shelter {
+            center_m: DVec3::Z * 6.0,
+            axes: DMat3::IDENTITY,
+            half_size_m: DVec3::splat(6.0),
+            velocity_m_s: DVec3::ZERO,
+            planes: Planes::NONE,
+        };
+        context.set_shelters([&house]).unwrap();
+        let field = WindFieldDesc { cells: [16, 16, 8], mode, ..WindFieldDesc::default() };
+        context.set_wind_field(Some(&field), 0.0).unwrap();
+        let mut to =
+            |time_s: f64| while context.update_within(time_s, Duration::from_secs(600)).unwrap() == Status::Pending {};
+        to(10.0);
+        let before = CALLS.load(Relaxed);
+        (0..20).for_each(|i| to(10.0 + 0.5 * f64::from(i)));
+        assert_eq!(CALLS.load(Relaxed) - before, 0, "{mode:?}");
+    }
+}
+
 #[test]
 fn recording_allocates_nothing_of_its_own() {
     // What wgpu does for backtraces of its own is not counted, and must not hold the lock that asking needs.
     // SAFETY: nothing else runs in this process yet that reads the environment.
     unsafe { std::env::set_var("RUST_LIB_BACKTRACE", "0") };
+    wind_fields_allocate_nothing();
     for (backends, frames) in [(wgpu::Backends::NOOP, 10_000), (wgpu::Backends::VULKAN | wgpu::Backends::GL, 500)] {
         let mut host = RustHost::new(backends);
         for id in 0..WARM {

@@ -1,5 +1,5 @@
 //! Benchmarks that print ratios measured within one run: `make bench`; `cargo bench -- record` runs the named ones only
-//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky).
+//! (clouds, copies, record, environment, first, fog, glass, ground, noise, parts, radiance, rain, sky, wind).
 
 mod clouds;
 mod copies;
@@ -18,6 +18,7 @@ mod record;
 mod sky;
 #[path = "../../tests/support/textures.rs"]
 mod textures;
+mod wind;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let named: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
@@ -48,6 +49,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("radiance") {
         radiance::run()?;
+    }
+    if wanted("wind") {
+        wind::run()?;
     }
     if wanted("sky") {
         sky::run()?;

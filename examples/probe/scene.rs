@@ -134,6 +134,9 @@ impl Scene {
         check_range("wind.from_deg", scene.wind.from_deg, 0.0, 360.0, "")?;
         check_range("wind.roughness_m", scene.wind.roughness_m, 1e-5, 2.0, "m")?;
         check_range("cfl", scene.cfl, 0.01, 64.0, "")?;
+        for (i, b) in scene.boxes.iter().enumerate() {
+            check_range(&format!("boxes[{i}].turned_deg"), b.turned_deg, -360.0, 360.0, "")?;
+        }
         for v in scene.corner_m {
             check_range("corner_m", v, -1e7, 1e7, "m")?;
         }
@@ -161,11 +164,8 @@ impl Scene {
             ..FlowSettings::default()
         };
         let corner = DVec3::from(self.corner_m);
-        let flow_box = |b: &SceneBox| FlowBox {
-            center_m: DVec3::from(b.center_m) - corner,
-            half_size_m: DVec3::from(b.size_m) / 2.0,
-            turned_deg: b.turned_deg,
-        };
+        let flow_box =
+            |b: &SceneBox| FlowBox::level(DVec3::from(b.center_m) - corner, DVec3::from(b.size_m) / 2.0, b.turned_deg);
         let boxes: Vec<_> = self.boxes.iter().map(flow_box).collect();
         let ground = |place: DVec2| self.ground_m(place);
         let obstacles = FlowObstacles { terrain: self.terrain.is_some().then_some(&ground as Heights), boxes: &boxes };

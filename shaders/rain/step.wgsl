@@ -1,26 +1,21 @@
 // One frame of the drops that are stepped; the model is explained in src/rain/integrated.rs.
 //!include "rain/drops.wgsl"
 //!include "rain/state.wgsl"
+//!include "surroundings/wind.wgsl"
 
 struct StepUniform {
     // Velocity of the air, m/s.
     air: vec3f,
     // Length of a step, s.
     dt: f32,
-    // From camera-relative metres to the grid's texture.
-    grid_scale: vec3f,
-    steps: u32,
-    grid_offset: vec3f,
-    // Drops of each shell that have a state; 0: all start anew.
-    known: u32,
-    // The first node in the grid's texture; the last is as far from its other end.
-    grid_first: vec3f,
-    // Room for drops of each shell.
-    capacity: u32,
+    wind: WindMap,
     // What the camera has moved, m.
     moved: vec3f,
-    // 1 where the grid's velocities replace the air's, 0 where they are added.
-    whole: u32,
+    steps: u32,
+    // Drops of each shell that have a state; 0: all start anew.
+    known: u32,
+    // Room for drops of each shell.
+    capacity: u32,
     // Place of the camera in the cell of each shell, now and before, in 2^-32 of its side.
     eye: array<vec4u, SHELLS>,
     before: array<vec4u, SHELLS>,
@@ -28,23 +23,22 @@ struct StepUniform {
 
 @group(1) @binding(0) var<uniform> stepping: StepUniform;
 @group(1) @binding(1) var<storage, read_write> states: array<State>;
-@group(1) @binding(2) var grid: texture_3d<f32>;
-@group(1) @binding(3) var grid_sampler: sampler;
+@group(1) @binding(2) var wind_values: texture_3d<f32>;
+@group(1) @binding(3) var wind_sampler: sampler;
 
-// Whether a grid of velocities is given.
-override GRID: bool = false;
+// Whether there is a wind that varies in space.
+override WIND: bool = false;
 
 const GRAVITY: f32 = 9.80665;
 
 // Velocity of the air at `p`, camera-relative.
 fn air_at(p: vec3f) -> vec3f {
-    if !GRID {
+    if !WIND {
         return stepping.air;
     }
-    let at = p * stepping.grid_scale + stepping.grid_offset;
-    let inside = all(at >= stepping.grid_first) && all(at <= 1.0 - stepping.grid_first);
-    let found = textureSampleLevel(grid, grid_sampler, at, 0.0).xyz;
-    return select(stepping.air, select(stepping.air + found, found, stepping.whole == 1u), inside);
+    let place = wind_place(stepping.wind, p);
+    let found = textureSampleLevel(wind_values, wind_sampler, place, 0.0);
+    return wind_at(stepping.wind, place, found, stepping.air);
 }
 
 // A part of a cell as a number of 2^-32, wrapped.

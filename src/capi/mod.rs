@@ -59,6 +59,8 @@ pub mod area;
 
 pub mod wind_grid;
 
+pub mod wind_field;
+
 pub mod occluder;
 
 pub mod light;

@@ -147,6 +147,10 @@ pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish
 pub const WK_STRUCT_TYPE_PART_WISH: wk_struct_type = 61;
+/// wk_wind_field
+pub const WK_STRUCT_TYPE_WIND_FIELD: wk_struct_type = 48;
+/// wk_wind_field_report
+pub const WK_STRUCT_TYPE_WIND_FIELD_REPORT: wk_struct_type = 49;
 /// wk_stars
 pub const WK_STRUCT_TYPE_STARS: wk_struct_type = 62;
 /// wk_lightning

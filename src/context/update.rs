@@ -73,7 +73,9 @@ impl Context {
         }
         let mut led = Ok(Status::Ok);
         for effect in self.held.each() {
-            match effect.lead(&self.world, within) {
+            let led_to = effect.lead(&self.world, within);
+            effect.publish(&mut self.world);
+            match led_to {
                 Ok(Status::Ok) => {}
                 other => led = other,
             }

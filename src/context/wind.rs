@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Context;
 use crate::{
     error::Result,
-    wind::{Blowing, WindAt, WindGrid, WindGridKind},
+    wind::{Blowing, WindAt, WindGrid},
 };
 
 impl Context {
@@ -19,37 +19,27 @@ impl Context {
     /// Wind at `position` and simulation time `time_s`, (east, north, up) of the place. Height counts from the station's altitude: who
     /// has terrain asks as far above the station as the point is above his ground.
     ///
+    /// Within a host's grid ([`Context::set_wind_grid`]) the wind is that of the grid, at any time; within a solved field
+    /// ([`Context::set_wind_field`]) that of the field, at times within a minute of its own.
+    ///
     /// Any thread. Closed form: any time costs the same. Laws: [`crate::wind`].
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
     pub fn wind_at(&self, position: DVec3, time_s: f64) -> Result<WindAt> {
-        let place = self.world.frame.place_at("position", position)?.place;
-        let conditions = self.world.weather_at(time_s)?;
-        let height_m = place.altitude_m - conditions.air.station_altitude_m;
-        let wind = self.blowing(time_s)?.at_height(&conditions.wind, height_m);
-        let found = self.world.wind_grid.as_ref().and_then(|g| {
-            let cells = g.cells_at(position, self.world.frame.frame_at(g.origin).world_to_enu);
-            Some((g.kind, g.at(cells)?))
-        });
-        Ok(match found {
-            None => wind,
-            Some((WindGridKind::Whole, v)) => WindAt { velocity_m_s: v, mean_m_s: v, gust_deviation_m_s: 0.0 },
-            Some((WindGridKind::Added, v)) => {
-                WindAt { velocity_m_s: wind.velocity_m_s + v, mean_m_s: wind.mean_m_s + v, ..wind }
-            }
-        })
+        self.world.wind_at(position, time_s)
     }
 
-    /// Sets a wind that varies in space; `None` leaves the weather's. It blows in [`Context::wind_at`] and on drops of
-    /// [`RainModel::Integrated`](crate::rain::RainModel::Integrated); [`Context::wind_displacement`], and what goes with
-    /// it, know nothing of it.
+    /// Sets a wind that varies in space; `None` leaves the weather's, or the solved field's
+    /// ([`Context::set_wind_field`]), in place of which it blows. It is in [`Context::wind_at`], in what lands on a surface or a
+    /// windscreen, and on drops of [`RainModel::Integrated`](crate::rain::RainModel::Integrated);
+    /// [`Context::wind_displacement`], and what goes with it, know nothing of it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_wind_grid(&mut self, grid: Option<WindGrid>) -> Result<()> {
         grid.as_ref().map_or(Ok(()), WindGrid::validate)?;
-        self.world.wind_grid = grid.map(Arc::new);
+        self.world.set_wind_grid(grid.map(Arc::new));
         Ok(())
     }
 

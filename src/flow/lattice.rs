@@ -7,7 +7,7 @@ use crate::error::{Error, Result, check_range};
 
 /// Layers of ghost values on each side of an axis: what cubic interpolation reaches.
 pub(super) const GHOSTS: usize = 2;
-/// Most cells of a grid: at some 150 bytes a cell about 5 GB.
+/// Most cells of a grid: about 6 GB.
 const MAX_CELLS: u64 = 1 << 25;
 
 /// Cells of the box and their size. An axis of one cell is flat: nothing changes along it, and its component stays zero.
@@ -127,6 +127,52 @@ impl Lattice {
         for v in 0..self.size[c] {
             for u in 0..self.size[b] {
                 f(start + u * self.stride[b] + v * self.stride[c]);
+            }
+        }
+    }
+
+    /// Calls `f` for every ghost of a component and every face on a side, as [`Lattice::each_with_ghosts`] would.
+    pub(super) fn each_on_sides(&self, component: usize, mut f: impl FnMut([i64; 3], usize)) {
+        let [x, y, z] = self.size;
+        let ghosts = self.ghosts.map(|g| g as i64);
+        let is_side = |a: usize, i: i64| {
+            let across = i64::from(a == component);
+            !self.is_flat(a) && (i < across || i >= self.n[a] as i64)
+        };
+        for k in 0..z {
+            for j in 0..y {
+                let (j_g, k_g) = (j as i64 - ghosts[1], k as i64 - ghosts[2]);
+                let row = (k * y + j) * x;
+                let whole = is_side(1, j_g) || is_side(2, k_g);
+                for i in 0..x {
+                    let i_g = i as i64 - ghosts[0];
+                    if whole || is_side(0, i_g) {
+                        f([i_g, j_g, k_g], row + i);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Moves values of a component by whole cells: what stood `cells` farther along each axis stands here then. What comes
+    /// in from outside is not a number.
+    pub(super) fn shift(&self, values: &mut [f32], cells: [i64; 3]) {
+        let [x, y, z] = self.size.map(|n| n as i64);
+        // In the order in which nothing is overwritten that is still to be read.
+        let order = |n: i64, by: i64| (0..n).map(move |i| if by >= 0 { i } else { n - 1 - i });
+        for k in order(z, cells[2]) {
+            for j in order(y, cells[1]) {
+                let row = ((k * y + j) * x) as usize;
+                let (from_j, from_k) = (j + cells[1], k + cells[2]);
+                let inside = (0..y).contains(&from_j) && (0..z).contains(&from_k);
+                let shift = cells[0].clamp(-x, x);
+                let (low, high) = if inside { ((-shift).max(0), (x - shift).min(x)) } else { (0, 0) };
+                if low < high {
+                    let from = ((from_k * y + from_j) * x + low + shift) as usize;
+                    values.copy_within(from..from + (high - low) as usize, row + low as usize);
+                }
+                values[row..row + low as usize].fill(f32::NAN);
+                values[row + high.max(low) as usize..row + x as usize].fill(f32::NAN);
             }
         }
     }

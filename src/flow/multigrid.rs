@@ -28,7 +28,12 @@ pub(super) struct Level {
     r: Vec<f32>,
     /// Cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
+    /// Room for [`Level::add_correction`].
+    taps: Vec<Taps>,
 }
+
+/// Which coarse cells a correction comes from along an axis, with their weights.
+type Taps = [(usize, f32); 2];
 
 /// Neighbours of a row of cells: starts of the four rows beside it, and of itself.
 struct Row {
@@ -173,8 +178,9 @@ impl Level {
     /// Adds the coarse correction, linearly between coarse cells: 3/4 of the own one and 1/4 of the nearest other, each axis;
     /// where there is no other, the own one stands for it.
     fn add_correction(&mut self, coarse: &Self) {
-        let taps = |a: usize, i: usize| -> [(usize, f32); 2] {
-            if self.join[a] == 1 {
+        let join = self.join;
+        let taps = |a: usize, i: usize| -> Taps {
+            if join[a] == 1 {
                 return [(i, 1.0), (i, 0.0)];
             }
             let own = i / 2;
@@ -183,7 +189,9 @@ impl Level {
                 if i.is_multiple_of(2) { (own.wrapping_sub(1), own == 0) } else { (own + 1, own == last) };
             [(own, 0.75), (if beyond { own } else { other }, 0.25)]
         };
-        let rows: Vec<_> = (0..self.n[0]).map(|i| taps(0, i)).collect();
+        let mut rows = take(&mut self.taps);
+        rows.clear();
+        rows.extend((0..self.n[0]).map(|i| taps(0, i)));
         let mut x = take(&mut self.x);
         let mut at = 0;
         for k in 0..self.n[2] {
@@ -210,6 +218,7 @@ impl Level {
             }
         }
         self.x = x;
+        self.taps = rows;
     }
 }
 

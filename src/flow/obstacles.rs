@@ -1,10 +1,10 @@
-//! Terrain and boxes in the air, as open shares of faces.
+//! Terrain and solid things in the air, as open shares of faces.
 //!
 //! Heights are exact along a face's vertical; along its level sides [`SAMPLES`] places count. So terrain slopes through cells rather than
 //! standing in them as stairs, and a box may end anywhere within a cell. A box thinner than a cell stands as one cell thick, so
 //! that no air passes between two faces that it lies between.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::lattice::{Faces, Lattice};
 use crate::error::{Error, Result, check_range};
@@ -14,43 +14,131 @@ const SAMPLES: usize = 8;
 /// What lies nearer to a face than this share of a cell lies on it.
 const NEAR: f64 = 1e-6;
 
-/// A box in the air, level, turned about the vertical. Lengths count from the lowest corner of the field.
+/// A box in the air, turned in any way, and what planes leave of it. Lengths count from the lowest corner of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowBox {
+pub struct FlowBox<'a> {
     /// Its middle, m.
     pub center_m: DVec3,
     /// Half its size along its own axes, m, \[1e-3, 1e5\].
     pub half_size_m: DVec3,
-    /// How far it is turned, degrees, counter-clockwise seen from above, \[-360, 360\].
-    pub turned_deg: f64,
+    /// Its axes (east, north, up) as columns: a rotation.
+    pub axes: DMat3,
+    /// How fast it moves, m/s: it pushes the air before it.
+    pub velocity_m_s: DVec3,
+    /// Planes that cut it: unit vectors along its axes that point out of what they leave, and how far along them from its middle the
+    /// plane lies, m.
+    pub planes: &'a [[f64; 4]],
+}
+
+impl FlowBox<'static> {
+    /// A standing box whose floor is level, `turned_deg` counter-clockwise seen from above.
+    pub fn level(center_m: DVec3, half_size_m: DVec3, turned_deg: f64) -> Self {
+        let (sin, cos) = libm::sincos(turned_deg.to_radians());
+        let axes = DMat3::from_cols(DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z);
+        Self { center_m, half_size_m, axes, velocity_m_s: DVec3::ZERO, planes: &[] }
+    }
+}
+
+impl FlowBox<'_> {
+    /// How far it reaches from its middle along the field's axes, m, without what planes cut off.
+    pub(super) fn reach_m(&self) -> DVec3 {
+        let reach = |axis: DVec3, half: f64| axis.abs() * half;
+        let h = self.half_size_m;
+        reach(self.axes.x_axis, h.x) + reach(self.axes.y_axis, h.y) + reach(self.axes.z_axis, h.z)
+    }
 }
 
 /// Height of the ground above the lowest corner of the field at a place east and north of it, m.
 pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 
-/// What stands in the air.
+/// What stands or moves in the air.
 #[derive(Clone, Copy, Default)]
 pub struct FlowObstacles<'a> {
     /// The ground; none: the field's lowest side.
     pub terrain: Option<Heights<'a>>,
     /// Boxes.
-    pub boxes: &'a [FlowBox],
+    pub boxes: &'a [FlowBox<'a>],
 }
 
-/// A box as one grid meets it.
-struct Footprint {
-    center: DVec2,
-    along: DVec2,
-    half: DVec2,
-    low: f64,
-    high: f64,
+/// Open shares of faces, and what closes them and moves.
+#[derive(Clone, Debug)]
+pub(super) struct Shares {
+    /// \[0, 1\].
+    pub open: Faces,
+    /// Velocity along the face's axis times the share of the face that a moving thing closes, m/s; empty where nothing moves.
+    pub pushed: Faces,
 }
 
-impl Footprint {
-    fn covers(&self, place: DVec2) -> bool {
-        let from = place - self.center;
-        from.dot(self.along).abs() <= self.half.x && from.perp_dot(self.along).abs() <= self.half.y
+/// First and last column of cells along east and north.
+pub(super) type Columns = [[usize; 2]; 2];
+
+/// A box as a grid meets it: what lies within all of its planes.
+struct Solid {
+    /// Unit vectors outward, and how far along them from the field's corner the plane lies, m.
+    planes: Vec<(DVec3, f64)>,
+    low: DVec2,
+    high: DVec2,
+    velocity: DVec3,
+}
+
+impl Solid {
+    fn new(lattice: &Lattice, b: &FlowBox) -> Self {
+        let h = DVec3::from(lattice.h.map(f64::from));
+        let near = NEAR * h.min_element();
+        let axes = [b.axes.x_axis, b.axes.y_axis, b.axes.z_axis];
+        let mut planes = Vec::with_capacity(6 + b.planes.len());
+        let mut solid = FlowBox { ..*b };
+        for (i, axis) in axes.into_iter().enumerate() {
+            // A cell's width along the axis.
+            let half = b.half_size_m[i].max(0.5 * axis.abs().dot(h)) + near;
+            solid.half_size_m[i] = half;
+            planes.push((axis, half + axis.dot(b.center_m)));
+            planes.push((-axis, half - axis.dot(b.center_m)));
+        }
+        for &[x, y, z, d] in b.planes {
+            let out = b.axes * DVec3::new(x, y, z);
+            planes.push((out, d + near + out.dot(b.center_m)));
+        }
+        let reach = solid.reach_m();
+        let (low, high) = ((b.center_m - reach).truncate(), (b.center_m + reach).truncate());
+        Self { planes, low, high, velocity: b.velocity_m_s }
     }
+
+    /// From and to which height it stands above a place.
+    fn span(&self, place: DVec2) -> Option<[f64; 2]> {
+        if place.cmplt(self.low).any() || place.cmpgt(self.high).any() {
+            return None;
+        }
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (n, d) in &self.planes {
+            let rest = d - n.truncate().dot(place);
+            if n.z > 1e-12 {
+                high = high.min(rest / n.z);
+            } else if n.z < -1e-12 {
+                low = low.max(rest / n.z);
+            } else if rest < 0.0 {
+                return None;
+            }
+        }
+        (low < high).then_some([low, high])
+    }
+
+    /// Columns of cells that it may close faces of; none outside of the field.
+    fn columns(&self, lattice: &Lattice) -> Option<Columns> {
+        let along = |a: usize| {
+            let h = f64::from(lattice.h[a]);
+            let (low, high) = ((self.low[a] / h).floor() - 1.0, (self.high[a] / h).ceil());
+            let last = lattice.n[a] - 1;
+            (high >= 0.0 && low <= last as f64).then(|| [low.max(0.0) as usize, (high as usize).min(last)])
+        };
+        Some([along(0)?, along(1)?])
+    }
+}
+
+/// The columns that boxes may close faces of.
+pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<Columns> {
+    let all = boxes.iter().filter_map(|b| Solid::new(lattice, b).columns(lattice));
+    all.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]))
 }
 
 impl FlowObstacles<'_> {
@@ -61,9 +149,16 @@ impl FlowObstacles<'_> {
             for v in b.half_size_m.to_array() {
                 check_range(&name("half_size_m"), v, 1e-3, 1e5, "m")?;
             }
-            check_range(&name("turned_deg"), b.turned_deg, -360.0, 360.0, "")?;
-            let reach =
-                DVec3::new(b.half_size_m.truncate().length(), b.half_size_m.truncate().length(), b.half_size_m.z);
+            let speed = b.velocity_m_s.length();
+            if !(0.0..=super::MAX_SPEED_M_S).contains(&speed) {
+                let wanted = format!("a vector of at most {} m/s", super::MAX_SPEED_M_S);
+                return Err(Error::range(&name("velocity_m_s"), &wanted, b.velocity_m_s));
+            }
+            let off = (b.axes.transpose() * b.axes - DMat3::IDENTITY).to_cols_array();
+            if !off.iter().all(|v| v.abs() < 1e-3) {
+                return Err(Error::range(&name("axes"), "three unit vectors at right angles", b.axes));
+            }
+            let reach = b.reach_m();
             let is_in = (b.center_m + reach).cmpgt(DVec3::ZERO).all() && (b.center_m - reach).cmplt(size).all();
             if !(b.center_m.is_finite() && is_in) {
                 return Err(Error::range(&name("center_m"), "such that the box reaches into the field", b.center_m));
@@ -72,33 +167,30 @@ impl FlowObstacles<'_> {
         Ok(())
     }
 
-    fn footprints(&self, lattice: &Lattice) -> Vec<Footprint> {
-        let [hx, hy, hz] = lattice.h.map(f64::from);
-        let footprint = |b: &FlowBox| {
-            let angle = b.turned_deg.to_radians();
-            let along = DVec2::new(libm::cos(angle), libm::sin(angle));
-            let thinnest =
-                0.5 * DVec2::new(along.x.abs() * hx + along.y.abs() * hy, along.y.abs() * hx + along.x.abs() * hy);
-            let half = b.half_size_m.truncate().max(thinnest) + NEAR * hx.min(hy);
-            let half_height = b.half_size_m.z.max(0.5 * hz) + NEAR * hz;
-            let (low, high) = (b.center_m.z - half_height, b.center_m.z + half_height);
-            Footprint { center: b.center_m.truncate(), along, half, low, high }
-        };
-        self.boxes.iter().map(footprint).collect()
-    }
-
     /// Open shares of all faces of a grid.
-    pub(super) fn open(&self, lattice: &Lattice) -> Result<Faces> {
-        let mut open = lattice.zeros().map(|v| vec![1.0; v.len()]);
+    pub(super) fn shares(&self, lattice: &Lattice) -> Result<Shares> {
+        let open = lattice.zeros().map(|v| vec![1.0; v.len()]);
+        let mut shares = Shares { open, pushed: Faces::default() };
         if self.terrain.is_none() && self.boxes.is_empty() {
-            return Ok(open);
+            return Ok(shares);
         }
         self.check(lattice)?;
-        let footprints = self.footprints(lattice);
+        self.find(lattice, [0, 1].map(|a| [0, lattice.n[a] - 1]), &mut shares)?;
+        Ok(shares)
+    }
+
+    /// Finds the shares of the faces of some columns anew.
+    pub(super) fn find(&self, lattice: &Lattice, columns: Columns, shares: &mut Shares) -> Result<()> {
+        let solids: Vec<Solid> = self.boxes.iter().map(|b| Solid::new(lattice, b)).collect();
+        let moves = solids.iter().any(|s| s.velocity != DVec3::ZERO);
+        if moves && shares.pushed[0].is_empty() {
+            shares.pushed = lattice.zeros();
+        }
         let h = lattice.h.map(f64::from);
-        let mut column = Column { h: h[2], spans: Vec::new() };
+        let mut column = Column { h: h[2], spans: Vec::new(), moving: Vec::new() };
+        let nz = lattice.n[2] + 1;
+        let (mut closed, mut pushed) = (vec![0.0; nz], vec![0.0; nz]);
         for c in lattice.axes() {
-            let [nx, ny, nz] = [0, 1, 2].map(|a| lattice.count(c, a));
             // Across the face's plane one place is enough.
             let count = |a: usize| if a == c || lattice.is_flat(a) { 1 } else { SAMPLES };
             let along = |a: usize, i: usize, s: usize| match a == c && !lattice.is_flat(a) {
@@ -106,23 +198,29 @@ impl FlowObstacles<'_> {
                 false => (i as f64 + (s as f64 + 0.5) / count(a) as f64) * h[a],
             };
             let share = 1.0 / (count(0) * count(1)) as f64;
-            let mut closed = vec![0.0; nz];
-            for j in 0..ny {
-                for i in 0..nx {
-                    closed.fill(0.0);
-                    for (t, s) in (0..count(1)).flat_map(|t| (0..count(0)).map(move |s| (t, s))) {
-                        let place = DVec2::new(along(0, i, s), along(1, j, t));
-                        column.find(self.terrain, &footprints, place)?;
-                        let of = |k| if c == 2 { column.closed_at(k) } else { column.closed_within(k) };
-                        closed.iter_mut().enumerate().for_each(|(k, v)| *v += share * of(k));
+            let of_component = |a: usize| columns[a][0]..=columns[a][1] + lattice.count(c, a) - lattice.n[a];
+            for (i, j) in of_component(1).flat_map(|j| of_component(0).map(move |i| (i, j))) {
+                closed.fill(0.0);
+                pushed.fill(0.0);
+                for (t, s) in (0..count(1)).flat_map(|t| (0..count(0)).map(move |s| (t, s))) {
+                    column.find(self.terrain, &solids, DVec2::new(along(0, i, s), along(1, j, t)))?;
+                    for k in 0..lattice.count(c, 2) {
+                        closed[k] += share * column.closed(c, k);
+                        if moves {
+                            pushed[k] += share * column.pushed(c, k);
+                        }
                     }
-                    for (k, v) in closed.iter().enumerate() {
-                        open[c][lattice.at([i, j, k])] = (1.0 - v) as f32;
+                }
+                for k in 0..lattice.count(c, 2) {
+                    let at = lattice.at([i, j, k]);
+                    shares.open[c][at] = (1.0 - closed[k]) as f32;
+                    if let Some(v) = shares.pushed[c].get_mut(at) {
+                        *v = pushed[k] as f32;
                     }
                 }
             }
         }
-        Ok(open)
+        Ok(())
     }
 }
 
@@ -131,11 +229,14 @@ struct Column {
     h: f64,
     /// From and to a height, lowest first, apart from each other.
     spans: Vec<[f64; 2]>,
+    /// Those of moving things, with their velocity.
+    moving: Vec<([f64; 2], DVec3)>,
 }
 
 impl Column {
-    fn find(&mut self, terrain: Option<Heights>, footprints: &[Footprint], place: DVec2) -> Result<()> {
+    fn find(&mut self, terrain: Option<Heights>, solids: &[Solid], place: DVec2) -> Result<()> {
         self.spans.clear();
+        self.moving.clear();
         if let Some(heights) = terrain {
             let ground = heights(place);
             if !ground.is_finite() {
@@ -144,7 +245,13 @@ impl Column {
             }
             self.spans.push([f64::NEG_INFINITY, ground + NEAR * self.h]);
         }
-        self.spans.extend(footprints.iter().filter(|f| f.covers(place)).map(|f| [f.low, f.high]));
+        for solid in solids {
+            let Some(span) = solid.span(place) else { continue };
+            self.spans.push(span);
+            if solid.velocity != DVec3::ZERO {
+                self.moving.push((span, solid.velocity));
+            }
+        }
         self.spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
         self.spans.dedup_by(|next, kept| {
             let joins = next[0] <= kept[1];
@@ -156,16 +263,22 @@ impl Column {
         Ok(())
     }
 
-    /// 1 if the face at the foot of a cell is solid, else 0.
-    fn closed_at(&self, cell: usize) -> f64 {
-        let height = cell as f64 * self.h;
-        if self.spans.iter().any(|s| (s[0]..=s[1]).contains(&height)) { 1.0 } else { 0.0 }
+    /// Solid share of the height of a cell; of the face at its foot, across which the vertical component passes, 1 or 0.
+    fn closed(&self, component: usize, cell: usize) -> f64 {
+        let sum: f64 = self.spans.iter().map(|s| self.within(s, component, cell)).sum();
+        sum.min(1.0)
     }
 
-    /// Solid share of a cell's height.
-    fn closed_within(&self, cell: usize) -> f64 {
+    fn within(&self, span: &[f64; 2], component: usize, cell: usize) -> f64 {
         let (low, high) = (cell as f64 * self.h, (cell + 1) as f64 * self.h);
-        let solid = |s: &[f64; 2]| (s[1].min(high) - s[0].max(low)).max(0.0);
-        (self.spans.iter().map(solid).sum::<f64>() / self.h).min(1.0)
+        if component == 2 {
+            return f64::from(u8::from((span[0]..=span[1]).contains(&low)));
+        }
+        (span[1].min(high) - span[0].max(low)).max(0.0) / self.h
+    }
+
+    /// The same of moving things, times their velocity along the component's axis.
+    fn pushed(&self, component: usize, cell: usize) -> f64 {
+        self.moving.iter().map(|(span, v)| self.within(span, component, cell) * v[component]).sum()
     }
 }

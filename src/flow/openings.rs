@@ -4,6 +4,7 @@
 use super::{
     lattice::{Faces, Lattice},
     multigrid::Level,
+    obstacles::Shares,
     sides::{Role, Roles},
 };
 
@@ -21,12 +22,18 @@ const NO_BODY: u32 = u32::MAX;
 pub(super) struct Openings {
     /// Open share of each face, [0, 1].
     pub open: Faces,
+    /// Velocity of what closes faces and moves, times the share that it closes, m/s; empty where nothing moves.
+    pub pushed: Faces,
+    /// Faces of open sides that were closed since the air behind them could not leave, and their open shares.
+    dead: Vec<(usize, usize, f32)>,
     /// Body of air that each cell belongs to.
     bodies: Vec<u32>,
     body_count: usize,
     /// Closed faces by layer, nearest the air first; for each component.
     inside: [Vec<Vec<usize>>; 3],
     layers: [Vec<u8>; 3],
+    /// Room to balance in.
+    passing: Vec<Passing>,
 }
 
 /// A face of an open side.
@@ -41,7 +48,7 @@ struct SideFace {
 }
 
 /// Air that leaves through the sides, for each body of air.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Passing {
     outward: f64,
     way_out: f64,
@@ -49,16 +56,31 @@ struct Passing {
 
 impl Openings {
     /// From open shares of all faces.
-    pub(super) fn new(lattice: &Lattice, roles: &Roles, mut open: Faces) -> Self {
-        for v in open.iter_mut().flatten() {
-            *v = if *v < LEAST_OPEN { 0.0 } else { v.min(1.0) };
+    pub(super) fn new(lattice: &Lattice, roles: &Roles, shares: Shares) -> Self {
+        let Shares { mut open, mut pushed } = shares;
+        for (open, pushed) in open.iter_mut().zip(&mut pushed) {
+            for (at, v) in open.iter_mut().enumerate() {
+                let kept = if *v < LEAST_OPEN { 0.0 } else { v.min(1.0) };
+                if let Some(p) = pushed.get_mut(at).filter(|_| kept == 0.0) {
+                    *p /= 1.0 - *v;
+                }
+                *v = kept;
+            }
         }
         for a in lattice.axes().filter(|a| roles[*a][0] == Role::Periodic) {
             let beyond = lattice.n[a] * lattice.stride[a];
             lattice.each_line(a, |first| open[a][first + beyond] = open[a][first]);
         }
-        let mut new =
-            Self { open, bodies: Vec::new(), body_count: 0, inside: Default::default(), layers: Default::default() };
+        let mut new = Self {
+            open,
+            pushed,
+            dead: Vec::new(),
+            bodies: Vec::new(),
+            body_count: 0,
+            inside: Default::default(),
+            layers: Default::default(),
+            passing: Vec::new(),
+        };
         new.find_bodies(lattice, roles);
         new.close_dead_ends(lattice, roles);
         new.find_layers(lattice);
@@ -143,20 +165,37 @@ impl Openings {
     fn close_dead_ends(&mut self, lattice: &Lattice, roles: &Roles) {
         let mut way_out = vec![0.0; self.body_count];
         self.each_open_side(lattice, roles, |f| way_out[f.body] += if f.is_out { f.open_m2 } else { 0.0 });
-        let mut dead = Vec::new();
+        let mut dead = std::mem::take(&mut self.dead);
         self.each_open_side(lattice, roles, |f| {
-            if way_out[f.body] == 0.0 {
-                dead.push((f.axis, f.at));
+            let open = self.open[f.axis][f.at];
+            if way_out[f.body] == 0.0 && open > 0.0 {
+                dead.push((f.axis, f.at, open));
             }
         });
-        for (axis, at) in dead {
-            self.open[axis][at] = 0.0;
+        for (axis, at, _) in &dead {
+            self.open[*axis][*at] = 0.0;
+        }
+        self.dead = dead;
+    }
+
+    /// Follows sides that let air in now where it left before, or the other way round.
+    pub(super) fn set_roles(&mut self, lattice: &Lattice, roles: &Roles) {
+        let had_dead = !self.dead.is_empty();
+        for (axis, at, open) in self.dead.drain(..) {
+            self.open[axis][at] = open;
+        }
+        self.close_dead_ends(lattice, roles);
+        if had_dead || !self.dead.is_empty() {
+            self.find_layers(lattice);
         }
     }
 
     /// Makes as much air leave each body as comes into it, by the same change of speed on all of its outflow.
-    pub(super) fn balance(&self, lattice: &Lattice, roles: &Roles, velocity: &mut Faces) {
-        let mut all = vec![Passing::default(); self.body_count];
+    pub(super) fn balance(&mut self, lattice: &Lattice, roles: &Roles, velocity: &mut Faces) {
+        let mut all = std::mem::take(&mut self.passing);
+        all.clear();
+        all.resize(self.body_count, Passing::default());
+        self.add_pushed(lattice, &mut all);
         self.each_open_side(lattice, roles, |f| {
             all[f.body].outward += f.outward * f.open_m2 * f64::from(velocity[f.axis][f.at]);
             all[f.body].way_out += if f.is_out { f.open_m2 } else { 0.0 };
@@ -166,9 +205,24 @@ impl Openings {
                 velocity[f.axis][f.at] -= (f.outward * all[f.body].outward / all[f.body].way_out) as f32;
             }
         });
+        self.passing = all;
+    }
+
+    /// What moving things push into the bodies of air counts as if it had come in.
+    fn add_pushed(&self, lattice: &Lattice, all: &mut [Passing]) {
+        let size = lattice.h.map(f64::from);
+        for a in lattice.axes().filter(|a| !self.pushed[*a].is_empty()) {
+            let area: f64 = lattice.axes().filter(|o| *o != a).map(|o| size[o]).product();
+            let pushed = &self.pushed[a];
+            lattice.each_cell(|_, cell, at| {
+                let net = pushed[at + lattice.stride[a]] - pushed[at];
+                all[self.bodies[cell] as usize].outward += f64::from(net) * area;
+            });
+        }
     }
 
     fn find_layers(&mut self, lattice: &Lattice) {
+        self.inside = Default::default();
         for c in lattice.axes() {
             let mut layers = vec![NO_LAYER; lattice.len()];
             let mut closed = Vec::new();

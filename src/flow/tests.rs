@@ -1,5 +1,7 @@
 //! The field against published flows, and against what it promises.
 
+mod bluff;
+
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
 use super::{
@@ -112,11 +114,13 @@ fn shear_layers_roll_up_as_on_a_finer_grid() {
     }
 }
 
-const TOWN: [FlowBox; 3] = [
-    FlowBox { center_m: dvec3(20.3, 25.1, 4.0), half_size_m: dvec3(5.0, 4.0, 8.0), turned_deg: 30.0 },
-    FlowBox { center_m: dvec3(42.0, 20.0, 3.0), half_size_m: dvec3(0.2, 12.0, 6.5), turned_deg: 0.0 },
-    FlowBox { center_m: dvec3(30.0, 8.0, 12.0), half_size_m: dvec3(3.3, 3.3, 2.2), turned_deg: 0.0 },
-];
+fn town_boxes() -> [FlowBox<'static>; 3] {
+    [
+        FlowBox::level(dvec3(20.3, 25.1, 4.0), dvec3(5.0, 4.0, 8.0), 30.0),
+        FlowBox::level(dvec3(42.0, 20.0, 3.0), dvec3(0.2, 12.0, 6.5), 0.0),
+        FlowBox::level(dvec3(30.0, 8.0, 12.0), dvec3(3.3, 3.3, 2.2), 0.0),
+    ]
+}
 
 fn hills(p: DVec2) -> f64 {
     4.0 + 3.0 * (0.11 * p.x).sin() * (0.09 * p.y).cos()
@@ -125,7 +129,7 @@ fn hills(p: DVec2) -> f64 {
 fn town(scheme: Scheme) -> FlowField {
     let cell_m = dvec3(2.0, 2.0, 1.5);
     let settings = FlowSettings { cells: [30, 21, 14], cell_m, scheme, ..Default::default() };
-    let obstacles = FlowObstacles { terrain: Some(&hills), boxes: &TOWN };
+    let obstacles = FlowObstacles { terrain: Some(&hills), boxes: &town_boxes() };
     field(&settings, &obstacles, |p| dvec3(8.0 + 0.1 * p.z, 3.0, 0.0))
 }
 
@@ -271,11 +275,7 @@ fn work(pressure: PressureMethod, n: u32, tolerance: f64) -> (Solved, f64) {
     let settings = FlowSettings { cells: [n, n, 1], cell_m: DVec3::ONE, pressure, tolerance, ..Default::default() };
     let settings = FlowSettings { sides: [[Side::Open; 2], [Side::Slip; 2], [Side::Slip; 2]], ..settings };
     let half = f64::from(n) / 2.0;
-    let block = [FlowBox {
-        center_m: dvec3(half, half + 0.2, 0.5),
-        half_size_m: dvec3(half / 4.0, half / 5.0, 1.0),
-        turned_deg: 20.0,
-    }];
+    let block = [FlowBox::level(dvec3(half, half + 0.2, 0.5), dvec3(half / 4.0, half / 5.0, 1.0), 20.0)];
     let mut field = field(&settings, &FlowObstacles { terrain: None, boxes: &block }, |_| DVec3::X);
     assert!(field.largest_divergence() <= 1.05 * tolerance, "{pressure:?}: {}", field.largest_divergence());
     (field.solved(), f64::from(field.solved().iterations) / -tolerance.log10())
@@ -316,8 +316,8 @@ fn relaxation_of_two_is_refused_and_less_converges() {
 fn faces_are_open_in_part() {
     let lattice = super::lattice::Lattice::new([8, 8, 8], DVec3::ONE).expect("a lattice");
     let slope = |p: DVec2| 0.5 + 0.25 * p.x;
-    let boxes = [FlowBox { center_m: dvec3(6.0, 4.25, 6.0), half_size_m: dvec3(1.0, 0.75, 0.75), turned_deg: 0.0 }];
-    let open = FlowObstacles { terrain: Some(&slope), boxes: &boxes }.open(&lattice).expect("shares");
+    let boxes = [FlowBox::level(dvec3(6.0, 4.25, 6.0), dvec3(1.0, 0.75, 0.75), 0.0)];
+    let open = FlowObstacles { terrain: Some(&slope), boxes: &boxes }.shares(&lattice).expect("shares").open;
     let share = |c: usize, i: [usize; 3]| f64::from(open[c][lattice.at(i)]);
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-4, "{a} is not {b}");
     // The slope is 1.0 high at x = 2 and passes z = 1 there.
@@ -328,8 +328,8 @@ fn faces_are_open_in_part() {
     near(share(2, [1, 2, 1]), 1.0);
     near(share(2, [2, 2, 1]), 0.0);
     // A roof thinner than a cell still closes a face.
-    let roof = [FlowBox { center_m: dvec3(4.0, 4.0, 4.3), half_size_m: dvec3(2.0, 2.0, 0.01), turned_deg: 0.0 }];
-    let roofed = FlowObstacles { terrain: None, boxes: &roof }.open(&lattice).expect("shares");
+    let roof = [FlowBox::level(dvec3(4.0, 4.0, 4.3), dvec3(2.0, 2.0, 0.01), 0.0)];
+    let roofed = FlowObstacles { terrain: None, boxes: &roof }.shares(&lattice).expect("shares").open;
     near(roofed[2][lattice.at([4, 4, 4])].into(), 0.0);
     near(roofed[2][lattice.at([4, 4, 5])].into(), 1.0);
     // The box reaches from y = 3.5 to 5, z = 5.25 to 6.75.
@@ -344,7 +344,7 @@ fn faces_are_open_in_part() {
 #[test]
 fn no_air_passes_a_thin_wall_or_enters_where_it_cannot_leave() {
     let settings = FlowSettings { cells: [20, 8, 8], cell_m: DVec3::ONE, ..Default::default() };
-    let wall = [FlowBox { center_m: dvec3(10.3, 4.0, 4.0), half_size_m: dvec3(0.05, 5.0, 5.0), turned_deg: 0.0 }];
+    let wall = [FlowBox::level(dvec3(10.3, 4.0, 4.0), dvec3(0.05, 5.0, 5.0), 0.0)];
     let mut field = field(&settings, &FlowObstacles { terrain: None, boxes: &wall }, |_| dvec3(5.0, 0.0, 0.0));
     for _ in 0..10 {
         assert!(field.velocity_at(dvec3(10.0, 4.0, 4.0)).x.abs() < 0.01);
@@ -361,7 +361,7 @@ fn a_field_rests_or_says_that_it_does_not() {
     assert_eq!(still.settle(1.0, 1e-3, 1), Ok(true));
     let mut even = field(&settings, &FlowObstacles::default(), |_| DVec3::X);
     assert_eq!(even.settle(1.0, 1e-3, 1), Ok(true));
-    let post = [FlowBox { center_m: dvec3(8.0, 8.0, 0.5), half_size_m: dvec3(1.5, 1.5, 1.0), turned_deg: 0.0 }];
+    let post = [FlowBox::level(dvec3(8.0, 8.0, 0.5), dvec3(1.5, 1.5, 1.0), 0.0)];
     let mut behind = field(&settings, &FlowObstacles { terrain: None, boxes: &post }, |_| DVec3::X);
     assert_eq!(behind.settle(1.0, 1e-6, 1), Ok(false));
 }
@@ -394,7 +394,7 @@ fn bad_input_is_refused_by_name_and_leaves_the_field() {
     let hole = |p: DVec2| if p.x > 5.0 { f64::NAN } else { 1.0 };
     let holed = FlowObstacles { terrain: Some(&hole), boxes: &[] };
     refused(&good, &holed, DVec3::X, "flow.terrain");
-    let far = [FlowBox { center_m: dvec3(-50.0, 5.0, 5.0), half_size_m: DVec3::ONE, turned_deg: 0.0 }];
+    let far = [FlowBox::level(dvec3(-50.0, 5.0, 5.0), DVec3::ONE, 0.0)];
     refused(&good, &FlowObstacles { terrain: None, boxes: &far }, DVec3::X, "flow.boxes[0].center_m");
     let mut field = field(&good, &FlowObstacles::default(), |_| DVec3::X);
     let before = field.velocity_at(DVec3::splat(5.0));

@@ -17,7 +17,9 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_ground_grid(&mut self, grid: Option<GroundGrid>) -> Result<()> {
-        self.held.ground.set_grid(&self.world, grid)
+        self.held.ground.set_grid(&self.world, grid)?;
+        self.world.set.terrain = self.held.ground.heights();
+        Ok(())
     }
 
     /// The host's terrain.

@@ -9,3 +9,4 @@ mod rain;
 mod sky;
 mod stars;
 mod view;
+mod wind;

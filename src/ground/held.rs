@@ -1,7 +1,7 @@
 //! The water on the ground as a context holds it for all its views: as the weather reports it, or simulated over the timeline if the
 //! host asked for that; on level, open ground and cell by cell on the host's terrain.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,7 @@ use crate::{
     error::{Error, Result, Status},
     moment::Moment,
     scene::WorldKind,
+    surroundings::TerrainHeights,
     weather::{SurfaceCover, cover_under_rain},
     world::{HeldEffect, Within, World, parse_error},
 };
@@ -178,6 +179,13 @@ impl HeldGround {
     /// The host's terrain.
     pub fn grid(&self) -> Option<&GroundGrid> {
         self.host.as_ref().map(|held| &held.terrain.grid)
+    }
+
+    /// The host's terrain for all that goes round it.
+    pub fn heights(&self) -> Option<Arc<TerrainHeights>> {
+        let held = self.host.as_ref()?;
+        let g = &held.terrain.grid;
+        Some(Arc::new(TerrainHeights::new((g.origin, held.to_enu), g.cell_m, g.nodes, g.heights_m.clone())))
     }
 
     /// Water of each cell of the host's terrain.

@@ -4,7 +4,7 @@
 
 mod regions;
 
-use std::{cell::OnceCell, sync::Arc};
+use std::cell::OnceCell;
 
 use glam::{DMat3, DVec3};
 
@@ -13,12 +13,13 @@ pub(crate) use regions::{Region, WeatherOver};
 use crate::{
     error::Result,
     falling::FallingLayer,
+    gpu::Device,
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS, Place},
-    surroundings::{HostSurroundings, OccluderMaps, Shelter},
+    surroundings::{HostSurroundings, OccluderMaps, Shelter, WindMap, WindTexture, WindView},
     weather::Conditions,
-    wind::{Carrying, WindGrid},
+    wind::{Carrying, WindVolume},
 };
 
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
@@ -51,8 +52,9 @@ pub(crate) struct Moment<'a> {
     pub maps: Option<&'a OccluderMaps>,
     /// The host's lamps.
     pub lamps: &'a [HostLight],
-    /// The host's wind that varies in space.
-    pub wind_grid: Option<&'a Arc<WindGrid>>,
+    /// The wind that varies in space: a host's grid, or a solved field.
+    pub wind_volume: Option<&'a WindVolume>,
+    pub wind_texture: &'a WindTexture,
     pub carried: OnceCell<Carrying<'a>>,
     /// Light of flashes of lightning in this frame, once it is known.
     pub flash: OnceCell<FlashLight>,
@@ -76,6 +78,19 @@ impl<'a> Moment<'a> {
         }
         let carrying = self.weather.carrying_until(self.time_s)?;
         Ok(self.carried.get_or_init(|| carrying))
+    }
+
+    /// The wind at a place of the host's world now, m/s (east, north, up), where the weather's is `weathers`: what varies in space
+    /// replaces it there, or is added to it.
+    pub fn wind_about(&self, position: DVec3, weathers: DVec3) -> DVec3 {
+        self.wind_volume.and_then(|volume| volume.wind(position, weathers)).unwrap_or(weathers)
+    }
+
+    /// The wind that varies in space as shaders read it (`shaders/surroundings/wind.wgsl`), and where the camera is in it; none where
+    /// the weather's wind blows everywhere, and then the texture is one that nothing reads.
+    pub fn wind_texture(&self, device: &Device) -> (WindView, Option<WindMap>) {
+        let map = self.wind_volume.map(|volume| WindMap::new(volume, self.eye));
+        (self.wind_texture.view(device, self.wind_volume), map)
     }
 
     /// Light of flashes in this frame, as lamps: position relative to the camera, luminous flux, and whether it shines inside a cloud.

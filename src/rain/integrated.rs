@@ -21,7 +21,7 @@ use super::{
     lattice::{SHELLS, fraction, side_m},
     uniforms::{MovingAir, StreakCamera},
 };
-use crate::wind::{WindGrid, WindGridKind};
+use crate::surroundings::WindMap;
 
 /// Longest time that is stepped over, s; what is longer starts anew.
 pub(crate) const MOST_S: f64 = 10.0;
@@ -49,14 +49,12 @@ pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -
 pub(crate) struct StepUniform {
     pub air: [f32; 3],
     pub dt: f32,
-    pub grid_scale: [f32; 3],
-    pub steps: u32,
-    pub grid_offset: [f32; 3],
-    pub known: u32,
-    pub grid_first: [f32; 3],
-    pub capacity: u32,
+    pub wind: WindMap,
     pub moved: [f32; 3],
-    pub whole: u32,
+    pub steps: u32,
+    pub known: u32,
+    pub capacity: u32,
+    pad: [u32; 2],
     pub eye: [[u32; 4]; SHELLS],
     pub before: [[u32; 4]; SHELLS],
 }
@@ -69,9 +67,6 @@ pub(crate) struct Left {
     pub per_shell: u32,
 }
 
-/// The wind that varies in space as a camera finds it: its place in cells of the grid.
-pub(crate) type GridWind<'a> = (&'a WindGrid, DVec3);
-
 impl StepUniform {
     /// From what was `left` to now; none where there is nothing to step.
     pub fn new(
@@ -80,7 +75,7 @@ impl StepUniform {
         air: &MovingAir,
         left: Option<Left>,
         carried: &dyn Fn(f64) -> DVec3,
-        around: Option<GridWind<'_>>,
+        wind: Option<WindMap>,
         capacity: u32,
     ) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();
@@ -102,7 +97,7 @@ impl StepUniform {
                 [x, y, z, 0]
             })
         };
-        let mut step = Self {
+        Some(Self {
             air: v(blows),
             dt: (dt / steps) as f32,
             steps: if dt > 0.0 { steps as u32 } else { 0 },
@@ -111,16 +106,8 @@ impl StepUniform {
             moved: v(moved),
             eye: places(shot.position_m),
             before: places(shot.position_m - moved),
-            ..bytemuck::Zeroable::zeroed()
-        };
-        if let Some((grid, cells)) = around {
-            let nodes = DVec3::from(grid.nodes.map(f64::from));
-            // A node is in the middle of its texel.
-            step.grid_scale = v(1.0 / (grid.cell_m * nodes));
-            step.grid_offset = v((cells + 0.5) / nodes);
-            step.grid_first = v(0.5 / nodes);
-            step.whole = u32::from(grid.kind == WindGridKind::Whole);
-        }
-        Some(step)
+            wind: wind.unwrap_or_default(),
+            pad: [0; 2],
+        })
     }
 }

@@ -87,14 +87,15 @@ impl RainSurface {
     }
 }
 
-/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts. Above the
+/// The drops and stones in the air of a place, and the wind that carries them: that at 10 m with its gusts, or what varies in space
+/// there. Above the
 /// cloud that they fall from there are none. In rain areas ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are theirs, mixed by their rims.
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
     let c = world.weather_at(time_s)?;
     let here = world.over().falling_at(position, time_s, c).precipitation;
     let stones = StoneSizes::new(&here, factor_in(&c.air, place.altitude_m));
-    Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.over().carrying_until(time_s)?.velocity_m_s()))
+    Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.carrying_at(position, time_s)?))
 }
 
 /// See [`Context::rain_at`](crate::context::Context::rain_at).

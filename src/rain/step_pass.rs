@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     Classes,
     cull_pass::source_layout,
-    integrated::{GridWind, Left, StepUniform},
+    integrated::{Left, StepUniform},
     lattice::SHELLS,
     passes::STARTS,
     uniforms::{MovingAir, RainUniform, StreakCamera},
@@ -17,7 +17,7 @@ use crate::{
         bind::{self, Slot},
         pass::{self, ComputeDesc},
     },
-    wind::WindGrid,
+    surroundings::{WindMap, WindView},
 };
 
 /// Bytes of one drop: place and word, velocity.
@@ -30,11 +30,11 @@ pub(crate) struct StepPass {
     block: wgpu::Buffer,
     states: Option<(u32, wgpu::Buffer)>,
     left: Option<Left>,
-    /// The wind's texture and whose it is; one node where there is no grid.
-    grid: Option<(Option<Arc<WindGrid>>, wgpu::TextureView)>,
+    /// The texture of the wind that is bound; one texel where there is none.
+    wind: Option<WindView>,
     sampler: wgpu::Sampler,
     layouts: [wgpu::BindGroupLayout; 3],
-    /// With and without a grid.
+    /// Without and with a wind that varies in space.
     steps: [Option<wgpu::ComputePipeline>; 2],
     groups: Option<[wgpu::BindGroup; 3]>,
 }
@@ -47,8 +47,8 @@ pub(crate) struct Stepped<'a> {
     /// Nothing of earlier frames may show.
     pub anew: bool,
     pub carried: &'a dyn Fn(f64) -> glam::DVec3,
-    /// The grid, and the camera's place in cells of it.
-    pub around: Option<(&'a Arc<WindGrid>, glam::DVec3)>,
+    /// The texture of the wind that varies in space, and where the camera is in it if there is one.
+    pub wind: (WindView, Option<WindMap>),
     /// Drops of all shells that there is room for.
     pub most: u32,
 }
@@ -71,7 +71,7 @@ impl StepPass {
             block: crate::gpu::bind::block(&device.device, "step", EYES + 16 * SHELLS),
             states: None,
             left: None,
-            grid: None,
+            wind: None,
             sampler: device.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("wind"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -114,21 +114,23 @@ impl StepPass {
             (self.states, self.left, self.groups) = (Some((capacity, buffer)), None, None);
         }
         let capacity = self.states.as_ref().map_or(0, |(c, _)| *c);
-        let around = stepped.around.map(|(grid, cells)| -> GridWind<'_> { (grid, cells) });
-        self.take_wind(device, stepped.around.map(|(grid, _)| grid));
+        let (view, map) = &stepped.wind;
+        if self.wind.as_ref().is_none_or(|bound| bound.generation != view.generation) {
+            (self.wind, self.groups) = (Some(view.clone()), None);
+        }
         self.bind(device, blocks);
         let left = self.left.filter(|_| !stepped.anew);
         let (shot, air, per_shell) = (stepped.shot, stepped.air, stepped.classes.per_shell.min(capacity));
         self.left = Some(Left { time_s: air.time_s, position_m: shot.position_m, per_shell });
-        let made = StepUniform::new(stepped.classes, shot, air, left, stepped.carried, around, capacity);
+        let made = StepUniform::new(stepped.classes, shot, air, left, stepped.carried, *map, capacity);
         let Some(block) = made else { return Ok(()) };
         let mut bytes = [0; EYES + 16 * SHELLS];
         bytes[..size_of::<StepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
         bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
         device.queue.write_buffer(&self.block, 0, &bytes);
-        let slot = &mut self.steps[usize::from(around.is_some())];
+        let slot = &mut self.steps[usize::from(map.is_some())];
         if slot.is_none() {
-            *slot = Some(step_pipeline(device, &self.layouts, around.is_some())?);
+            *slot = Some(step_pipeline(device, &self.layouts, map.is_some())?);
         }
         if let (Some(pipeline), Some(groups)) = (slot, &self.groups) {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -145,23 +147,8 @@ impl StepPass {
         self.groups.as_ref().map(|[.., states]| states)
     }
 
-    fn take_wind(&mut self, device: &Device, wind: Option<&Arc<WindGrid>>) {
-        let same = |(held, _): &(Option<Arc<WindGrid>>, wgpu::TextureView)| match (held, wind) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            // Without a grid the texture is not read.
-            (_, None) => true,
-            _ => false,
-        };
-        if !self.grid.as_ref().is_some_and(same) {
-            let nothing = ([1, 1, 1], &[[0.0; 3]][..]);
-            let (nodes, velocities) = wind.map_or(nothing, |w| (w.nodes, &w.velocities_m_s[..]));
-            self.grid = Some((wind.cloned(), wind_texture(device, nodes, velocities)));
-            self.groups = None;
-        }
-    }
-
     fn bind(&mut self, device: &Device, blocks: &wgpu::Buffer) {
-        let (None, Some((_, states)), Some((_, wind))) = (&self.groups, &self.states, &self.grid) else { return };
+        let (None, Some((_, states)), Some(wind)) = (&self.groups, &self.states, &self.wind) else { return };
         let part = |buffer, offset: usize, size: usize| {
             wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer,
@@ -180,7 +167,7 @@ impl StepPass {
                 &[
                     entry(0, part(&self.block, 0, size_of::<StepUniform>())),
                     entry(1, states.as_entire_binding()),
-                    entry(2, wgpu::BindingResource::TextureView(wind)),
+                    entry(2, wgpu::BindingResource::TextureView(&wind.view)),
                     entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
                 ],
             ),
@@ -192,39 +179,16 @@ impl StepPass {
     }
 }
 
-fn wind_texture(device: &Device, nodes: [u32; 3], velocities: &[[f32; 3]]) -> wgpu::TextureView {
-    let size = wgpu::Extent3d { width: nodes[0], height: nodes[1], depth_or_array_layers: nodes[2] };
-    let texture = device.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("wind"),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let texels: Vec<u16> =
-        velocities.iter().flat_map(|v| [v[0], v[1], v[2], 0.0]).map(|x| half::f16::from_f32(x).to_bits()).collect();
-    device.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(&texels),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * nodes[0]), rows_per_image: Some(nodes[1]) },
-        size,
-    );
-    texture.create_view(&Default::default())
-}
-
 fn step_pipeline(
     device: &Arc<Device>,
     layouts: &[wgpu::BindGroupLayout; 3],
-    grid: bool,
+    has_wind: bool,
 ) -> Result<wgpu::ComputePipeline> {
     let desc = ComputeDesc {
         shader: "rain/step.wgsl",
         entry: "step_drops",
         layouts: &[Some(&layouts[0]), Some(&layouts[1])],
-        constants: &[("GRID", f64::from(u8::from(grid)))],
+        constants: &[("WIND", f64::from(u8::from(has_wind)))],
     };
     pass::compute(device, &desc)
 }

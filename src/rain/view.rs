@@ -1,7 +1,5 @@
 //! The rain of a view: what it draws of what falls, from scene and camera.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::{
@@ -26,7 +24,7 @@ use crate::{
         rounding,
     },
     weather::{Conditions, Falling},
-    wind::{Remembered, WindGrid},
+    wind::Remembered,
 };
 
 /// What a view holds for its drops.
@@ -395,14 +393,13 @@ impl RainView {
             let all = ConeUniform::new(block.seed, &there, &camera, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share * self.settings.contrast_gain)
         });
-        let around = grid_wind(now);
         let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
             classes: &classes,
             shot: &camera,
             air: &air,
             anew: frame.is_pure(),
             carried: &carried,
-            around,
+            wind: now.wind_texture(device),
             most,
         });
         let drawn = LayerDraw {
@@ -512,13 +509,6 @@ impl DrawnEffect for RainView {
     fn forget_picture(&mut self) {
         self.layer.forget_picture();
     }
-}
-
-/// The host's wind that varies in space, and where the camera is in it.
-fn grid_wind<'a>(now: &Moment<'a>) -> Option<(&'a Arc<WindGrid>, DVec3)> {
-    let grid = now.wind_grid?;
-    let to_enu = now.weather.world.frame_at(grid.origin).world_to_enu;
-    Some((grid, grid.cells_at(now.eye, to_enu)))
 }
 
 /// The air that drops are drawn in.

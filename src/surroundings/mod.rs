@@ -1,9 +1,12 @@
-//! The host's boxes and occluder maps, which keep rain off, and its lamps, for all effects alike.
+//! The host's boxes and occluder maps, which keep rain off, its lamps and terrain, and the wind that varies in space, for all effects
+//! alike.
 
 mod around;
 mod occluder;
 mod occluder_maps;
 pub mod shelter;
+mod terrain;
+mod wind;
 
 pub use occluder::{MAX_OCCLUDER_MAPS, OccluderMap, Taken};
 pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
@@ -11,3 +14,5 @@ pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 pub(crate) use around::{HostSurroundings, SurroundingsBlock, layout};
 pub(crate) use occluder_maps::OccluderMaps;
 pub(crate) use shelter::met_at;
+pub(crate) use terrain::TerrainHeights;
+pub(crate) use wind::{WindMap, WindTexture, WindView};

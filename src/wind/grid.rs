@@ -1,6 +1,6 @@
 //! Wind that varies in space: velocities on a grid that the host, or a flow solver, gives.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
@@ -64,30 +64,28 @@ impl WindGrid {
         }
     }
 
-    /// `position` of the host's world in cells from the origin; `to_enu` turns the host's axes at the origin.
-    pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> DVec3 {
-        (to_enu * (position - self.origin)) / self.cell_m
-    }
-
     /// The velocity so many cells from the origin, m/s; none outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec3> {
-        let c = cells.to_array();
-        let inside = c.iter().zip(self.nodes).all(|(x, n)| (0.0..=f64::from(n - 1)).contains(x));
-        if !inside {
-            return None;
-        }
-        let low = [0, 1, 2].map(|i| (c[i] as u32).min(self.nodes[i] - 2));
-        let part = DVec3::from([0, 1, 2].map(|i| c[i] - f64::from(low[i])));
-        let mut sum = DVec3::ZERO;
-        for corner in 0..8u32 {
-            let bit = [corner & 1, corner >> 1 & 1, corner >> 2];
-            let at = [0, 1, 2].map(|i| (low[i] + bit[i]) as usize);
-            let weight: f64 = (0..3).map(|i| if bit[i] == 1 { part[i] } else { 1.0 - part[i] }).product();
-            let index = (at[2] * self.nodes[1] as usize + at[1]) * self.nodes[0] as usize + at[0];
-            sum += DVec3::from(self.velocities_m_s[index].map(f64::from)) * weight;
-        }
-        Some(sum)
+        let velocity = |i: usize| DVec3::from(self.velocities_m_s[i].map(f64::from));
+        Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| velocity(i) * weight).sum())
     }
+}
+
+/// The eight nodes about a place so many cells from the first of a grid, with their weights by linear interpolation; none outside.
+pub(super) fn about(nodes: [u32; 3], cells: DVec3) -> Option<[(usize, f64); 8]> {
+    let c = cells.to_array();
+    let inside = c.iter().zip(nodes).all(|(x, n)| n > 1 && (0.0..=f64::from(n - 1)).contains(x));
+    if !inside {
+        return None;
+    }
+    let low = [0, 1, 2].map(|i| (c[i] as u32).min(nodes[i] - 2));
+    let part = [0, 1, 2].map(|i| c[i] - f64::from(low[i]));
+    Some(std::array::from_fn(|corner| {
+        let bit = [corner & 1, corner >> 1 & 1, corner >> 2];
+        let at = [0, 1, 2].map(|i| low[i] as usize + bit[i]);
+        let weight = (0..3).map(|i| if bit[i] == 1 { part[i] } else { 1.0 - part[i] }).product();
+        ((at[2] * nodes[1] as usize + at[1]) * nodes[0] as usize + at[0], weight)
+    }))
 }
 
 #[cfg(test)]
@@ -123,8 +121,6 @@ mod tests {
         for p in [DVec3::new(-0.01, 1.0, 1.0), DVec3::new(1.0, 3.01, 1.0), DVec3::new(1.0, 1.0, 2.01), DVec3::NAN] {
             assert_eq!(grid.at(p), None, "{p}");
         }
-        let there = grid.origin + DVec3::new(2.0, 6.0, 2.0);
-        assert_eq!(grid.cells_at(there, DMat3::IDENTITY), DVec3::new(1.0, 2.0, 0.5));
     }
 
     #[test]

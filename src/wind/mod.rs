@@ -14,6 +14,7 @@ mod grid;
 mod gusts;
 #[cfg(test)]
 mod tests;
+mod volume;
 
 use glam::{DVec2, DVec3};
 
@@ -22,6 +23,7 @@ use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};
 use gusts::Gusts;
+pub(crate) use volume::WindVolume;
 
 use crate::weather::{Timeline, WindProfile};
 

@@ -25,6 +25,9 @@ pub(crate) trait HeldEffect {
         Ok(Status::Ok)
     }
 
+    /// Puts what others read of its state where they read it. Called when the state may have changed.
+    fn publish(&mut self, _world: &mut World) {}
+
     /// Simulation time of the state, if there is one.
     fn stepped_to_s(&self) -> Option<f64> {
         None

@@ -13,6 +13,7 @@ mod regions;
 mod saved;
 mod saved_settings;
 mod scene;
+mod wind;
 
 use std::{
     cell::OnceCell,
@@ -43,9 +44,9 @@ use crate::{
     moment::{Moment, Region, Scene, WeatherOver},
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
-    surroundings::{OccluderMaps, Shelter},
+    surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
-    wind::{Drift, Wind, WindGrid, WindOver},
+    wind::{Drift, Wind, WindGrid, WindOver, WindVolume},
 };
 
 /// A direction to a light, given by the host in place of the almanac.
@@ -88,6 +89,8 @@ impl Default for NightSettings {
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
+    /// The host's terrain; whatever holds it saves it.
+    pub terrain: Option<Arc<TerrainHeights>>,
     pub regions: Vec<Region>,
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
@@ -133,6 +136,11 @@ pub(crate) struct World {
     pub maps: Option<Box<OccluderMaps>>,
     pub lights: Vec<HostLight>,
     pub wind_grid: Option<Arc<WindGrid>>,
+    /// The same in the form that is read.
+    host_wind: Option<Box<WindVolume>>,
+    /// The wind round terrain and boxes, where something has solved for it.
+    pub solved_wind: Option<Box<WindVolume>>,
+    wind_texture: WindTexture,
     pub time_s: f64,
     ephemeris: Ephemeris,
     couplings: Couplings,
@@ -178,6 +186,7 @@ impl World {
             drifted: Drift::ZERO,
             set: Settings {
                 shelters: Vec::new(),
+                terrain: None,
                 regions: Vec::new(),
                 given_sun: None,
                 given_moon: None,
@@ -190,6 +199,9 @@ impl World {
             maps: None,
             lights: Vec::new(),
             wind_grid: None,
+            host_wind: None,
+            solved_wind: None,
+            wind_texture: WindTexture::default(),
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             couplings,
@@ -292,7 +304,8 @@ impl World {
             shelters: &self.set.shelters,
             maps: self.maps.as_deref(),
             lamps: &self.lights,
-            wind_grid: self.wind_grid.as_ref(),
+            wind_volume: self.wind_volume(self.time_s),
+            wind_texture: &self.wind_texture,
             carried: OnceCell::new(),
             flash: OnceCell::new(),
             scene,

@@ -89,6 +89,10 @@ impl World {
             maps: _,
             lights: _,
             wind_grid: _,
+            // These follow from the grid, and from what solves for it.
+            host_wind: _,
+            solved_wind: _,
+            wind_texture: _,
             time_s: _,
             ephemeris: _,
             couplings: _,
@@ -123,8 +127,17 @@ impl World {
     /// If a number cannot be written.
     pub fn saved(&self, created: toml::Table) -> Result<SavedWorld> {
         // Named one by one: what a new field decides has to be saved, unless it follows from the rest.
-        let Settings { shelters, regions, given_sun, given_moon, utc_at_zero, undimmed: _, planet, color: _ } =
-            &self.set;
+        let Settings {
+            shelters,
+            terrain: _,
+            regions,
+            given_sun,
+            given_moon,
+            utc_at_zero,
+            undimmed: _,
+            planet,
+            color: _,
+        } = &self.set;
         let angles = |g: &Option<GivenDirection>| g.map(|g| [g.azimuth_deg, g.elevation_deg]);
         let (drifted, carried) = (&self.drifted, self.drifted.displacement_m);
         let mut settings = SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref());
@@ -170,6 +183,7 @@ impl World {
         let color = if planet == self.set.planet { self.set.color } else { color_columns(&planet) };
         let set = Settings {
             shelters,
+            terrain: None,
             regions: saved.areas,
             given_sun,
             given_moon,
@@ -202,6 +216,7 @@ impl World {
         }
         swap(&mut self.lights, &mut other.beside.lights);
         swap(&mut self.wind_grid, &mut other.beside.wind_grid);
+        self.show_wind_grid();
         self.surroundings_revision += 1;
     }
 }

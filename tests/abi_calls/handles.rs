@@ -8,7 +8,7 @@ use welkin::capi::{
     abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
     sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_grid::*, windscreen::*,
+    wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -81,6 +81,12 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)
+        }),
+        case("wk_context_set_wind_field", "context", false, |h| unsafe {
+            wk_context_set_wind_field(h.cast(), null(), 0.0)
+        }),
+        case("wk_context_get_wind_field_report", "context", false, |h| unsafe {
+            wk_context_get_wind_field_report(h.cast(), null_mut())
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
         case("wk_context_set_cloud_model", "context", false, |h| unsafe { wk_context_set_cloud_model(h.cast(), 0) }),

@@ -8,7 +8,8 @@ use std::{
 
 use welkin::capi::{
     area::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, lightning::*,
-    query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+    query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_field::*,
+    wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -183,6 +184,12 @@ unsafe fn trigger_flash(context: *mut wk_context) {
     ok(unsafe { wk_context_trigger_flash(context, &flash) });
 }
 
+unsafe fn set_wind_field(context: *mut wk_context) {
+    let field = wk_wind_field { cells: [8, 16, 8], mode: WK_WIND_FIELD_RUNNING, ..init("wk_wind_field") };
+    // To come: a field that runs makes a large state (src/flow/held/tests.rs).
+    ok(unsafe { wk_context_set_wind_field(context, &field, 100.0) });
+}
+
 unsafe fn set_wind_grid(context: *mut wk_context) {
     let velocities = [[1.5f32, -0.0, 0.25]; 8];
     let grid = wk_wind_grid {
@@ -207,11 +214,11 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..19].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..20].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 20] = [
+const SETTERS: [(&str, Set); 21] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_cloud_model", set_cloud_model),
     ("wk_context_set_default_surface_class", set_default_surface_class),
@@ -228,6 +235,7 @@ const SETTERS: [(&str, Set); 20] = [
     ("wk_context_set_sun", set_sun),
     ("wk_context_set_tone_curve", set_tone_curve),
     ("wk_context_set_weather", set_rain),
+    ("wk_context_set_wind_field", set_wind_field),
     ("wk_context_set_wind_grid", set_wind_grid),
     ("wk_context_trigger_flash", trigger_flash),
     ("wk_context_update", set_time),

@@ -10,7 +10,7 @@ use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*, query::*, rain::*,
     report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    weather::*, wind::*, wind_grid::*, windscreen::*,
+    weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -116,6 +116,12 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_set_occluder_maps(context, p.cast(), 1, 1 << 24)
         }),
         case("wk_light", "lights[0]", true, move |p| unsafe { wk_context_set_lights(context, p.cast(), 1, 1 << 24) }),
+        case("wk_wind_field", "wind_field", true, move |p| unsafe {
+            wk_context_set_wind_field(context, p.cast(), 0.0)
+        }),
+        case("wk_wind_field_report", "out_report", false, move |p| unsafe {
+            wk_context_get_wind_field_report(context, p.cast())
+        }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),

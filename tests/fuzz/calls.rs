@@ -7,7 +7,7 @@ use welkin::capi::{
     abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
     report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_grid::*, windscreen::*,
+    wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -434,6 +434,17 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_set_occluder_maps", |d, w| {
         let context = handle(d, &w.contexts);
         set_list(d, "wk_occluder_map", |p, n, s| unsafe { wk_context_set_occluder_maps(context, p.cast(), n, s) })
+    }),
+    ("wk_context_set_wind_field", |d, w| {
+        let mut field = Struct::random(d, "wk_wind_field", 10);
+        let cells: [u32; 3] = std::array::from_fn(|_| 6 + d.below(6) as u32);
+        field.set("cells", cells);
+        let start_s = 20.0 * d.unit();
+        unsafe { wk_context_set_wind_field(handle(d, &w.contexts), field.ptr().cast(), start_s) }.into()
+    }),
+    ("wk_context_get_wind_field_report", |d, w| {
+        let context = handle(d, &w.contexts);
+        get("wk_wind_field_report", |p| unsafe { wk_context_get_wind_field_report(context, p.cast()) })
     }),
     ("wk_context_set_wind_grid", |d, w| {
         let mut grid = Struct::random(d, "wk_wind_grid", 10);

@@ -4,6 +4,7 @@ use glam::DVec3;
 use welkin::{
     Status,
     context::GivenDirection,
+    flow::{WindFieldDesc, WindFieldMode},
     frame::Stages,
     gpu::{Device, DeviceOptions},
     rain::{RainModel, RainSettings},
@@ -143,6 +144,46 @@ fn a_wind_that_varies_in_space_bends_them_and_is_answered_for() {
     assert!(bent > 2.0 * upright, "{bent} against {upright}");
     let bad = WindGrid { nodes: [16, 16, 40], ..updraught() };
     assert!(host.context.set_wind_grid(Some(bad)).unwrap_err().to_string().contains("wind_grid.nodes[2]"));
+}
+
+#[test]
+fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
+    let mut host = day((160, 90));
+    host.context.set_weather(&rain(50.0, 9.0), 1.0, 0.0).unwrap();
+    // The wind blows to where its weather says; the lee is half a house behind the house.
+    let house = upright([0.0, 0.0, 6.0], [8.0, 8.0, 6.0]);
+    host.context.set_shelters(&[house]).unwrap();
+    let field = WindFieldDesc { cells: [24, 24, 10], mode: WindFieldMode::Running, ..WindFieldDesc::default() };
+    host.context.set_wind_field(Some(&field), 1.0).unwrap();
+    host.context.update(1.0).unwrap();
+    let carrying = host.context.carrying_wind(1.0).unwrap();
+    let lee = carrying.normalize() * 14.0 + DVec3::Z * 4.0;
+    let far = carrying.normalize() * 400.0 + DVec3::Z * 4.0;
+    let falls = |host: &Host, p: DVec3| host.context.rain_at(p, 1.0).unwrap().fall_velocity_m_s;
+    let (behind, open) = (falls(&host, lee), falls(&host, far));
+    println!("behind the house {behind:.2}, in the open {open:.2}");
+    assert!(behind.truncate().dot(carrying.truncate()) < 0.5 * open.truncate().dot(carrying.truncate()));
+    let report = host.context.wind_field_report().unwrap();
+    assert_eq!((report.time_s, report.begun_s, report.step_s), (1.0, 1.0, 0.5));
+    // Before the camera the picture is that of other drops.
+    host.look(lee, DVec3::new(0.3, 1.0, 0.0));
+    draws(&mut host, RainModel::Integrated);
+    let with = picture(&mut host);
+    host.context.update(1.3).unwrap();
+    let bent = picture(&mut host);
+    let state = host.context.save().unwrap();
+    let mut other = day((160, 90));
+    other.context.load(&state).unwrap();
+    assert_eq!(other.context.state_hash().unwrap(), host.context.state_hash().unwrap());
+    assert_eq!(falls(&other, lee), falls(&host, lee));
+    [&mut host, &mut other].into_iter().for_each(|h| h.context.update(2.6).unwrap());
+    assert_eq!(other.context.state_hash().unwrap(), host.context.state_hash().unwrap());
+    // A grid of the host's blows in its place, and its end leaves the field.
+    host.context.set_wind_grid(Some(WindGrid { origin: DVec3::splat(-15.0), ..updraught() })).unwrap();
+    assert!(falls(&host, DVec3::Z * 14.0).z > 0.0);
+    host.context.set_wind_grid(None).unwrap();
+    assert!(falls(&host, DVec3::Z * 14.0).z < 0.0);
+    assert!(mean(&with) > 0.0 && with != bent);
 }
 
 #[test]

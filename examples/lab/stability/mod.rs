@@ -144,7 +144,7 @@ pub struct Map {
 type Make = fn(&Lab, &Options) -> Result<Map>;
 
 /// All maps by name.
-const MAPS: [(&str, Make); 14] = [
+const MAPS: [(&str, Make); 15] = [
     ("quadrature", sky_maps::quadrature),
     ("horizon-distance", |_, _| Ok(numbers::horizon_distance())),
     ("horizon", sky_maps::horizon),
@@ -158,6 +158,7 @@ const MAPS: [(&str, Make); 14] = [
     ("drag", |_, _| Ok(particles::drag())),
     ("gust", |_, _| particles::gust()),
     ("over-relaxation", |_, _| Ok(particles::over_relaxation())),
+    ("whirls", |_, _| Ok(particles::whirls())),
     ("time-steps", |_, _| particles::time_steps()),
 ];
 
@@ -347,7 +348,7 @@ fn outline(canvas: &mut Canvas, panel: &Panel, nx: usize, ny: usize, at: &dyn Fn
 }
 
 /// What each map shows, for the page: by name.
-const SAYS: [(&str, &str); 14] = [
+const SAYS: [(&str, &str); 15] = [
     (
         "quadrature",
         "The rule with an offset of 0.3 leaves out the last step: it errs by some per cent everywhere and by tens of per cent near the horizon. The closed form does not.",
@@ -395,7 +396,11 @@ const SAYS: [(&str, &str); 14] = [
     ),
     (
         "over-relaxation",
-        "Residual of a pressure solve after 400 sweeps: it diverges at a factor of 2 and above. The wind's solver, when it comes, refuses those.",
+        "Residual of a pressure solve after 400 sweeps: it diverges at a factor of 2 and above. The wind's solver refuses those.",
+    ),
+    (
+        "whirls",
+        "Kinetic energy that Taylor and Green's whirls lose, which would turn for ever: by the scheme of older snow simulators, by MacCormack's, and by the one that the wind field steps with. The splitting of a step loses most of it, so that a finer grid alone helps little.",
     ),
     (
         "time-steps",

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use welkin::Result;
+use welkin::flow::{Scheme, probe::taylor_green};
 use welkin::rain::drops::{GRAVITY_M_S2, relax, terminal_speed_m_s};
 use welkin::rain::integrated::step;
 use welkin::rain::lattice::{Moment, side_m};
@@ -175,6 +176,25 @@ pub fn over_relaxation() -> Map {
     let panels =
         vec![Panel::of("any factor", false, &x, &y, cell), Panel::of("factors below 2 only", true, &x, &y, guarded)];
     Map { title: "Residual after 400 sweeps of successive over-relaxation", x, y, panels, tolerance: 1.0 }
+}
+
+/// Kinetic energy that still whirls lose in a turn, over the length of a step and the size of the grid.
+pub fn whirls() -> Map {
+    let x = Axis::list("cells that the air passes in a step", &[0.25, 0.5, 1.0, 2.0, 4.0, 8.0]);
+    let y = Axis::list("cells along a side", &[16.0, 24.0, 32.0, 48.0, 64.0]);
+    let lost = |scheme: Scheme| {
+        move |cfl: f64, n: f64| match taylor_green(n as u32, cfl, scheme) {
+            Ok(kept) => Cell::of((1.0 - kept).abs()),
+            Err(_) => Cell::Refused,
+        }
+    };
+    let panel = |title, ours, scheme| Panel::of(title, ours, &x, &y, lost(scheme));
+    let panels = vec![
+        panel("usual: semi-Lagrangian", false, Scheme::SemiLagrangian),
+        panel("usual: MacCormack", false, Scheme::MacCormack),
+        panel("Welkin: reflection", true, Scheme::Reflection),
+    ];
+    Map { title: "Kinetic energy that whirls without friction lose in 2 pi seconds", x, y, panels, tolerance: 0.25 }
 }
 
 /// Visibility after a change of weather, over the step with which it is followed and the change's duration.

@@ -12,8 +12,9 @@ use crate::{
         lattice::{self, random3, side_m},
     },
     scene::{Camera, DepthMapping, ViewRays},
+    surroundings::WindTexture,
     weather::{Precipitation, PrecipitationKind, Weather, derive},
-    wind::WindGridKind,
+    wind::{WindGrid, WindGridKind, WindVolume},
 };
 use glam::DVec3;
 
@@ -23,6 +24,7 @@ struct Bench {
     device: Arc<Device>,
     blocks: wgpu::Buffer,
     pass: StepPass,
+    wind: WindTexture,
     classes: Classes,
     most: u32,
 }
@@ -55,11 +57,11 @@ impl Bench {
             mapped_at_creation: false,
         });
         let pass = StepPass::new(&device);
-        Self { device, blocks, pass, classes: classes(rate_mm_h, most), most }
+        Self { device, blocks, pass, wind: WindTexture::default(), classes: classes(rate_mm_h, most), most }
     }
 
     /// Steps to `time_s`; the wind is even but for the grid.
-    fn step(&mut self, time_s: f64, position_m: DVec3, wind: DVec3, grid: Option<&Arc<WindGrid>>) {
+    fn step(&mut self, time_s: f64, position_m: DVec3, wind: DVec3, grid: Option<&WindVolume>) {
         let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.9, 1.6, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
         let shot = StreakCamera {
@@ -82,7 +84,7 @@ impl Bench {
             air: &air,
             anew: false,
             carried: &|from| wind * (time_s - from),
-            around: grid.map(|g| (g, g.cells_at(position_m, glam::DMat3::IDENTITY))),
+            wind: (self.wind.view(&self.device, grid), grid.map(|g| WindMap::new(g, position_m))),
             most: self.most,
         };
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
@@ -141,7 +143,7 @@ fn round_cylinder(p: DVec3) -> DVec3 {
     DVec3::new(1.0 - k * (p.x * p.x - p.z * p.z), 0.0, -2.0 * k * p.x * p.z) * SPEED_M_S
 }
 
-fn cylinder() -> Arc<WindGrid> {
+fn cylinder() -> WindVolume {
     let (nodes, cell_m) = ([64, 2, 32], DVec3::new(0.25, 60.0, 0.375));
     let origin = DVec3::new(-8.0, -30.0, -5.8125);
     let mut velocities_m_s = Vec::new();
@@ -155,7 +157,7 @@ fn cylinder() -> Arc<WindGrid> {
     }
     let grid = WindGrid { origin, cell_m, nodes, kind: WindGridKind::Whole, velocities_m_s };
     grid.validate().unwrap();
-    Arc::new(grid)
+    WindVolume::of_grid(&grid, glam::DMat3::IDENTITY)
 }
 
 /// Drag by the square of the relative speed, by Runge and Kutta's fourth order.

@@ -1,0 +1,257 @@
+//! The wind field of a context: set at a date, led on the step grid, shown to all that asks for the wind, saved and loaded.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    WindFieldDesc, WindFieldReport,
+    live::{LEAP_S, Live, step_s},
+    saved::{SavedChange, SavedField},
+};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    weather::timeline::MAX_TIME_S,
+    wind::WindVolume,
+    world::{HeldEffect, Within, World, parse_error},
+};
+
+/// Most changes of the field that may lie ahead.
+const MAX_CHANGES: usize = 64;
+/// Where it is in a saved state.
+const KEY: &str = "wind_field";
+
+/// From when on there is a field, or none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Change {
+    pub start_s: f64,
+    pub desc: Option<WindFieldDesc>,
+}
+
+/// The wind field of a context, if the host asked for one.
+#[derive(Default)]
+pub(crate) struct HeldFlow {
+    /// In order of time; the first is the one that holds, if its time has come.
+    pub(super) changes: Vec<Change>,
+    pub(super) live: Option<Box<Live>>,
+    /// The world has what the field is now.
+    is_shown: bool,
+}
+
+/// All of a state that is the field's.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Saved {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    changes: Vec<SavedChange>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    field: Option<SavedField>,
+}
+
+impl HeldFlow {
+    /// See [`Context::set_wind_field`](crate::context::Context::set_wind_field).
+    ///
+    /// # Errors
+    /// As there; nothing changes then.
+    pub fn set(&mut self, world: &World, desc: Option<WindFieldDesc>, start_s: f64) -> Result<()> {
+        if let Some(desc) = &desc {
+            desc.validate()?;
+            world.frame.place_at("wind_field.floor_center_m", desc.floor_center)?;
+        }
+        check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+        let earliest = self.changes.last().map_or(world.time_s, |c| c.start_s.max(world.time_s));
+        if start_s < earliest {
+            let rest = format!("must not lie before the last update or change at {earliest} s, got {start_s}");
+            return Err(Error::about(Status::WrongOrder, "start_time_s", rest));
+        }
+        if self.changes.last().is_some_and(|c| c.start_s == start_s) {
+            self.changes.pop();
+        }
+        if self.changes.len() >= MAX_CHANGES {
+            let wanted = format!("one of at most {MAX_CHANGES} changes to come");
+            return Err(Error::range("wind_field", &wanted, "one more"));
+        }
+        self.changes.push(Change { start_s, desc });
+        Ok(())
+    }
+
+    /// How the field stands, if there is one.
+    pub fn report(&self) -> Option<WindFieldReport> {
+        self.live.as_ref().filter(|live| live.start.is_none()).map(|live| live.report())
+    }
+
+    /// What holds at a time.
+    fn at(&self, time_s: f64) -> Option<WindFieldDesc> {
+        self.changes.iter().rfind(|c| c.start_s <= time_s)?.desc
+    }
+
+    /// Forgets changes that others have followed by a time.
+    fn forget(&mut self, time_s: f64) {
+        if let Some(last) = self.changes.iter().rposition(|c| c.start_s <= time_s) {
+            self.changes.drain(..last);
+        }
+        if let [Change { start_s, desc: None }] = self.changes[..]
+            && start_s <= time_s
+        {
+            self.changes.clear();
+        }
+    }
+
+    /// Begins a field where one has come to be since a time. Says whether there is one.
+    fn begin_field(&mut self, world: &World) -> Result<bool> {
+        let now = world.time_s;
+        let come = self.changes.iter().filter(|c| c.start_s <= now);
+        let last = come.clone().next_back().map(|c| c.start_s);
+        let wanted = |c: &&Change| now - c.start_s <= LEAP_S || Some(c.start_s) == last;
+        let Some((desc, start_s)) = come.filter(wanted).find_map(|c| Some((c.desc?, c.start_s))) else {
+            return Ok(false);
+        };
+        let step_s = step_s(desc.mode);
+        let first_s = if now - start_s > LEAP_S { now.div_euclid(step_s) } else { (start_s / step_s).ceil() } * step_s;
+        if first_s > now {
+            return Ok(false);
+        }
+        self.live = Some(Box::new(Live::new(world, desc, first_s)?));
+        Ok(true)
+    }
+
+    /// Does the next thing that is to be done until the present. Says whether there was anything.
+    fn go_on(&mut self, world: &World) -> Result<bool> {
+        let Some(mut live) = self.live.take() else { return self.begin_field(world) };
+        let outcome = self.lead_live(&mut live, world);
+        if !matches!(outcome, Ok(Next::Gone)) {
+            self.live = Some(live);
+        }
+        match outcome? {
+            Next::Rests => Ok(false),
+            Next::Unchanged => Ok(true),
+            Next::Changed | Next::Gone => {
+                self.is_shown = false;
+                Ok(true)
+            }
+        }
+    }
+
+    fn lead_live(&mut self, live: &mut Live, world: &World) -> Result<Next> {
+        let changed = |is_over: bool| if is_over { Next::Changed } else { Next::Unchanged };
+        if live.start.is_some() {
+            return live.go_on_with_start(world).map(changed);
+        }
+        if world.time_s - live.time_s > LEAP_S {
+            let Some(desc) = self.at(world.time_s) else { return Ok(Next::Gone) };
+            let step_s = step_s(desc.mode);
+            *live = Live::new(world, desc, world.time_s.div_euclid(step_s) * step_s)?;
+            return Ok(Next::Unchanged);
+        }
+        if live.parts.0 > 0 {
+            return live.step_part().map(changed);
+        }
+        if live.next_s() > world.time_s {
+            return Ok(Next::Rests);
+        }
+        let Some(desc) = self.at(live.time_s) else {
+            self.forget(live.time_s);
+            return Ok(Next::Gone);
+        };
+        self.forget(live.time_s);
+        if !desc.is_like(&live.desc) {
+            let step_s = step_s(desc.mode);
+            let first_s = (live.time_s / step_s).ceil() * step_s;
+            if first_s > world.time_s {
+                return Ok(Next::Rests);
+            }
+            *live = Live::new(world, desc, first_s)?;
+            return Ok(Next::Unchanged);
+        }
+        if live.follow(world, &desc)? {
+            live.restart(world, live.time_s)?;
+            return Ok(Next::Unchanged);
+        }
+        live.begin_step(world)?;
+        Ok(Next::Unchanged)
+    }
+
+    /// Takes its part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what can be no field of this context.
+    pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
+        let Some(value) = state.remove(KEY) else { return Ok(Self::default()) };
+        let saved: Saved = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        let of_state = |e: Error| e.with_status(Status::Parse).found_in("saved state");
+        let changes = saved.changes.iter().map(|c| c.change().map_err(of_state)).collect::<Result<Vec<_>>>()?;
+        if !changes.iter().is_sorted_by(|a, b| a.start_s < b.start_s) || changes.len() > MAX_CHANGES {
+            return Err(parse_error("wind_field.changes must be in order of time"));
+        }
+        let live = saved.field.map(|field| field.live(world).map(Box::new).map_err(of_state)).transpose()?;
+        Ok(Self { changes, live, is_shown: false })
+    }
+
+    /// Shows a loaded one, and leaves the one before in its place.
+    pub fn take_up(&mut self, world: &mut World, other: &mut Self) {
+        std::mem::swap(self, other);
+        (self.is_shown, other.is_shown) = (false, false);
+        self.publish(world);
+    }
+}
+
+/// What came of a part of the way to the present.
+enum Next {
+    /// There is nothing to do.
+    Rests,
+    /// What others read is as it was.
+    Unchanged,
+    /// What others read has changed.
+    Changed,
+    /// The field has ended.
+    Gone,
+}
+
+impl HeldEffect for HeldFlow {
+    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+        while self.go_on(world)? {
+            if within.begun.elapsed() >= within.most {
+                return Ok(Status::Pending);
+            }
+        }
+        Ok(Status::Ok)
+    }
+
+    fn publish(&mut self, world: &mut World) {
+        if self.is_shown {
+            return;
+        }
+        match &self.live {
+            Some(live) if live.start.is_none() && live.parts.0 == 0 => {
+                let mut volume = world.solved_wind.take().unwrap_or_else(|| Box::new(WindVolume::empty()));
+                live.publish(world, &mut volume);
+                world.solved_wind = Some(volume);
+                self.is_shown = true;
+            }
+            // Until a start is over the field of before is shown.
+            Some(_) => {}
+            None => {
+                world.solved_wind = None;
+                self.is_shown = true;
+            }
+        }
+    }
+
+    fn stepped_to_s(&self) -> Option<f64> {
+        self.live.as_ref().map(|live| live.time_s)
+    }
+
+    fn save(&self, state: &mut toml::Table) -> Result<()> {
+        if self.changes.is_empty() && self.live.is_none() {
+            return Ok(());
+        }
+        let saved = Saved {
+            changes: self.changes.iter().map(SavedChange::of).collect(),
+            field: self.live.as_deref().map(SavedField::of),
+        };
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        state.insert(KEY.into(), toml::Value::try_from(saved).map_err(written)?);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

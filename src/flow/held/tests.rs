@@ -1,0 +1,280 @@
+//! A context's field: dated, led, moved, saved, and what the world reads of it.
+
+use std::time::{Duration, Instant};
+
+use glam::{DMat3, DVec3, dvec3};
+
+use super::*;
+use crate::{
+    effects::{COUPLINGS, ContextDesc},
+    flow::{WindFieldMode, WindWalls},
+    surroundings::{Planes, Shelter},
+    weather::{Weather, Wind, derive},
+    world::Made,
+};
+
+/// A world with a field, led as a context leads it.
+struct Bench {
+    world: World,
+    flow: HeldFlow,
+}
+
+fn house(center_m: DVec3, velocity_m_s: DVec3) -> Shelter {
+    let half_size_m = dvec3(8.0, 8.0, 6.0);
+    Shelter { center_m, axes: DMat3::IDENTITY, half_size_m, velocity_m_s, planes: Planes::NONE }
+}
+
+fn weather(speed_m_s: f64) -> Weather {
+    Weather { wind: Wind::of(speed_m_s, 270.0), ..Weather::default() }
+}
+
+fn small(mode: WindFieldMode) -> WindFieldDesc {
+    WindFieldDesc { cells: [24, 16, 8], mode, ..WindFieldDesc::default() }
+}
+
+impl Bench {
+    fn new(mode: WindFieldMode) -> Self {
+        let d = ContextDesc::default();
+        let made = Made {
+            frame: d.world,
+            planet: d.planet,
+            seed: 3,
+            exposure: d.exposure,
+            tone: d.tone,
+            utc_at_zero: d.utc_at_zero,
+        };
+        let weather = derive(&weather(8.0)).expect("a weather");
+        let mut world = World::new(made, weather, COUPLINGS).expect("a world");
+        world.set.shelters.push(house(dvec3(-10.0, 0.0, 6.0), DVec3::ZERO));
+        let mut bench = Self { world, flow: HeldFlow::default() };
+        bench.flow.set(&bench.world, Some(small(mode)), 0.0).expect("a field");
+        bench
+    }
+
+    fn to(&mut self, time_s: f64) {
+        self.world.keep_carried(time_s).expect("regions");
+        self.world.time_s = time_s;
+        while self.lead(Duration::ZERO) == Status::Pending {}
+        self.world.forget_before(self.flow.stepped_to_s().unwrap_or(time_s));
+    }
+
+    fn lead(&mut self, most: Duration) -> Status {
+        let led = self.flow.lead(&self.world, Within { begun: Instant::now(), most }).expect("led");
+        self.flow.publish(&mut self.world);
+        led
+    }
+
+    fn saved(&self) -> toml::Table {
+        let mut table = toml::Table::new();
+        self.flow.save(&mut table).expect("saved");
+        table
+    }
+
+    fn wind(&self, p: DVec3) -> DVec3 {
+        self.world.wind_at(p, self.world.time_s).expect("a wind").velocity_m_s
+    }
+
+    fn report(&self) -> WindFieldReport {
+        self.flow.report().expect("a field")
+    }
+}
+
+#[test]
+fn the_wind_of_a_field_is_the_weathers_at_its_sides_and_slow_behind_a_house() {
+    for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
+        let mut bench = Bench::new(mode);
+        bench.to(20.0);
+        let [lee, beside, far] =
+            [dvec3(2.0, 0.0, 3.0), dvec3(-10.0, 14.0, 3.0), dvec3(0.0, 0.0, 200.0)].map(|p| bench.wind(p));
+        let at =
+            |h: f64| bench.world.over().wind.at(20.0).at_height(&bench.world.timeline.at(20.0).wind, h).velocity_m_s;
+        println!("{mode:?}: lee {lee:.2} beside {beside:.2} weather's {:.2}", at(3.0));
+        assert!(lee.x < 0.5 * at(3.0).x && beside.x > at(3.0).x, "{mode:?}: {lee} {beside}");
+        assert_eq!(far, at(200.0));
+        // Nothing jumps at the sides.
+        for side in [dvec3(-48.0, 3.0, 5.0), dvec3(48.0, 3.0, 5.0), dvec3(5.0, 32.0, 5.0), dvec3(5.0, -3.0, 32.0)] {
+            let [within, beyond] = [0.999, 1.001].map(|s| bench.wind(side * s));
+            assert!((within - beyond).length() < 0.05, "{mode:?} {side}: {within} {beyond}");
+        }
+        // The solved field is of its time: at another the weather's wind alone is known.
+        let past = bench.world.wind_at(dvec3(2.0, 0.0, 3.0), -100.0).expect("a wind").velocity_m_s;
+        assert!(past.x > 2.0, "{past}");
+    }
+}
+
+#[test]
+fn channels_with_other_frame_rates_have_the_same_field_to_the_bit() {
+    for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
+        let states = [1.0 / 30.0, 1.0 / 60.0, 0.7, 6.0].map(|frame_s: f64| {
+            let mut bench = Bench::new(mode);
+            bench.world.change_weather(derive(&weather(11.0)).expect("a weather"), 1.0, 3.0).expect("a change");
+            let moved = WindFieldDesc { floor_center: dvec3(9.0, -4.5, 0.0), ..small(mode) };
+            bench.flow.set(&bench.world, Some(moved), 3.3).expect("a move");
+            for i in 1.. {
+                let t = frame_s * f64::from(i);
+                bench.to(t.min(6.0));
+                if t >= 6.0 {
+                    break;
+                }
+            }
+            bench.saved()
+        });
+        assert!(states.iter().all(|s| *s == states[0]), "{mode:?}");
+        assert!(states[0][KEY]["field"]["corner"] == toml::Value::try_from([-10, -9, 0]).expect("a value"));
+    }
+}
+
+#[test]
+fn a_loaded_field_goes_on_to_the_bit() {
+    for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
+        let mut bench = Bench::new(mode);
+        bench.world.set.shelters.push(house(dvec3(20.0, 12.0, 6.0), dvec3(-1.0, 0.5, 0.0)));
+        bench.to(4.25);
+        let mut table = bench.saved();
+        let mut other = Bench::new(mode);
+        other.world.set.shelters.push(house(dvec3(20.0, 12.0, 6.0), dvec3(-1.0, 0.5, 0.0)));
+        other.world.time_s = 4.25;
+        let mut loaded = HeldFlow::read(&other.world, &mut table).expect("a field");
+        assert!(table.is_empty());
+        other.flow.take_up(&mut other.world, &mut loaded);
+        assert_eq!(other.wind(dvec3(3.0, 1.0, 4.0)), bench.wind(dvec3(3.0, 1.0, 4.0)));
+        assert_eq!(other.saved(), bench.saved());
+        for t in [4.4, 6.0, 11.0] {
+            bench.to(t);
+            other.to(t);
+            assert!(other.saved() == bench.saved(), "{mode:?} at {t} s");
+        }
+    }
+}
+
+#[test]
+fn a_steady_field_rests_and_wakes_with_the_wind_or_a_house() {
+    let mut bench = Bench::new(WindFieldMode::Steady);
+    let mut slept_s = 0.0;
+    while !{
+        slept_s += 2.0;
+        bench.to(slept_s);
+        bench.report().rests
+    } {
+        assert!(slept_s < 120.0, "it does not rest");
+    }
+    println!("rests after {slept_s} s");
+    let before = bench.world.solved_wind.as_ref().expect("a volume").revision();
+    bench.to(slept_s + 30.0);
+    // Nothing was stepped or shown anew.
+    assert_eq!(bench.world.solved_wind.as_ref().expect("a volume").revision(), before);
+    bench.world.set.shelters[0].center_m.x += 4.0;
+    bench.to(slept_s + 34.0);
+    assert!(!bench.report().rests && bench.report().begun_s == 0.0);
+    bench.to(slept_s + 120.0 - 30.0);
+    let at = bench.world.time_s;
+    bench.world.change_weather(derive(&weather(12.0)).expect("a weather"), at, 0.0).expect("a change");
+    bench.to(at + 4.0);
+    assert!(!bench.report().rests);
+}
+
+#[test]
+fn a_leap_begins_anew_and_says_so_and_shorter_ones_do_not() {
+    let mut bench = Bench::new(WindFieldMode::Running);
+    bench.to(1.0);
+    assert_eq!(bench.report().begun_s, 0.0);
+    bench.to(10.0);
+    assert_eq!((bench.report().begun_s, bench.report().time_s), (0.0, 10.0));
+    bench.to(1000.3);
+    assert_eq!((bench.report().begun_s, bench.report().time_s), (1000.0, 1000.0));
+}
+
+#[test]
+fn a_field_comes_goes_and_follows_its_place_at_its_dates() {
+    let mut bench = Bench::new(WindFieldMode::Running);
+    let lee = dvec3(2.0, 0.0, 3.0);
+    let desc = WindFieldDesc { floor_center: dvec3(12.0, 0.0, 0.0), ..small(WindFieldMode::Running) };
+    bench.flow.set(&bench.world, Some(desc), 2.0).expect("a move");
+    bench.flow.set(&bench.world, None, 4.0).expect("an end");
+    let e = bench.flow.set(&bench.world, None, 3.9).expect_err("before the last");
+    assert_eq!((e.status, e.field()), (Status::WrongOrder, Some("start_time_s")));
+    bench.to(2.0);
+    let before = bench.wind(lee);
+    assert_eq!(bench.report().corner, dvec3(-48.0, -32.0, 0.0));
+    bench.to(2.5);
+    // The air stays where it was: only the box has moved.
+    let after = bench.wind(lee);
+    println!("before the move {before:.2}, after it {after:.2}");
+    assert_eq!(bench.report().corner, dvec3(-36.0, -32.0, 0.0));
+    assert!((after - before).length() < 1.0 && bench.report().begun_s == 0.0);
+    bench.to(4.5);
+    assert!(bench.flow.report().is_none() && bench.world.solved_wind.is_none() && bench.saved().is_empty());
+}
+
+#[test]
+fn what_moves_pushes_the_air_before_it() {
+    let run = |velocity: DVec3| {
+        let mut bench = Bench::new(WindFieldMode::Running);
+        bench.world.change_weather(derive(&weather(0.0)).expect("a weather"), 0.0, 0.0).expect("calm");
+        for i in 0..=8 {
+            let t = 0.5 * f64::from(i);
+            bench.world.set.shelters[0] = house(dvec3(-20.0, 0.0, 6.0) + velocity * t, velocity);
+            bench.to(t);
+        }
+        let at = bench.world.set.shelters[0].center_m;
+        [
+            bench.wind(at + dvec3(12.0, 0.0, -2.0)),
+            bench.wind(at - dvec3(12.0, 0.0, 2.0)),
+            bench.wind(at + dvec3(0.0, 14.0, 0.0)),
+        ]
+    };
+    assert_eq!(run(DVec3::ZERO), [DVec3::ZERO; 3]);
+    let [before, behind, beside] = run(dvec3(5.0, 0.0, 0.0));
+    println!("before {before:.2} behind {behind:.2} beside {beside:.2}");
+    assert!(before.x > 1.0 && behind.x > 1.0 && beside.x < 0.1, "{before} {behind} {beside}");
+}
+
+#[test]
+fn bad_fields_and_states_are_refused_and_leave_the_one_that_runs() {
+    let mut bench = Bench::new(WindFieldMode::Running);
+    bench.to(1.0);
+    let before = bench.saved();
+    let good = small(WindFieldMode::Running);
+    let large = WindFieldDesc { cells: [2048, 2048, 512], ..good };
+    let e = bench.flow.set(&bench.world, Some(large), 2.0).expect_err("too large");
+    assert_eq!((e.status, e.field()), (Status::InvalidArgument, Some("wind_field.cells")));
+    for (desc, start_s) in [
+        (WindFieldDesc { cell_m: DVec3::splat(f64::NAN), ..good }, 2.0),
+        (WindFieldDesc { floor_center: DVec3::splat(1e13), ..good }, 2.0),
+        (good, 0.5),
+        (good, f64::NAN),
+    ] {
+        bench.flow.set(&bench.world, Some(desc), start_s).expect_err("refused");
+    }
+    assert_eq!(bench.saved(), before);
+    let read = |change: fn(&mut toml::Table)| {
+        let mut table = before.clone();
+        change(table[KEY].as_table_mut().expect("a table")["field"].as_table_mut().expect("a field"));
+        let e = HeldFlow::read(&bench.world, &mut table).map(|_| ()).expect_err("a broken state");
+        assert_eq!(e.status, Status::Parse, "{e}");
+    };
+    read(|f| f["numbers"] = "AAAA".into());
+    read(|f| f["solver"] = "another".into());
+    read(|f| f["last_dt_s"] = (-1.0).into());
+    read(|f| f["anchor_axes"] = toml::Value::try_from([2.0; 9]).expect("a value"));
+    read(|f| f["desc"]["cells"] = toml::Value::try_from([4, 4, 4]).expect("a value"));
+    read(|f| f["stood"] = toml::Value::try_from(["x", "0"]).expect("a value"));
+}
+
+#[test]
+fn over_rough_ground_the_wind_keeps_its_profile_and_smooth_walls_do_not_slow_it() {
+    let near = |walls: WindWalls| {
+        let mut bench = Bench::new(WindFieldMode::Running);
+        bench.world.set.shelters.clear();
+        let desc = WindFieldDesc { walls, cell_m: dvec3(4.0, 4.0, 1.0), ..small(WindFieldMode::Running) };
+        bench.flow.set(&bench.world, Some(desc), 0.0).expect("a field");
+        bench.to(20.0);
+        bench.wind(dvec3(20.0, 0.0, 0.5)).length()
+    };
+    let [rough, smooth] = [WindWalls::Rough, WindWalls::Smooth].map(near);
+    let mut bench = Bench::new(WindFieldMode::Running);
+    bench.world.time_s = 20.0;
+    let comes = bench.wind(dvec3(20.0, 0.0, 0.5)).length();
+    println!("comes with {comes:.2} m/s, rough {rough:.2} m/s, smooth {smooth:.2} m/s");
+    assert!(rough < smooth && (rough / comes - 1.0).abs() < 0.2, "{rough} {smooth} {comes}");
+}

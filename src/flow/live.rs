@@ -1,0 +1,518 @@
+//! A field that a context leads: where it lies, what stands in it, which wind comes in, and how it starts.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{
+    FlowBox, FlowField, FlowObstacles, FlowSettings, Scheme, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls,
+    moving::Standing,
+};
+use crate::{
+    error::Result,
+    scene::WorldKind,
+    surroundings::{Shelter, TerrainHeights},
+    weather::WindProfile,
+    wind::{Blowing, WindVolume},
+    world::World,
+};
+
+/// Length of a step, s, on a grid that is anchored at time 0: with gusts, and of the mean wind.
+const RUNNING_STEP_S: f64 = 0.5;
+const STEADY_STEP_S: f64 = 2.0;
+/// In a part of a step the fastest air passes at most so many cells.
+const CFL: f64 = 4.0;
+/// Most parts of a step.
+const MOST_PARTS: f64 = 64.0;
+/// A steady field rests when in the time in which the wind crosses it no velocity would change by more than this share of the largest.
+const REST: f64 = 0.01;
+/// It rests in any case after so many such times.
+const MOST_CROSSINGS: f64 = 6.0;
+/// The mean wind must have changed by this share of its speed, or of 1 m/s, for a steady field to wake.
+const WAKES: f64 = 0.02;
+/// Parts by which a start goes on at each size of cell after the first, and crossings at that.
+const FINER_PARTS: u32 = 6;
+const FIRST_CROSSINGS: f64 = 4.0;
+/// A grid is halved for the start while each axis keeps so many cells.
+const FEWEST_CELLS: u32 = 8;
+/// In a curved world a place so far from where the field's axes were taken takes them anew, m.
+const ANCHORED_M: f64 = 10_000.0;
+/// Cells from the sides and the top over which the field goes over into the weather's wind.
+const RIM_CELLS: f32 = 4.0;
+/// Longest way of whirls that mix the mean wind, m, and cells; with gusts, one cell: what is longer the field itself shows.
+const MIXING_M: f64 = 10.0;
+const STEADY_CELLS: f64 = 2.5;
+/// Von Karman's constant.
+const KAPPA: f64 = 0.4;
+/// Winds over this are not solved for, m/s.
+const MOST_WIND_M_S: f64 = 0.9 * super::MAX_SPEED_M_S;
+/// A field says nothing of times further than this from its own, s; a longer leap begins anew.
+pub(super) const LEAP_S: f64 = 60.0;
+
+/// Where the cells of a field lie: whole cells are counted from here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Anchor {
+    pub origin: DVec3,
+    pub to_enu: DMat3,
+    /// Altitude of the origin, m.
+    pub altitude_m: f64,
+}
+
+impl Anchor {
+    /// Of a field about a place. In a flat world every field counts from the world's origin.
+    pub fn new(world: &World, center: DVec3) -> Self {
+        let origin = if world.frame.kind == WorldKind::Flat { DVec3::ZERO } else { center };
+        let local = world.frame.frame_at(origin);
+        Self { origin, to_enu: local.world_to_enu, altitude_m: local.place.altitude_m }
+    }
+
+    /// The lowest corner of a field, cells.
+    pub fn corner(&self, desc: &WindFieldDesc) -> [i64; 3] {
+        let half = DVec3::new(f64::from(desc.cells[0]) / 2.0, f64::from(desc.cells[1]) / 2.0, 0.0);
+        let cells = self.to_enu * (desc.floor_center - self.origin) / desc.cell_m - half;
+        [cells.x.round() as i64, cells.y.round() as i64, cells.z.floor() as i64]
+    }
+
+    fn is_far(&self, world: &World, center: DVec3) -> bool {
+        world.frame.kind != WorldKind::Flat && (center - self.origin).length() > ANCHORED_M
+    }
+}
+
+/// The wind that comes in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Inflow {
+    pub blowing: Blowing,
+    pub profile: WindProfile,
+    pub is_steady: bool,
+}
+
+impl Inflow {
+    pub fn new(world: &World, time_s: f64, mode: WindFieldMode) -> Self {
+        let blowing = world.over().wind.at(time_s);
+        let profile = world.timeline.at(time_s).wind;
+        Self { blowing, profile, is_steady: mode == WindFieldMode::Steady }
+    }
+
+    /// The wind at a height above the ground, m/s.
+    fn at(&self, height_m: f64) -> DVec3 {
+        let wind = self.blowing.at_height(&self.profile, height_m);
+        let v = if self.is_steady { wind.mean_m_s } else { wind.velocity_m_s };
+        v.clamp_length_max(MOST_WIND_M_S)
+    }
+
+    /// Lets the whirls that the field does not show mix its air.
+    fn mix(&self, field: &mut FlowField, cell_m: DVec3, ground_m: impl Fn(DVec2) -> f64) {
+        let cells = if self.is_steady { STEADY_CELLS } else { 1.0 };
+        let speed = KAPPA * self.profile.friction_velocity_m_s();
+        field.set_mixing(speed, MIXING_M.min(cells * cell_m.min_element()), ground_m);
+    }
+}
+
+/// The ground and the boxes as a field meets them; lengths from its lowest corner.
+struct Scenery<'a> {
+    world: &'a World,
+    anchor: Anchor,
+    corner: [i64; 3],
+    corner_m: DVec3,
+    size_m: DVec3,
+    /// How long after the host's boxes stand where they are, s.
+    since_s: f64,
+    terrain: Option<&'a Arc<TerrainHeights>>,
+    /// From the terrain's origin to the field's corner, m.
+    from_terrain: DVec3,
+    /// Height of the ground where there is no terrain, m.
+    level_m: f64,
+}
+
+impl<'a> Scenery<'a> {
+    fn new(world: &'a World, live: &Live, time_s: f64) -> Self {
+        let (anchor, corner_m) = (live.anchor, live.corner_m());
+        let station_m = world.timeline.at(time_s).air.station_altitude_m;
+        let terrain = world.set.terrain.as_ref();
+        Self {
+            world,
+            anchor,
+            corner: live.corner,
+            corner_m,
+            size_m: DVec3::from(live.desc.cells.map(f64::from)) * live.desc.cell_m,
+            since_s: time_s - world.time_s,
+            terrain,
+            from_terrain: terrain.map_or(DVec3::ZERO, |t| corner_m - anchor.to_enu * (t.origin - anchor.origin)),
+            level_m: station_m - anchor.altitude_m - corner_m.z,
+        }
+    }
+
+    /// The host's boxes that reach into the field.
+    fn boxes(&self) -> impl Iterator<Item = FlowBox<'a>> {
+        let to_enu = self.anchor.to_enu;
+        let flow_box = move |s: &'a Shelter| FlowBox {
+            center_m: to_enu * (s.center_m + s.velocity_m_s * self.since_s - self.anchor.origin) - self.corner_m,
+            half_size_m: s.half_size_m,
+            axes: to_enu * s.axes,
+            velocity_m_s: if s.stands() {
+                DVec3::ZERO
+            } else {
+                (to_enu * s.velocity_m_s).clamp_length_max(MOST_WIND_M_S)
+            },
+            planes: s.planes.as_slice(),
+        };
+        let is_in = |b: &FlowBox| {
+            let reach = b.reach_m();
+            (b.center_m + reach).cmpgt(DVec3::ZERO).all() && (b.center_m - reach).cmplt(self.size_m).all()
+        };
+        self.world.set.shelters.iter().map(flow_box).filter(is_in)
+    }
+
+    fn ground_m(&self, place: DVec2) -> f64 {
+        match self.terrain {
+            Some(t) => t.height_m(place + self.from_terrain.truncate()) - self.from_terrain.z,
+            None => self.level_m,
+        }
+    }
+
+    /// Two numbers that are the same for scenery that is alike: of all that stands, and of what moves.
+    fn hash(&self) -> [u64; 2] {
+        let mut hash = [0xcbf2_9ce4_8422_2325_u64; 2];
+        let mut add = |which: usize, bits: u64| {
+            for byte in bits.to_le_bytes() {
+                hash[which] = (hash[which] ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+            }
+        };
+        self.corner.iter().for_each(|c| add(0, *c as u64));
+        match self.terrain {
+            Some(t) => {
+                add(0, t.hash);
+                self.from_terrain.to_array().iter().for_each(|v| add(0, v.to_bits()));
+            }
+            None => add(0, self.level_m.to_bits()),
+        }
+        for b in self.boxes() {
+            let which = usize::from(b.velocity_m_s != DVec3::ZERO);
+            let parts = [b.center_m, b.half_size_m, b.axes.x_axis, b.axes.y_axis, b.velocity_m_s];
+            parts.iter().flat_map(|v| v.to_array()).for_each(|v| add(which, v.to_bits()));
+            b.planes.iter().flatten().for_each(|v| add(which, v.to_bits()));
+        }
+        hash
+    }
+}
+
+/// A start from the steady field of a moment: on coarser grids first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    /// How many times cells are twice as long now, 0 for the field's own.
+    level: u32,
+    /// What is left at this level, s, and parts.
+    left_s: f64,
+    left_parts: u32,
+}
+
+/// A field as it is led.
+pub(super) struct Live {
+    pub desc: WindFieldDesc,
+    pub anchor: Anchor,
+    pub corner: [i64; 3],
+    pub field: FlowField,
+    pub time_s: f64,
+    pub begun_s: f64,
+    /// The field is on its way to the steady one of a moment.
+    pub start: Option<Start>,
+    /// Parts of a step that are left, and the length of each, s.
+    pub parts: (u32, f64),
+    /// What stood in the field at its last step, as [`Scenery::hash`] has it.
+    pub stood: [u64; 2],
+    standing: Option<Standing>,
+    /// Of a steady field: the wind that it was solved for, east, north and roughness length; how long it has not rested, s; and whether
+    /// it does.
+    pub solved_for: [f64; 3],
+    pub awake_s: f64,
+    pub rests: bool,
+}
+
+/// Length of the steps of a mode, s.
+pub(super) fn step_s(mode: WindFieldMode) -> f64 {
+    match mode {
+        WindFieldMode::Steady => STEADY_STEP_S,
+        WindFieldMode::Running => RUNNING_STEP_S,
+    }
+}
+
+/// Settings of a field's grid, cells so many times twice as long.
+fn settings(desc: &WindFieldDesc, roughness_m: f64, level: u32) -> FlowSettings {
+    FlowSettings {
+        cells: desc.cells.map(|n| n >> level),
+        cell_m: desc.cell_m * f64::from(1 << level),
+        scheme: Scheme::Reflection,
+        tolerance: 1e-3,
+        roughness_m: if desc.walls == WindWalls::Rough { roughness_m } else { 0.0 },
+        has_eddies: true,
+        ..FlowSettings::default()
+    }
+}
+
+impl Live {
+    /// A field at the beginning of its start, at a time of its step grid.
+    pub fn new(world: &World, desc: WindFieldDesc, time_s: f64) -> Result<Self> {
+        let anchor = Anchor::new(world, desc.floor_center);
+        // As small as there are any: the start makes the field.
+        let none = FlowSettings { cells: [2, 2, 1], ..FlowSettings::default() };
+        let mut live = Self {
+            corner: anchor.corner(&desc),
+            desc,
+            anchor,
+            field: FlowField::new(&none, &FlowObstacles::default(), |_| DVec3::ZERO)?,
+            time_s,
+            begun_s: time_s,
+            start: None,
+            parts: (0, 0.0),
+            stood: [0; 2],
+            standing: None,
+            solved_for: [f64::INFINITY; 3],
+            awake_s: 0.0,
+            rests: false,
+        };
+        live.restart(world, time_s)?;
+        Ok(live)
+    }
+
+    /// One that goes on from saved numbers, of which `field` is still without.
+    pub fn saved(world: &World, desc: WindFieldDesc, anchor: Anchor, corner: [i64; 3], time_s: f64) -> Result<Self> {
+        let roughness_m = Inflow::new(world, time_s, desc.mode).profile.roughness_length_m;
+        Ok(Self {
+            field: FlowField::new(&settings(&desc, roughness_m, 0), &FlowObstacles::default(), |_| DVec3::ZERO)?,
+            desc,
+            anchor,
+            corner,
+            time_s,
+            begun_s: time_s,
+            start: None,
+            parts: (0, 0.0),
+            stood: [0; 2],
+            standing: None,
+            solved_for: [f64::INFINITY; 3],
+            awake_s: 0.0,
+            rests: false,
+        })
+    }
+
+    /// Begins anew from the steady field of a moment.
+    pub fn restart(&mut self, world: &World, time_s: f64) -> Result<()> {
+        (self.time_s, self.begun_s) = (time_s, time_s);
+        let mut level = 0;
+        while self.desc.cells.iter().all(|n| n >> level >= 2 * FEWEST_CELLS && (n >> level).is_multiple_of(2)) {
+            level += 1;
+        }
+        self.parts = (0, 0.0);
+        self.start_at(world, level, false)
+    }
+
+    /// Starts at a level, from what the level before has found if there was one.
+    fn start_at(&mut self, world: &World, level: u32, goes_on: bool) -> Result<()> {
+        let inflow = Inflow::new(world, self.time_s, WindFieldMode::Steady);
+        let scenery = Scenery::new(world, self, self.time_s);
+        let ground = |p: DVec2| scenery.ground_m(p);
+        // Round what moves no air is steady.
+        let boxes: Vec<FlowBox> = scenery.boxes().filter(|b| b.velocity_m_s == DVec3::ZERO).collect();
+        let obstacles = FlowObstacles { terrain: Some(&ground), boxes: &boxes };
+        let set = settings(&self.desc, inflow.profile.roughness_length_m, level);
+        let mut field = FlowField::new(&set, &obstacles, |p| inflow.at(p.z - ground(p.truncate())))?;
+        inflow.mix(&mut field, set.cell_m, ground);
+        let (left_s, left_parts) = if goes_on {
+            field.take_coarse(&self.field);
+            (f64::INFINITY, FINER_PARTS)
+        } else {
+            (FIRST_CROSSINGS * self.crossing_s(field.fastest_m_s()), u32::MAX)
+        };
+        self.field = field;
+        self.start = Some(Start { level, left_s, left_parts });
+        Ok(())
+    }
+
+    /// The time in which air of a speed crosses the field's longest side, s.
+    fn crossing_s(&self, speed_m_s: f64) -> f64 {
+        let size = DVec3::from(self.desc.cells.map(f64::from)) * self.desc.cell_m;
+        size.max_element() / speed_m_s.max(0.05)
+    }
+
+    /// Goes on with the start by one part of it. Says whether it is done.
+    pub fn go_on_with_start(&mut self, world: &World) -> Result<bool> {
+        let Some(mut start) = self.start.take() else { return Ok(true) };
+        let speed = self.field.fastest_m_s();
+        let is_calm = speed < 0.01;
+        if !is_calm {
+            let h = self.desc.cell_m.min_element() * f64::from(1 << start.level);
+            let dt = (CFL * h / speed).min(start.left_s).min(1e3);
+            self.field.step(dt)?;
+            start.left_s -= dt;
+            start.left_parts -= 1;
+        }
+        let rests = self.field.last_change_m_s2() * self.crossing_s(speed) <= REST * speed;
+        if !(is_calm || rests || start.left_s <= 0.0 || start.left_parts == 0) {
+            self.start = Some(start);
+            return Ok(false);
+        }
+        if start.level > 0 {
+            self.start_at(world, start.level - 1, true)?;
+            return Ok(false);
+        }
+        (self.standing, self.stood, self.rests, self.awake_s) = (None, [0; 2], false, 0.0);
+        self.solved_for = [f64::INFINITY; 3];
+        Ok(true)
+    }
+
+    /// The field's lowest corner from its anchor, m.
+    pub fn corner_m(&self) -> DVec3 {
+        DVec3::from(self.corner.map(|c| c as f64)) * self.desc.cell_m
+    }
+
+    pub fn step_s(&self) -> f64 {
+        step_s(self.desc.mode)
+    }
+
+    /// Where its next step ends, s.
+    pub fn next_s(&self) -> f64 {
+        ((self.time_s / self.step_s()).floor() + 1.0) * self.step_s()
+    }
+
+    /// Follows the place that the host gives. Says whether it must begin anew there.
+    pub fn follow(&mut self, world: &World, desc: &WindFieldDesc) -> Result<bool> {
+        if self.anchor.is_far(world, desc.floor_center) {
+            self.anchor = Anchor::new(world, desc.floor_center);
+            (self.desc, self.corner) = (*desc, self.anchor.corner(desc));
+            return Ok(true);
+        }
+        let corner = self.anchor.corner(desc);
+        self.desc = *desc;
+        let by: [i64; 3] = std::array::from_fn(|a| corner[a].saturating_sub(self.corner[a]));
+        if by == [0; 3] {
+            return Ok(false);
+        }
+        self.corner = corner;
+        if by.iter().zip(desc.cells).any(|(by, n)| by.unsigned_abs() * 2 >= u64::from(n)) {
+            return Ok(true);
+        }
+        let inflow = Inflow::new(world, self.time_s, desc.mode);
+        let scenery = Scenery::new(world, self, self.time_s);
+        self.field.shift(by, |p| inflow.at(p.z - scenery.ground_m(p.truncate())))?;
+        self.standing = None;
+        Ok(false)
+    }
+
+    /// Makes the field ready for its next step. Says whether there is anything to do in it.
+    pub fn begin_step(&mut self, world: &World) -> Result<bool> {
+        let end_s = self.next_s();
+        let inflow = Inflow::new(world, end_s, self.desc.mode);
+        let scenery = Scenery::new(world, self, end_s);
+        let stands = scenery.hash();
+        let is_steady = self.desc.mode == WindFieldMode::Steady;
+        if is_steady {
+            self.wake(&inflow, stands);
+            if self.rests {
+                self.time_s = end_s;
+                return Ok(false);
+            }
+        }
+        let ground = |p: DVec2| scenery.ground_m(p);
+        if stands != self.stood || self.standing.is_none() {
+            let boxes: Vec<FlowBox> = scenery.boxes().collect();
+            let moving: Vec<FlowBox> = boxes.iter().filter(|b| b.velocity_m_s != DVec3::ZERO).copied().collect();
+            let before = self.standing.take().filter(|_| stands[0] == self.stood[0]);
+            let obstacles = FlowObstacles { terrain: Some(&ground), boxes: &boxes };
+            self.standing = Some(self.field.follow_obstacles(&obstacles, &moving, before)?);
+            self.stood = stands;
+        }
+        if self.desc.walls == WindWalls::Rough {
+            self.field.set_roughness(inflow.profile.roughness_length_m)?;
+        }
+        inflow.mix(&mut self.field, self.desc.cell_m, ground);
+        self.field.set_wind(|p| inflow.at(p.z - ground(p.truncate())))?;
+        self.field.fill_ghosts();
+        let seconds = end_s - self.time_s;
+        let passed = self.field.fastest_m_s().max(inflow.at(1e3).length()) * seconds / self.desc.cell_m.min_element();
+        let parts = (passed / CFL).ceil().clamp(1.0, MOST_PARTS);
+        self.parts = (parts as u32, seconds / parts);
+        Ok(true)
+    }
+
+    /// Leads the field through a part of the step that has begun. Says whether the step is over.
+    pub fn step_part(&mut self) -> Result<bool> {
+        self.field.step(self.parts.1)?;
+        self.parts.0 -= 1;
+        if self.parts.0 > 0 {
+            return Ok(false);
+        }
+        let end_s = self.next_s();
+        let seconds = end_s - self.time_s;
+        self.time_s = end_s;
+        if self.desc.mode == WindFieldMode::Steady {
+            self.awake_s += seconds;
+            let speed = self.field.fastest_m_s();
+            let crossing_s = self.crossing_s(speed);
+            let is_still = self.field.last_change_m_s2() * crossing_s <= REST * speed;
+            self.rests = speed < 0.01 || is_still || self.awake_s > MOST_CROSSINGS * crossing_s;
+        }
+        Ok(true)
+    }
+
+    /// Wakes a steady field whose wind or obstacles have changed.
+    fn wake(&mut self, inflow: &Inflow, stands: [u64; 2]) {
+        let mean = inflow.blowing.mean_m_s;
+        let [east, north, roughness_m] = self.solved_for;
+        let off = (mean - DVec2::new(east, north)).length();
+        let enough = WAKES * mean.length().max(1.0);
+        if off <= enough && roughness_m == inflow.profile.roughness_length_m && stands == self.stood {
+            return;
+        }
+        self.solved_for = [mean.x, mean.y, inflow.profile.roughness_length_m];
+        (self.awake_s, self.rests) = (0.0, false);
+    }
+
+    /// Fills what queries and shaders read.
+    pub fn publish(&self, world: &World, volume: &mut WindVolume) {
+        let inflow = Inflow::new(world, self.time_s, self.desc.mode);
+        let scenery = Scenery::new(world, self, self.time_s);
+        let cells = self.desc.cells;
+        volume.origin = self.anchor.origin + self.anchor.to_enu.transpose() * self.corner_m();
+        (volume.to_enu, volume.cell_m) = (self.anchor.to_enu, self.desc.cell_m);
+        volume.nodes = cells.map(|n| n + 1);
+        volume.holds_s = Some([self.time_s - LEAP_S, self.time_s + LEAP_S]);
+        volume.values.clear();
+        let is_steady = self.desc.mode == WindFieldMode::Steady;
+        // 0 at a side, 1 so many cells from it.
+        let rim = |cells: f32| {
+            let x = (cells / RIM_CELLS).clamp(0.0, 1.0);
+            x * x * (3.0 - 2.0 * x)
+        };
+        let h = self.desc.cell_m;
+        self.field.each_corner(|[i, j, k], v| {
+            let [east, north] =
+                [(i, cells[0]), (j, cells[1])].map(|(i, n)| rim((i as f32).min((n as usize - i) as f32)));
+            let share = east * north * rim((cells[2] as usize - k) as f32);
+            if !is_steady || share == 0.0 {
+                let v = v * share;
+                volume.values.push([v.x, v.y, v.z, share]);
+                return;
+            }
+            // As much of the gusts as of the mean wind.
+            let place = DVec3::new(i as f64, j as f64, k as f64) * h;
+            let outer = inflow.at(place.z - scenery.ground_m(place.truncate())).as_vec3();
+            let kept = (v.length() / outer.length().max(0.1)).min(1.0);
+            let own = (v - outer * kept) * share;
+            volume.values.push([own.x, own.y, own.z, share * (1.0 - kept)]);
+        });
+        volume.changed();
+    }
+
+    pub fn report(&self) -> WindFieldReport {
+        WindFieldReport {
+            time_s: self.time_s,
+            begun_s: self.begun_s,
+            step_s: self.step_s(),
+            rests: self.rests,
+            corner: self.anchor.origin + self.anchor.to_enu.transpose() * self.corner_m(),
+            cell_m: self.desc.cell_m,
+            cells: self.desc.cells,
+            fastest_m_s: self.field.fastest_m_s(),
+            bytes: self.desc.bytes(),
+        }
+    }
+}

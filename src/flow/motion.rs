@@ -1,0 +1,187 @@
+//! A step of the field, and the steady state.
+
+use super::{
+    advect::{Carrier, Scheme},
+    eddies,
+    field::FlowField,
+    lattice::Faces,
+    sides::Role,
+};
+use crate::error::{Result, check_range};
+
+impl FlowField {
+    /// Leads the field on by `dt` seconds.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a time that is not in \[0, 1000\] s.
+    pub fn step(&mut self, dt: f64) -> Result<()> {
+        check_range("flow.dt_s", dt, 0.0, 1e3, "s")?;
+        if dt == 0.0 {
+            return Ok(());
+        }
+        match self.settings.scheme {
+            Scheme::SemiLagrangian | Scheme::MacCormack => self.step_whole(dt),
+            Scheme::Reflection => self.step_mirrored(dt),
+        }
+        Ok(())
+    }
+
+    /// Carries by the whole step and projects.
+    fn step_whole(&mut self, dt: f64) {
+        let from = std::mem::take(&mut self.velocity);
+        let [mut to, mut other, spare] = std::mem::take(&mut self.scratch);
+        self.carry(&from, &from, dt, &mut other, &mut to);
+        self.mix(&from, dt, &mut other, &mut to);
+        self.project(&mut to, 0);
+        self.last_change_m_s = largest_of(&to, |c, at| to[c][at] - from[c][at]);
+        self.velocity = to;
+        self.scratch = [from, other, spare];
+        self.last_dt = dt;
+    }
+
+    /// Carries by half a step, projects, mirrors, carries by half a step and projects. The wind that carries is that of the middle of each
+    /// half, led on from the two winds before it: by the wind of the half's beginning, whirls would stray across the mean wind.
+    fn step_mirrored(&mut self, dt: f64) {
+        let from = std::mem::take(&mut self.velocity);
+        let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
+        // The scratch still has the middle of the step before.
+        let ahead = if self.last_dt > 0.0 { (0.5 * dt / self.last_dt).min(1.0) as f32 } else { 0.0 };
+        lead_on(&from, &mut wind, ahead);
+        self.carry(&from, &wind, dt / 2.0, &mut Faces::default(), &mut middle);
+        self.mix(&wind, dt / 2.0, &mut to, &mut middle);
+        let mut mirrored = wind;
+        self.reflect(&mut middle, &mut mirrored);
+        let mut wind = from;
+        lead_on(&middle, &mut wind, 0.5);
+        self.carry(&mirrored, &wind, dt / 2.0, &mut Faces::default(), &mut to);
+        self.mix(&wind, dt / 2.0, &mut mirrored, &mut to);
+        self.project(&mut to, 1);
+        // `wind` lies half as far beyond the middle as the beginning lay before it.
+        self.last_change_m_s = largest_of(&to, |c, at| to[c][at] - (3.0 * middle[c][at] - 2.0 * wind[c][at]));
+        self.velocity = to;
+        self.scratch = [middle, mirrored, wind];
+        self.last_dt = dt;
+    }
+
+    /// Leads the field on until it rests: until in the time in which the fastest air crosses the box's longest side no velocity
+    /// changes by more than `rest` of the largest. Steps have the length in which the fastest air passes `cfl` cells.
+    ///
+    /// Answers whether it rests; air that sheds whirls never does, and after `most` such times this gives up.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for `cfl` not in \[0.01, 64\] and `rest` not in \[1e-6, 1\].
+    pub fn settle(&mut self, cfl: f64, rest: f64, most: u32) -> Result<bool> {
+        check_range("flow.cfl", cfl, 0.01, 64.0, "")?;
+        check_range("flow.rest", rest, 1e-6, 1.0, "")?;
+        let h = self.lattice.h.map(f64::from);
+        let longest = self.lattice.axes().map(|a| self.lattice.n[a] as f64 * h[a]).fold(0.0, f64::max);
+        let steps = (longest / (cfl * f64::from(self.lattice.shortest_m()))).ceil() as u32;
+        for _ in 0..most {
+            let speed = self.fastest_m_s();
+            if speed == 0.0 {
+                return Ok(true);
+            }
+            let before = self.velocity.clone();
+            for _ in 0..steps {
+                self.step(longest / speed / f64::from(steps))?;
+            }
+            let mut change = 0.0_f32;
+            for c in self.lattice.axes() {
+                self.lattice.each(c, |_, at| change = change.max((self.velocity[c][at] - before[c][at]).abs()));
+            }
+            if f64::from(change) <= rest * speed {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Projects `middle`, and makes `mirrored` what lies as far beyond the projection as it lay before.
+    fn reflect(&mut self, middle: &mut Faces, mirrored: &mut Faces) {
+        for c in self.lattice.axes() {
+            mirrored[c].copy_from_slice(&middle[c]);
+        }
+        self.project(middle, 0);
+        for c in self.lattice.axes() {
+            mirrored[c].iter_mut().zip(&middle[c]).for_each(|(m, p)| *m = 2.0 * p - *m);
+        }
+        self.fill_all(mirrored);
+    }
+
+    /// `to` becomes what `from` is after the wind has carried it by `dt`, ghosts filled.
+    fn carry(&mut self, from: &Faces, wind: &Faces, dt: f64, other: &mut Faces, to: &mut Faces) {
+        let mut bounds = std::mem::take(&mut self.bounds);
+        let carrier = Carrier::new(&self.lattice, wind, self.range());
+        let t = dt as f32;
+        match self.settings.scheme {
+            Scheme::SemiLagrangian => carrier.semi_lagrangian(from, t, to),
+            Scheme::MacCormack => {
+                carrier.predict(from, t, other, &mut bounds);
+                self.fill_all(other);
+                carrier.correct(from, other, t, &bounds, to);
+            }
+            Scheme::Reflection => carrier.cubic(from, t, to),
+        }
+        self.bounds = bounds;
+        self.fill_all(to);
+    }
+
+    pub(super) fn range(&self) -> [Option<[f32; 2]>; 3] {
+        [0, 1, 2].map(|a| {
+            let beyond = |role| if matches!(role, Role::In | Role::Out) { 0.5 } else { 0.0 };
+            let [low, high] = self.roles[a];
+            (low != Role::Periodic).then(|| [-beyond(low), self.lattice.n[a] as f32 + beyond(high)])
+        })
+    }
+
+    /// Mixes by viscosity and by whirls below a cell, in so many explicit steps that each is stable, and lets walls take their part.
+    /// `spare` is room.
+    fn mix(&mut self, wind: &Faces, dt: f64, spare: &mut Faces, v: &mut Faces) {
+        let even = self.settings.viscosity_m2_s;
+        let ground = self.mixing.most_m2_s();
+        if even + ground > 0.0 || self.settings.has_eddies {
+            let lattice = &self.lattice;
+            let inverse: f64 = lattice.axes().map(|a| f64::from(lattice.h[a]).powi(-2)).sum();
+            let parts = (2.0 * (even + ground) * dt * inverse / 0.9).ceil().max(1.0);
+            let mut cells = std::mem::take(&mut self.divergence);
+            cells.fill(0.0);
+            if self.settings.has_eddies {
+                eddies::viscosity(lattice, v, &mut cells);
+                // The rest of what one explicit step may mix.
+                let most = ((0.45 * parts / (dt * inverse) - even - ground).max(0.0)) as f32;
+                cells.iter_mut().for_each(|nu| *nu = nu.min(most));
+            }
+            self.mixing.add(lattice, &mut cells);
+            for _ in 0..parts as u32 {
+                for c in lattice.axes() {
+                    spare[c].copy_from_slice(&v[c]);
+                    eddies::mix(lattice, &cells, even as f32, (dt / parts) as f32, c, (&spare[c], &mut v[c]));
+                }
+                self.fill_all(v);
+            }
+            self.divergence = cells;
+        }
+        if self.settings.roughness_m > 0.0 {
+            self.walls.rub(&self.lattice, wind, dt as f32, v);
+            self.fill_all(v);
+        }
+    }
+
+    /// The largest change of a velocity in the last step over its length, m/s2.
+    pub fn last_change_m_s2(&self) -> f64 {
+        if self.last_dt > 0.0 { f64::from(self.last_change_m_s) / self.last_dt } else { 0.0 }
+    }
+}
+
+/// The largest amount of a number for each value.
+fn largest_of(faces: &Faces, f: impl Fn(usize, usize) -> f32) -> f32 {
+    let all = faces.iter().enumerate().flat_map(|(c, v)| (0..v.len()).map(move |at| (c, at)));
+    all.fold(0.0, |most, (c, at)| most.max(f(c, at).abs()))
+}
+
+/// Makes `before` the wind that goes on from it through `now`, `ahead` times as far as from the one to the other.
+fn lead_on(now: &Faces, before: &mut Faces, ahead: f32) {
+    for (now, before) in now.iter().flatten().zip(before.iter_mut().flatten()) {
+        *before = now + ahead * (now - *before);
+    }
+}

@@ -1,0 +1,186 @@
+//! What changes about a field while air flows through it: the outer wind, obstacles, and where the box is.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::{
+    FlowField, FlowObstacles,
+    field::{check_wind, place_m},
+    lattice::Faces,
+    obstacles::{Columns, Shares, columns_of},
+    sides::roles,
+};
+use crate::error::{Result, check_range};
+
+/// What stood in a field when its obstacles were looked up last, to look up what has changed alone.
+pub(super) struct Standing {
+    shares: Shares,
+    /// Columns in which something moves.
+    moving: Option<Columns>,
+}
+
+impl FlowField {
+    /// Another outer wind, m/s at a place: what blows in over open sides from the next step on. The air that is in the box flows on.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field is as it was then.
+    pub fn set_wind(&mut self, wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
+        // The highest winds of a profile stand on the sides: none is set before all are found good.
+        for is_checked in [false, true] {
+            for c in self.lattice.axes() {
+                let (lattice, outer) = (&self.lattice, &mut self.outer[c]);
+                let mut fault = Ok(());
+                lattice.each_on_sides(c, |i, at| {
+                    let v = wind(place_m(lattice, c, i));
+                    match (is_checked, &fault) {
+                        (true, _) => outer[at] = v[c] as f32,
+                        (false, Ok(())) => fault = check_wind(v),
+                        _ => {}
+                    }
+                });
+                fault?;
+            }
+        }
+        let roles = roles(&self.lattice, &self.settings.sides, &self.outer);
+        if roles != self.roles {
+            self.roles = roles;
+            self.openings.set_roles(&self.lattice, &roles);
+        }
+        Ok(())
+    }
+
+    /// How whirls over the ground mix the wind: kappa u*, m/s, the longest way, m, and the height of the ground at places of the box, m.
+    pub(super) fn set_mixing(&mut self, speed_m_s: f64, most_m: f64, ground_m: impl Fn(DVec2) -> f64) {
+        let Self { lattice, mixing, .. } = self;
+        (mixing.speed_m_s, mixing.most_m) = (speed_m_s as f32, most_m as f32);
+        mixing.ground_m.clear();
+        let place = |i: usize, a: usize| (i as f64 + 0.5) * f64::from(lattice.h[a]);
+        let columns = (0..lattice.n[1]).flat_map(|j| (0..lattice.n[0]).map(move |i| (i, j)));
+        mixing.ground_m.extend(columns.map(|(i, j)| ground_m(DVec2::new(place(i, 0), place(j, 1))) as f32));
+    }
+
+    /// Another roughness length of walls, m, \[0, 5\].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn set_roughness(&mut self, roughness_m: f64) -> Result<()> {
+        check_range("flow.roughness_m", roughness_m, 0.0, 5.0, "m")?;
+        if self.settings.roughness_m != roughness_m {
+            self.settings.roughness_m = roughness_m;
+            self.find_walls();
+        }
+        Ok(())
+    }
+
+    /// Fills what lies beyond the sides and inside of things from the air beside it.
+    pub(super) fn fill_ghosts(&mut self) {
+        let mut v = std::mem::take(&mut self.velocity);
+        self.fill_all(&mut v);
+        self.velocity = v;
+    }
+
+    /// Moves the box by whole cells east, north and up; the air stays where it is, and what comes in moves as `wind` says at places of
+    /// the box as it then lies. The obstacles are to be set next.
+    ///
+    /// # Errors
+    /// As [`FlowField::set_wind`].
+    pub fn shift(&mut self, cells: [i64; 3], wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
+        self.set_wind(&wind)?;
+        let Self { lattice, velocity, scratch, .. } = self;
+        let middle = &mut scratch[0];
+        for values in [velocity, middle] {
+            for c in lattice.axes() {
+                lattice.shift(&mut values[c], cells);
+                let values = &mut values[c];
+                lattice.each_with_ghosts(|i, at| {
+                    if values[at].is_nan() {
+                        values[at] = wind(place_m(lattice, c, i))[c] as f32;
+                    }
+                });
+            }
+        }
+        self.potentials.iter_mut().for_each(|p| p.fill(0.0));
+        Ok(())
+    }
+
+    /// Puts other obstacles into the air without making it free of divergence, which the next step does. `standing` is what the last
+    /// call left, if terrain and what stands are the same.
+    ///
+    /// # Errors
+    /// As [`FlowField::new`]; the field is as it was then.
+    pub(super) fn follow_obstacles(
+        &mut self,
+        obstacles: &FlowObstacles,
+        moving: &[super::FlowBox],
+        standing: Option<Standing>,
+    ) -> Result<Standing> {
+        let now = columns_of(&self.lattice, moving);
+        let standing = match standing {
+            None => Standing { shares: obstacles.shares(&self.lattice)?, moving: now },
+            Some(mut before) => {
+                let both = [before.moving, now].into_iter().flatten();
+                let columns = both.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]));
+                if let Some(columns) = columns {
+                    obstacles.find(&self.lattice, columns, &mut before.shares)?;
+                }
+                Standing { moving: now, ..before }
+            }
+        };
+        self.take_shares(standing.shares.clone());
+        Ok(standing)
+    }
+
+    /// Calls `f` for every corner of a cell with its indices and the velocity there, m/s.
+    pub(super) fn each_corner(&self, mut f: impl FnMut([usize; 3], Vec3)) {
+        let lattice = &self.lattice;
+        let [nx, ny, nz] = [0, 1, 2].map(|a| lattice.n[a] + usize::from(!lattice.is_flat(a)));
+        let mean = |c: usize, at: usize| {
+            let v = &self.velocity[c];
+            let back = |a: usize| if a == c || lattice.is_flat(a) { 0 } else { lattice.stride[a] };
+            let [x, y, z] = [0, 1, 2].map(back);
+            // Along its own axis, and along a flat one, a value counts twice.
+            let pair = |at: usize| v[at] + v[at - x];
+            let square = |at: usize| pair(at) + pair(at - y);
+            0.125 * (square(at) + square(at - z))
+        };
+        for k in 0..nz {
+            for j in 0..ny {
+                for i in 0..nx {
+                    let at = lattice.at([i, j, k]);
+                    f([i, j, k], Vec3::from([0, 1, 2].map(|c| if lattice.is_flat(c) { 0.0 } else { mean(c, at) })));
+                }
+            }
+        }
+    }
+
+    /// All numbers that the next step goes on from: velocities, those of the middle of the last step, potentials.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = &Vec<f32>> {
+        let middle = &self.scratch[0];
+        self.velocity.iter().chain(middle).chain(&self.potentials)
+    }
+
+    /// Length of the last step, s, and the largest change of a velocity in it, m/s.
+    pub(super) fn last_step(&self) -> (f64, f32) {
+        (self.last_dt, self.last_change_m_s)
+    }
+
+    /// The same to be restored, and the length of the last step, s, with the largest change in it, m/s.
+    pub(super) fn numbers_mut(&mut self) -> (impl Iterator<Item = &mut Vec<f32>>, &mut f64, &mut f32) {
+        let [middle, ..] = &mut self.scratch;
+        let numbers = self.velocity.iter_mut().chain(middle).chain(&mut self.potentials);
+        (numbers, &mut self.last_dt, &mut self.last_change_m_s)
+    }
+
+    /// Takes the velocities of a field of the same box with cells twice as long, linear between them.
+    pub(super) fn take_coarse(&mut self, coarse: &Self) {
+        let mut velocity: Faces = std::mem::take(&mut self.velocity);
+        for c in self.lattice.axes() {
+            let values = &mut velocity[c];
+            self.lattice.each(c, |i, at| {
+                let place = place_m(&self.lattice, c, i.map(|i| i as i64));
+                values[at] = coarse.velocity_at(place)[c] as f32;
+            });
+        }
+        self.velocity = velocity;
+        self.begin();
+    }
+}

@@ -1,0 +1,108 @@
+//! Makes the air free of divergence, and what its pressure does to things.
+
+use glam::DVec3;
+
+use super::{
+    advect::Scheme,
+    field::FlowField,
+    lattice::Faces,
+    pressure::Solved,
+    sides::{Role, fastest},
+};
+
+impl FlowField {
+    /// Makes a field, its ghosts filled, free of divergence; fills the ghosts again.
+    ///
+    /// The potential of the step before is taken off first, and only what is then missing is solved for: the correction is small,
+    /// and so are its rounding errors. What rounding still leaves is solved for once more.
+    pub(super) fn project(&mut self, v: &mut Faces, which: usize) {
+        self.openings.balance(&self.lattice, &self.roles, v);
+        let tolerance = self.settings.tolerance as f32 * fastest(&self.lattice, v) as f32 / self.lattice.shortest_m();
+        let mut potential = std::mem::take(&mut self.potentials[which]);
+        let mut correction = std::mem::take(&mut self.correction);
+        self.subtract_gradient(v, &potential);
+        self.solved = Solved::default();
+        for _ in 0..2 {
+            self.find_divergence(v);
+            correction.fill(0.0);
+            let solved = self.pressure.solve(self.settings.pressure, &mut correction, &self.divergence, tolerance);
+            self.subtract_gradient(v, &correction);
+            potential.iter_mut().zip(&correction).for_each(|(p, c)| *p += c);
+            self.solved = self.solved.then(solved);
+            if solved.iterations == 0 || solved.residual > tolerance {
+                break;
+            }
+        }
+        self.potentials[which] = potential;
+        self.correction = correction;
+        self.fill_all(v);
+    }
+
+    fn subtract_gradient(&self, v: &mut Faces, potential: &[f32]) {
+        let lattice = &self.lattice;
+        let [nx, ny, _] = lattice.n;
+        let steps = [1, nx, nx * ny];
+        for a in lattice.axes() {
+            let wraps = self.roles[a][0] == Role::Periodic;
+            let (values, open) = (&mut v[a], &self.openings.open[a]);
+            let (round, beyond) = ((lattice.n[a] - 1) * steps[a], lattice.n[a] * lattice.stride[a]);
+            lattice.each_cell(|i, cell, at| {
+                if open[at] == 0.0 || (i[a] == 0 && !wraps) {
+                    return;
+                }
+                let before = if i[a] == 0 { cell + round } else { cell - steps[a] };
+                values[at] -= (potential[cell] - potential[before]) / lattice.h[a];
+                if i[a] == 0 {
+                    values[at + beyond] = values[at];
+                }
+            });
+        }
+    }
+
+    /// Air that leaves each cell through its open faces, over the cell's volume.
+    pub(super) fn find_divergence(&mut self, v: &Faces) {
+        let (lattice, open) = (&self.lattice, &self.openings.open);
+        let out = &mut self.divergence;
+        out.fill(0.0);
+        for a in lattice.axes() {
+            let s = lattice.stride[a];
+            lattice.each_cell(|_, cell, at| {
+                out[cell] += (open[a][at + s] * v[a][at + s] - open[a][at] * v[a][at]) / lattice.h[a];
+            });
+            let pushed = &self.openings.pushed[a];
+            if !pushed.is_empty() {
+                lattice.each_cell(|_, cell, at| out[cell] += (pushed[at + s] - pushed[at]) / lattice.h[a]);
+            }
+        }
+        if self.openings.pushed.iter().any(|p| !p.is_empty()) {
+            // What goes on inside of things is no flow.
+            out.iter_mut().enumerate().filter(|(cell, _)| !self.pressure.has_air(*cell)).for_each(|(_, d)| *d = 0.0);
+        }
+    }
+
+    /// Force of the air's pressure on what stands between two places over the air's density, m4/s2, in the mean over the last step.
+    ///
+    /// A step's pressure is the sum of what its projections took off: of the mirrored scheme twice the first and the second.
+    pub fn pressure_force(&self, low_m: DVec3, high_m: DVec3) -> DVec3 {
+        let (lattice, open) = (&self.lattice, &self.openings.open);
+        let steps = [1, lattice.n[0], lattice.n[0] * lattice.n[1]];
+        let h = lattice.h.map(f64::from);
+        let times = if self.settings.scheme == Scheme::Reflection { [2.0, 1.0] } else { [1.0, 0.0] };
+        let [first, second] = &self.potentials;
+        let impulse = |cell: usize| times[0] * f64::from(first[cell]) + times[1] * f64::from(second[cell]);
+        let mut force = DVec3::ZERO;
+        for a in lattice.axes() {
+            let area: f64 = lattice.axes().filter(|o| *o != a).map(|o| h[o]).product();
+            lattice.each_cell(|i, cell, at| {
+                let place = DVec3::from(lattice.place(a, i).map(f64::from)) * DVec3::from(h);
+                if i[a] == 0 || place.cmplt(low_m).any() || place.cmpgt(high_m).any() {
+                    return;
+                }
+                let before = cell - steps[a];
+                let pressure = |cell: usize| if self.pressure.has_air(cell) { impulse(cell) } else { 0.0 };
+                force[a] += (pressure(before) - pressure(cell)) * area * (1.0 - f64::from(open[a][at]));
+            });
+        }
+        if self.last_dt > 0.0 { force / self.last_dt } else { DVec3::ZERO }
+    }
+}

@@ -1,0 +1,223 @@
+//! A wind field as text, and back: every number of it, so that a loaded one goes on to the bit.
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    WindFieldDesc, WindFieldMode, WindWalls,
+    held::Change,
+    live::{Anchor, Live},
+};
+use crate::{
+    error::{Error, Result},
+    world::World,
+};
+
+/// How the field is solved for: a state of another solver would go on otherwise.
+const SOLVER: &str = "reflection 1";
+
+/// A description as it is saved.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SavedDesc {
+    floor_center_m: [f64; 3],
+    cell_m: [f64; 3],
+    cells: [u32; 3],
+    running: bool,
+    smooth: bool,
+    most_bytes: u64,
+}
+
+/// A change as it is saved.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SavedChange {
+    start_s: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    desc: Option<SavedDesc>,
+}
+
+/// A field as it is saved.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SavedField {
+    solver: String,
+    time_s: f64,
+    begun_s: f64,
+    anchor_m: [f64; 3],
+    anchor_axes: [f64; 9],
+    anchor_altitude_m: f64,
+    corner: [i64; 3],
+    stood: [String; 2],
+    solved_for: [f64; 3],
+    awake_s: f64,
+    rests: bool,
+    last_dt_s: f64,
+    last_change_m_s: f32,
+    desc: SavedDesc,
+    numbers: String,
+}
+
+impl SavedDesc {
+    fn of(d: &WindFieldDesc) -> Self {
+        Self {
+            floor_center_m: d.floor_center.to_array(),
+            cell_m: d.cell_m.to_array(),
+            cells: d.cells,
+            running: d.mode == WindFieldMode::Running,
+            smooth: d.walls == WindWalls::Smooth,
+            most_bytes: d.most_bytes,
+        }
+    }
+
+    fn desc(&self) -> Result<WindFieldDesc> {
+        let desc = WindFieldDesc {
+            floor_center: DVec3::from(self.floor_center_m),
+            cell_m: DVec3::from(self.cell_m),
+            cells: self.cells,
+            mode: if self.running { WindFieldMode::Running } else { WindFieldMode::Steady },
+            walls: if self.smooth { WindWalls::Smooth } else { WindWalls::Rough },
+            most_bytes: self.most_bytes,
+        };
+        desc.validate()?;
+        Ok(desc)
+    }
+}
+
+impl SavedChange {
+    pub fn of(c: &Change) -> Self {
+        Self { start_s: c.start_s, desc: c.desc.as_ref().map(SavedDesc::of) }
+    }
+
+    pub fn change(&self) -> Result<Change> {
+        Ok(Change { start_s: self.start_s, desc: self.desc.map(|d| d.desc()).transpose()? })
+    }
+}
+
+impl SavedField {
+    pub fn of(live: &Live) -> Self {
+        let (last_dt_s, last_change_m_s) = live.field.last_step();
+        Self {
+            solver: SOLVER.into(),
+            time_s: live.time_s,
+            begun_s: live.begun_s,
+            anchor_m: live.anchor.origin.to_array(),
+            anchor_axes: live.anchor.to_enu.to_cols_array(),
+            anchor_altitude_m: live.anchor.altitude_m,
+            corner: live.corner,
+            stood: live.stood.map(|hash| format!("{hash:016x}")),
+            solved_for: live.solved_for,
+            awake_s: live.awake_s,
+            rests: live.rests,
+            last_dt_s,
+            last_change_m_s,
+            desc: SavedDesc::of(&live.desc),
+            numbers: written(live.field.numbers()),
+        }
+    }
+
+    /// The field that was saved.
+    ///
+    /// # Errors
+    /// For what can be none.
+    pub fn live(&self, world: &World) -> Result<Live> {
+        let unfit = |what: &str| Error::invalid("wind_field.field", what);
+        if self.solver != SOLVER {
+            return Err(unfit(&format!(
+                "must be of the solver `{SOLVER}`, got `{}`",
+                crate::error::shown(&self.solver)
+            )));
+        }
+        let desc = self.desc.desc()?;
+        let numbers = [self.time_s, self.begun_s, self.anchor_altitude_m, self.awake_s, self.last_dt_s];
+        let axes = DMat3::from_cols_array(&self.anchor_axes);
+        let is_rotation = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-6);
+        let anchor_m = DVec3::from(self.anchor_m);
+        let is_sound = numbers.iter().all(|v| v.is_finite() && v.abs() < 1e11) && (0.0..=1e3).contains(&self.last_dt_s);
+        if !(is_sound && is_rotation && anchor_m.is_finite() && self.last_change_m_s.is_finite()) {
+            return Err(unfit("must have finite numbers and axes that are a rotation"));
+        }
+        let anchor = Anchor { origin: anchor_m, to_enu: axes, altitude_m: self.anchor_altitude_m };
+        let mut live = Live::saved(world, desc, anchor, self.corner, self.time_s)?;
+        let (all, last_dt_s, last_change_m_s) = live.field.numbers_mut();
+        (*last_dt_s, *last_change_m_s) = (self.last_dt_s, self.last_change_m_s);
+        if !read(&self.numbers, all) {
+            return Err(unfit("must have as many finite numbers as its cells need"));
+        }
+        let hash = |i: usize| u64::from_str_radix(&self.stood[i], 16).map_err(|_| unfit("must have two hashes"));
+        live.stood = [hash(0)?, hash(1)?];
+        (live.begun_s, live.solved_for) = (self.begun_s, self.solved_for);
+        (live.awake_s, live.rests) = (self.awake_s, self.rests);
+        Ok(live)
+    }
+}
+
+/// Digits of base 64.
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+/// Numbers that become 16 digits together.
+const GROUP: usize = 3;
+
+/// Numbers as digits of base 64, three in 16 digits; the last group is filled up with zeros.
+fn written<'a>(lists: impl Iterator<Item = &'a Vec<f32>>) -> String {
+    let mut text = String::new();
+    for list in lists {
+        text.reserve(list.len().div_ceil(GROUP) * 16);
+        for group in list.chunks(GROUP) {
+            let mut bits = 0_u128;
+            for i in 0..GROUP {
+                bits = bits << 32 | u128::from(group.get(i).map_or(0, |v| v.to_bits()));
+            }
+            (0..16).rev().for_each(|d| text.push(char::from(DIGITS[(bits >> (6 * d)) as usize & 63])));
+        }
+    }
+    text
+}
+
+/// Fills lists with the numbers that [`written`] wrote of others as long. Says whether these were so many, all finite.
+fn read<'a>(text: &str, lists: impl Iterator<Item = &'a mut Vec<f32>>) -> bool {
+    let mut values = [u8::MAX; 256];
+    DIGITS.iter().zip(0..).for_each(|(digit, value)| values[usize::from(*digit)] = value);
+    let (groups, rest) = text.as_bytes().as_chunks::<16>();
+    let mut groups = groups.iter();
+    for group in lists.flat_map(|list| list.chunks_mut(GROUP)) {
+        let Some(digits) = groups.next() else { return false };
+        let mut bits = 0_u128;
+        for digit in digits {
+            let value = values[usize::from(*digit)];
+            if value == u8::MAX {
+                return false;
+            }
+            bits = bits << 6 | u128::from(value);
+        }
+        for (i, v) in group.iter_mut().enumerate() {
+            *v = f32::from_bits((bits >> (32 * (GROUP - 1 - i))) as u32);
+            if !v.is_finite() {
+                return false;
+            }
+        }
+    }
+    rest.is_empty() && groups.next().is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back_to_the_bit_and_broken_ones_do_not() {
+        let lists = [vec![0.1_f32, -0.0, 1e-40, 3e38, 7.25], vec![-1.5; 3]];
+        let text = written(lists.iter());
+        assert_eq!(text.len(), 48);
+        let mut found = [vec![9.0; 5], vec![9.0; 3]];
+        assert!(read(&text, found.iter_mut()));
+        let bits = |l: &[Vec<f32>; 2]| l.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&found), bits(&lists));
+        let mut longer = [vec![0.0; 5], vec![0.0; 4]];
+        for bad in [&text[..32], &text[1..], &format!("{text}AAAA"), &text.replace('A', "!"), &text.replace('A', "é")]
+        {
+            assert!(!read(bad, found.iter_mut()), "{bad}");
+        }
+        assert!(!read(&text, longer.iter_mut()));
+        assert!(!read(&written([vec![f32::NAN; 5], vec![0.0; 3]].iter()), found.iter_mut()));
+    }
+}

@@ -1,0 +1,63 @@
+//! The host's terrain as all that goes round it or lies on it reads it: heights on a regular grid.
+
+use glam::{DMat3, DVec2, DVec3};
+
+/// Heights on a grid that is level and aligned to north at its origin, linear between nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TerrainHeights {
+    /// The node farthest to the south-west, in the host's world; its height is what `heights_m` count from.
+    pub origin: DVec3,
+    /// Turns the host's axes at the origin to east, north, up.
+    pub to_enu: DMat3,
+    /// From node to node, m.
+    pub cell_m: f64,
+    /// Nodes east and north, two at least.
+    pub nodes: [u32; 2],
+    /// Above the origin, m; eastern neighbours beside each other, then northern.
+    pub heights_m: Vec<f32>,
+    /// The same for the same terrain.
+    pub hash: u64,
+}
+
+impl TerrainHeights {
+    /// Of heights that are one for each node.
+    pub fn new((origin, to_enu): (DVec3, DMat3), cell_m: f64, nodes: [u32; 2], heights_m: Vec<f32>) -> Self {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0000_0100_0000_01b3);
+        origin.to_array().into_iter().chain([cell_m]).for_each(|v| add(v.to_bits()));
+        nodes.iter().for_each(|n| add(u64::from(*n)));
+        heights_m.iter().for_each(|h| add(u64::from(h.to_bits())));
+        Self { origin, to_enu, cell_m, nodes, heights_m, hash }
+    }
+
+    /// The height at a place east and north of the origin, m; beyond the nodes as at the nearest place within.
+    pub fn height_m(&self, place_m: DVec2) -> f64 {
+        let at = place_m / self.cell_m;
+        let along = |v: f64, nodes: u32| {
+            let v = v.clamp(0.0, f64::from(nodes - 1));
+            let low = (v as u32).min(nodes - 2);
+            (low as usize, v - f64::from(low))
+        };
+        let ((i, x), (j, y)) = (along(at.x, self.nodes[0]), along(at.y, self.nodes[1]));
+        let columns = self.nodes[0] as usize;
+        let height = |i: usize, j: usize| f64::from(self.heights_m[j * columns + i]);
+        let row = |j: usize| height(i, j) * (1.0 - x) + height(i + 1, j) * x;
+        row(j) * (1.0 - y) + row(j + 1) * y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_go_linearly_and_stay_beyond_the_edge() {
+        let heights_m = (0..12).map(|i| (i % 4) as f32 * 0.5 + (i / 4) as f32).collect();
+        let t = TerrainHeights::new((DVec3::ZERO, DMat3::IDENTITY), 2.0, [4, 3], heights_m);
+        for (x, y) in [(0.0, 0.0), (3.0, 1.5), (6.0, 4.0), (1.1, 3.3)] {
+            assert!((t.height_m(DVec2::new(x, y)) - (0.25 * x + 0.5 * y)).abs() < 1e-12, "{x} {y}");
+        }
+        assert_eq!(t.height_m(DVec2::new(-5.0, 40.0)), 2.0);
+        assert_eq!(t.height_m(DVec2::new(1e9, -1e9)), 1.5);
+    }
+}

@@ -1,0 +1,119 @@
+//! The wind that varies in space as shaders read it: a texture for all views of a context, and where a camera is in it. The shaders'
+//! side is `shaders/surroundings/wind.wgsl`.
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec3;
+
+use crate::{gpu::Device, wind::WindVolume};
+
+/// `WindMap` of `shaders/surroundings/wind.wgsl`: where a camera-relative place lies in the texture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct WindMap {
+    pub scale: [f32; 3],
+    pad0: u32,
+    pub offset: [f32; 3],
+    pad1: u32,
+    pub first: [f32; 3],
+    pad2: u32,
+}
+
+impl WindMap {
+    /// For a camera at `eye` in the host's world.
+    pub fn new(volume: &WindVolume, eye: DVec3) -> Self {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let nodes = DVec3::from(volume.nodes.map(f64::from));
+        // A node is in the middle of its texel.
+        Self {
+            scale: v(1.0 / (volume.cell_m * nodes)),
+            offset: v((volume.cells_at(eye) + 0.5) / nodes),
+            first: v(0.5 / nodes),
+            ..Self::default()
+        }
+    }
+}
+
+/// A texture of the wind, and whether it is the same as another time.
+#[derive(Clone)]
+pub(crate) struct WindView {
+    pub view: wgpu::TextureView,
+    /// Another number for another texture: bind groups with it are made anew then.
+    pub generation: u64,
+}
+
+struct Texture {
+    texture: wgpu::Texture,
+    nodes: [u32; 3],
+    /// Of the values that were uploaded last.
+    revision: u64,
+    shown: WindView,
+}
+
+/// The texture of a context, made when a view first needs it and uploaded again when the wind has changed.
+#[derive(Default)]
+pub(crate) struct WindTexture {
+    held: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    texture: Option<Texture>,
+    generation: u64,
+    /// Room for an upload.
+    texels: Vec<u16>,
+}
+
+impl WindTexture {
+    /// The texture with the values of `volume`; of none, one texel that nothing reads.
+    pub fn view(&self, device: &Device, volume: Option<&WindVolume>) -> WindView {
+        let state = &mut *self.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let nodes = volume.map_or([1; 3], |v| v.nodes);
+        // Revisions begin at 1.
+        let revision = volume.map_or(0, WindVolume::revision);
+        if let Some(held) = state.texture.as_ref().filter(|t| volume.is_none() || t.revision == revision) {
+            return held.shown.clone();
+        }
+        let mut texture = match state.texture.take().filter(|t| t.nodes == nodes) {
+            Some(texture) => texture,
+            None => {
+                state.generation += 1;
+                new_texture(device, nodes, state.generation)
+            }
+        };
+        texture.revision = revision;
+        if let Some(volume) = volume {
+            state.texels.clear();
+            state.texels.extend(volume.values.iter().flatten().map(|x| half::f16::from_f32(*x).to_bits()));
+            let rows = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(8 * nodes[0]),
+                rows_per_image: Some(nodes[1]),
+            };
+            let texels = bytemuck::cast_slice(&state.texels);
+            device.queue.write_texture(texture.texture.as_image_copy(), texels, rows, extent(nodes));
+        }
+        let shown = texture.shown.clone();
+        state.texture = Some(texture);
+        shown
+    }
+}
+
+fn extent(nodes: [u32; 3]) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: nodes[0], height: nodes[1], depth_or_array_layers: nodes[2] }
+}
+
+fn new_texture(device: &Device, nodes: [u32; 3], generation: u64) -> Texture {
+    let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("wind"),
+        size: extent(nodes),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&Default::default());
+    Texture { texture, nodes, revision: 0, shown: WindView { view, generation } }
+}
