@@ -28,7 +28,7 @@ use crate::{
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
-    stage::{Diagnostic, DrawnEffect, Frame, Shot, Stages},
+    stage::{Diagnostic, DrawnEffect, FallingTexture, Frame, Shot, Stages},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -197,11 +197,12 @@ impl Effects {
     /// # Errors
     /// A GPU fault.
     pub fn new(device: &Arc<Device>, shared: &Arc<Shared>, held: &Held) -> Result<Self> {
+        let falling = FallingTexture::default();
         Ok(Self {
             sky: SkyView::new(&held.sky)?,
             fog: FogView::new(device),
             ground: GroundView::new(device),
-            rain: RainView::new(device, RainSettings::default()),
+            rain: RainView::new(device, RainSettings::default(), falling),
             glass: GlassView::new(shared),
             stars: StarsView::default(),
             clouds: CloudsView::default(),
