@@ -4,6 +4,7 @@
 //! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
 //! probe fog --visibility METRES
 //! probe rain-speed
+//! probe snow-speed
 //! probe rain
 //! probe ice
 //! probe slab
@@ -28,6 +29,7 @@ use welkin::{Error, Result, Status};
 const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
                      probe fog --visibility METRES < distances.csv\n       \
                      probe rain-speed < diameters.csv\n       \
+                     probe snow-speed < flakes.csv\n       \
                      probe rain < rates.csv\n       \
                      probe ice < rates.csv\n       \
                      probe slab < slabs.csv\n       \
@@ -160,6 +162,7 @@ fn run() -> Result<String> {
         "irradiance" => sky(Question::Irradiance, arguments),
         "fog" => fog(arguments),
         "rain-speed" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::speed_csv(&read_input()?)),
+        "snow-speed" => Options::parse(&[], arguments).and_then(|_| welkin::snow::probe::speed_csv(&read_input()?)),
         "rain" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::rain_csv(&read_input()?)),
         "ice" => Options::parse(&[], arguments).and_then(|_| welkin::rain::probe::ice_csv(&read_input()?)),
         "slab" => {

@@ -34,7 +34,7 @@ fn gauged(p: Looked) -> vec4u {
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));
     let change = clamp((less - shown[0]) / (shown[0] + 0.01) * (1.0 - p.mask), vec4f(-6e4), vec4f(6e4));
     let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * select(1.0, 0.0, p.mask > 0.5);
-    let hidden = frame.drops.x * min(p.range, frame.drops.y);
+    let hidden = depth_of_drawn(p.range);
     return vec4u(
         halves(change.x, change.y),
         halves(change.z, change.w),

@@ -7,6 +7,7 @@ pub mod area;
 pub(crate) mod curtain;
 pub mod drag;
 pub mod drops;
+pub mod flakes;
 pub mod ice;
 pub mod lattice;
 pub mod sizes;

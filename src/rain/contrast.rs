@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 use super::{DropLight, StreakCamera, uniforms::Classes};
 use crate::{
-    plan::{Unseen, parts::MOST_RUNGS},
+    plan::parts::MOST_RUNGS,
     stage::{StreakContrast, Tone},
 };
 
@@ -76,13 +76,11 @@ impl Streaks {
         let variance = |along_m: f64| cover_variance(classes, pixel, (along_m, shot.gain), COUNTED_M);
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
-}
 
-impl Unseen for Streaks {
     /// What pixel number `i` of a picture changes with cones in place of drops, and without streaks, over its luminance and a hundredth
     /// of white, beside what the veil in their place adds. `picture` and `hidden` are its luminance without streaks and the optical depth
     /// of what they hide.
-    fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
+    pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));
         // On the mean they bring their own light.
         [(CONES_MISS * streaks) as f32, (streaks - hidden * contrast) as f32, 0.0]

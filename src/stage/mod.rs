@@ -20,7 +20,7 @@ pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use recording::Recording;
-pub use recording::{CostItem, Costs, RainReport, Report};
+pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
 pub(crate) use streak::{FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
 pub use target::{ColorSpace, Stages};
 pub(crate) use target::{

@@ -60,7 +60,8 @@ pub(crate) struct FrameUniform {
     pub cloud_shadow: [f32; 4],
     /// Pixels of the picture.
     pub picture: [f32; 2],
-    pub pad: [f32; 2],
+    /// As `drops`, of flakes.
+    pub flakes: [f32; 2],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -120,7 +121,7 @@ pub(crate) fn uniform(
         flashes: [FlashUniform::default(); MAX_FLASH_LAMPS],
         cloud_shadow: [0.0; 4],
         picture: [color.width() as f32, color.height() as f32],
-        pad: [0.0; 2],
+        flakes: [0.0; 2],
     }
 }
 
