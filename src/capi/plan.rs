@@ -52,6 +52,9 @@ pub const WK_PART_SKY: wk_part = 2;
 pub const WK_PART_RAIN: wk_part = 3;
 /// Stars, planets and the glow of the night between them. Rungs: all, none (an even sky of the same light).
 pub const WK_PART_STARS: wk_part = 4;
+/// Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a veil, and without
+/// WK_PART_FOG too nothing of it is drawn).
+pub const WK_PART_SNOW: wk_part = 5;
 
 /// Which optional fields of a wk_part_wish are set.
 pub type wk_part_wish_has_flags = u32;

@@ -104,11 +104,11 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         wished(&behind, "budget.wishes[1].importance must be in [0, 1], got");
         wished(&[behind[0], behind[2], behind[1]], "budget.wishes[2].importance must be in [0, 1], got");
     }
-    let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, got 5";
-    wished(&[wish(WK_PART_FOG, 0.5), wish(5, 0.5)], &format!("budget.wishes[1].part {parts}"));
+    let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, WK_PART_SNOW, got 6";
+    wished(&[wish(WK_PART_FOG, 0.5), wish(6, 0.5)], &format!("budget.wishes[1].part {parts}"));
     wished(&[wish(WK_PART_FOG, 0.5); 2], "budget.wishes[1].part must be a part that is not in the list yet, got 1");
     wished(&[at_rung(WK_PART_RAIN, 3)], "budget.wishes[0].rung must be in [0, 2] for rain: drops, cones, none, got 3");
-    wished(&[at_rung(WK_PART_AIR, 0); 6], "budget.wish_count must be at most 5, got 6");
+    wished(&[at_rung(WK_PART_AIR, 0); 7], "budget.wish_count must be at most 6, got 7");
     wished(&[wk_part_wish { has: 4, ..wish(WK_PART_AIR, 0.5) }], "budget.wishes[0].has");
     for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
         assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);

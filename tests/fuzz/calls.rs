@@ -707,6 +707,10 @@ pub const CALLS: &[(&str, Call)] = &[
         let view = handle(d, &w.views);
         set_one(d, "wk_rain", |p| unsafe { wk_view_set_rain(view, p.cast()) })
     }),
+    ("wk_view_set_snow", |d, w| {
+        let view = handle(d, &w.views);
+        set_one(d, "wk_snow", |p| unsafe { wk_view_set_snow(view, p.cast()) })
+    }),
     ("wk_view_set_budget", |d, w| {
         let mut budget = Struct::random(d, "wk_budget", 6);
         if d.one_in(2) {
