@@ -42,6 +42,8 @@ mod report;
 mod scenes;
 #[path = "../examples/lab/sky/mod.rs"]
 mod sky;
+#[path = "../examples/lab/snow.rs"]
+mod snow;
 #[path = "../examples/lab/stability/mod.rs"]
 mod stability;
 #[path = "../examples/lab/stars.rs"]

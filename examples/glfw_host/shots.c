@@ -214,7 +214,7 @@ static bool snow(demo *d, double rate_mm_h, double temperature_c, double visibil
     return set(d, &w, &cloud);
 }
 
-static bool quiet_snow(demo *d) { return sun_at(d, 300, -2) && snow(d, 1.5, 0.3, 1200, 0.6); }
+static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3, 650, 0.6); }
 static bool snowstorm(demo *d) { return sun_at(d, 200, 20) && snow(d, 4.0, -6.0, 250, 16.0); }
 
 static bool wet_road(demo *d)

@@ -14,10 +14,10 @@ use crate::picture::{Figures, Picture};
 use crate::plot::{Point, Titles, scatter, short};
 use crate::store::{Journal, Table};
 use crate::timing::{Baseline, Ratio, interleaved};
-use crate::{fog, page, quadrature, rain, scenes, sky, stars};
+use crate::{fog, page, quadrature, rain, scenes, sky, snow, stars};
 
 /// What can be charted.
-pub const CHARTS: [&str; 5] = ["sky", "fog", "rain", "stars", "quadrature"];
+pub const CHARTS: [&str; 6] = ["sky", "fog", "rain", "snow", "stars", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -61,6 +61,7 @@ pub fn shaders(what: &str) -> String {
         "sky" | "quadrature" => &["common", "sky"],
         "fog" | "stability" => &["common", "fog", "frame", "sky"],
         "rain" => &["common", "fog", "frame", "rain", "sky"],
+        "snow" => &["common", "fog", "frame", "sky", "snow"],
         "stars" => &["common", "frame", "sky", "stars"],
         _ => &["common", "fog", "frame", "ground", "rain", "sky"],
     };
@@ -109,6 +110,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
         "sky" => sky_chart(&lab, options)?,
         "fog" => fog_chart(&lab, options)?,
         "rain" => rain_chart(&lab, options)?,
+        "snow" => snow_chart(&lab, options)?,
         "stars" => star_chart(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }
@@ -155,7 +157,7 @@ fn family(c: &Candidate) -> &'static str {
         (Effect::Fog, "exact" | "even") => "closed form",
         (Effect::Fog, "froxels") => "froxels",
         (Effect::Fog, _) => "older laws",
-        (Effect::Sky | Effect::Rain, known) => known,
+        (Effect::Sky | Effect::Rain | Effect::Snow, known) => known,
         (Effect::Stars, _) => "night",
     }
 }
@@ -402,6 +404,52 @@ fn rain_plots(journal: Journal, options: &Options, scenes: usize) -> Result<()> 
     };
     table.rows.retain(|r| r[0] != "truth-again");
     plot(&table, "cost", &titles, &options.out.join("rain"))
+}
+
+fn snow_chart(lab: &Lab, options: &Options) -> Result<()> {
+    let list = scenes::snow();
+    let names: Vec<String> = list.iter().map(|s| format!("p95_{}", s.name)).collect();
+    let columns: Vec<&str> =
+        COLUMNS.iter().copied().chain(names.iter().map(String::as_str)).chain(["units", "date"]).collect();
+    let mut journal = Journal::open(&options.out, "snow", &lab.note("snow", options), &columns, options.fresh)?;
+    let all = candidates(Effect::Snow);
+    if !(all.iter().all(|c| journal.has(c.name)) && journal.has("truth-again")) {
+        let day = vec![true; list.len()];
+        let mut hosts = list.iter().map(|s| rain::Host::new(&lab.device, s, rain::SIZE)).collect::<Result<Vec<_>>>()?;
+        let mut truths = Vec::new();
+        for (host, scene) in hosts.iter_mut().zip(&list) {
+            eprintln!("  truth of {} ..", scene.name);
+            truths.push(snow::truth(host, 1)?);
+        }
+        let mut timed = rain::Host::new(&lab.device, &list[0], (640, 360))?;
+        for (i, c) in all.iter().enumerate() {
+            let Method::Snow(settings) = c.method else { continue };
+            if journal.has(c.name) {
+                continue;
+            }
+            eprintln!("  {}/{} {} ..", i + 1, all.len(), c.name);
+            let blocks = hosts.iter_mut().map(|h| snow::drawn_by(h, settings)).collect::<Result<Vec<_>>>()?;
+            timed.set_snow(settings)?;
+            let cost = interleaved(&lab.baseline, lab.rounds, |_| timed.timed())?;
+            let units = format!("{:.4e}", c.work.frame(640 * 360, true).at(&Price::default()));
+            journal.push(rain_row(c.name, c.is_default(), &cost, (&blocks, &truths, &day), units)?)?;
+        }
+        if !journal.has("truth-again") {
+            // How far all flakes are from all flakes elsewhere: less cannot be asked.
+            let again = hosts.iter_mut().map(|h| Ok(snow::truth(h, 2)?.0)).collect::<Result<Vec<_>>>()?;
+            journal.push(rain_row("truth-again", false, &Ratio::default(), (&again, &truths, &day), "0".into())?)?;
+        }
+    }
+    let (mut table, old) = journal.finish()?;
+    say_what_moved(&table, old.as_ref());
+    let titles = Titles {
+        title: "Snow: what a frame costs against how far it is from all flakes drawn",
+        x: "cost of fog and snow with large flakes in hardly any wind, 640x360, over the baseline's",
+        y: "95th percentile of the relative error of blocks: mean, and contrast of two sizes",
+        note: "4 scenes by day, large flakes to storm; line: nothing is both cheaper and better; ring: the default",
+    };
+    table.rows.retain(|r| r[0] != "truth-again");
+    plot(&table, "cost", &titles, &options.out.join("snow"))
 }
 
 fn star_chart(lab: &Lab, options: &Options) -> Result<()> {

@@ -25,6 +25,7 @@ mod regression;
 mod report;
 mod scenes;
 mod sky;
+mod snow;
 mod stability;
 mod stars;
 mod store;

@@ -104,7 +104,8 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         wished(&behind, "budget.wishes[1].importance must be in [0, 1], got");
         wished(&[behind[0], behind[2], behind[1]], "budget.wishes[2].importance must be in [0, 1], got");
     }
-    let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, WK_PART_SNOW, got 6";
+    let parts =
+        "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, WK_PART_SNOW, got 6";
     wished(&[wish(WK_PART_FOG, 0.5), wish(6, 0.5)], &format!("budget.wishes[1].part {parts}"));
     wished(&[wish(WK_PART_FOG, 0.5); 2], "budget.wishes[1].part must be a part that is not in the list yet, got 1");
     wished(&[at_rung(WK_PART_RAIN, 3)], "budget.wishes[0].rung must be in [0, 2] for rain: drops, cones, none, got 3");

@@ -9,7 +9,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*, query::*, rain::*,
-    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
     weather::*, wind::*, wind_grid::*, windscreen::*,
 };
 

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_grid::*, windscreen::*,
+    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    wind::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{

@@ -191,7 +191,7 @@ pub fn make(device: &Arc<Device>, candidate: &Candidate) -> Result<Box<dyn SkyDr
     match candidate.method {
         Method::Sky(settings) => Ok(Box::new(Library::new(device, &settings)?)),
         Method::SkyElek(table) => Ok(Box::new(elek::Elek::new(device, table)?)),
-        Method::Fog(_) | Method::Rain(_) | Method::Stars(_) => {
+        Method::Fog(_) | Method::Rain(_) | Method::Stars(_) | Method::Snow(_) => {
             Err(welkin::Error::range("candidate", "one of the sky", candidate.name))
         }
     }
