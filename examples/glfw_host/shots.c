@@ -209,9 +209,11 @@ static bool snow(demo *d, double rate_mm_h, double temperature_c, double visibil
 {
     wk_weather w = weather_here(visibility_m, 0.97);
     wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 500);
+    wk_snow as_on_a_gpu = WK_SNOW_INIT;
     w.temperature_c = temperature_c;
+    as_on_a_gpu.most_flakes = 1000000;
     fall(&w, WK_PRECIPITATION_SNOW, rate_mm_h, wind_m_s, 155.0);
-    return set(d, &w, &cloud);
+    return set(d, &w, &cloud) && weather_check(wk_view_set_snow(d->weather.view, &as_on_a_gpu));
 }
 
 static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3, 650, 0.6); }

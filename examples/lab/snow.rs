@@ -108,11 +108,11 @@ pub fn drawn_by(host: &mut Host, settings: SnowSettings) -> Result<Blocks> {
 /// The luminances of what lies behind all flakes: what they would hide is left out.
 fn behind(host: &mut Host) -> Result<Vec<f64>> {
     const FEW: u32 = 20_000;
-    // In a tent that keeps the flakes off, what they would hide is left out all the same.
+    // In a tent that keeps the flakes off, what they would hide is left out all the same. The wall beyond it gets as wet as without.
     let tent = Shelter {
         center_m: EYE,
         axes: DMat3::IDENTITY,
-        half_size_m: DVec3::splat(200.0),
+        half_size_m: DVec3::splat(30.0),
         velocity_m_s: DVec3::ZERO,
         planes: Planes::NONE,
     };

@@ -42,7 +42,6 @@ pub fn candidates() -> Vec<Listed<SnowSettings>> {
     let named = [
         ("veil", SnowSettings { model: SnowModel::Veil, ..SnowSettings::default() }),
         ("flakes-20k", flakes(20_000)),
-        ("flakes-60k", flakes(60_000)),
         ("flakes-250k", flakes(250_000)),
         ("automatic", SnowSettings::default()),
         ("flakes-1m", flakes(1_000_000)),
