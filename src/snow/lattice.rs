@@ -140,10 +140,10 @@ impl Flakes {
             self.shells = shells;
             for (shell, weights) in weights.iter().enumerate().take(shells) {
                 let mut sum = 0.0f64;
-                for k in 0..CLASSES {
-                    sum += self.number_per_m3[k] * side_m(shell).powi(3) / weights[k];
+                for (k, weight) in weights.iter().enumerate() {
+                    sum += self.number_per_m3[k] * side_m(shell).powi(3) / weight;
                     self.upto[k][shell] = (sum + 1e-6) as u32;
-                    self.weight[k][shell] = weights[k] as f32;
+                    self.weight[k][shell] = *weight as f32;
                 }
                 self.drawn += self.upto[CLASSES - 1][shell];
             }

@@ -71,7 +71,7 @@ impl FlakesUniform {
             sun: v(light.sun),
             extinction: air.extinction_per_m as f32,
             to_sun: v(light.to_sun),
-            y_sign: shot.y_sign as f32,
+            y_sign: shot.y_sign,
             camera: v(shot.velocity_m_s),
             share: 1.0,
             first,

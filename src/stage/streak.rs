@@ -57,7 +57,7 @@ impl FallingTexture {
     /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
     pub fn view(&self, device: &Device, size: wgpu::Extent3d) -> wgpu::TextureView {
         let mut held = self.locked();
-        if !held.as_ref().is_some_and(|(t, _)| (t.width(), t.height()) == (size.width, size.height)) {
+        if held.as_ref().is_none_or(|(t, _)| (t.width(), t.height()) != (size.width, size.height)) {
             *held = None;
         }
         let make = || {

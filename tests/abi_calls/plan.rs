@@ -43,7 +43,7 @@ fn drawn(world: &World) -> [u32; 4] {
         assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL & !WK_STAGE_TONE), WK_OK, "{}", message());
         assert_eq!(wk_view_get_plan(world.view, &mut plan), WK_OK);
     }
-    assert_eq!(plan.part_count, 5);
+    assert_eq!(plan.part_count, 6);
     [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN].map(|number| part(world, number).rung)
 }
 
@@ -116,7 +116,7 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         assert!(message().starts_with("wk_view_report_time: milliseconds must be in (0, 1e5] ms"), "{}", message());
         assert_eq!(report(&world).has & WK_REPORT_HAS_REPORTED_MS, 0);
     }
-    for part in [5, u32::MAX] {
+    for part in [6, u32::MAX] {
         let mut plan = init::<wk_part_plan>("wk_part_plan");
         assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());
