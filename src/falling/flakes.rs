@@ -270,9 +270,11 @@ mod tests {
     use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
     use glam::DVec3;
 
+    /// What falls where no report of visibility says how much it hides.
     fn falling(kind: PrecipitationKind, rate: f64) -> Falling {
         let weather = Weather { precipitation: Precipitation::of(kind, rate), ..Weather::default() };
-        derive(&weather).unwrap().precipitation
+        let f = derive(&weather).unwrap().precipitation;
+        Falling { solid_extinction_per_m: snow_extinction_per_m(f.snow_mm_h), ..f }
     }
 
     #[test]
