@@ -2,14 +2,14 @@
 //! own speed on a helix of its own, with no state.
 //!
 //! A shell is a cube of side L full of flakes, repeated through all space; a camera sees of each flake the copy nearest to it. Places,
-//! falls and turns are fractions in 32 bits and wrap as the lattice does ([`crate::falling::lattice`]): place = random(seed, shell, class,
+//! falls and turns are fractions in 32 bits and wrap as the lattice does (`src/falling/lattice.rs`): place = random(seed, shell, class,
 //! index) + displacement of the air - speed x fall phase, and the flake stands beside it by its helix, at the angle random + turns x turn
 //! phase. Speeds and turns are whole multiples of [`SPEED_UNIT`] and [`TURN_UNIT`], and so exact at any time; within a class each flake
 //! has its own, up to an eighth faster or slower (flakes of one size scatter by as much about Locatelli and Hobbs's lines).
 //!
 //! Each shell is twice as wide as the last. A shell that has no room for all its flakes draws some that stand for others: of each
 //! class so many that all drawn flakes hide as much as each other, which of all choices leaves the contrast closest to that of all
-//! flakes (importance sampling by area). Shells whose contrast would be off by more than the square root of [`MOST_NOISE`] are left to
+//! flakes (importance sampling by area). Shells whose contrast would be off by more than the square root of 3 are left to
 //! the veil.
 
 use glam::DVec3;

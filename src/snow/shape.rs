@@ -1,6 +1,6 @@
 //! The shape of a flake, as `shaders/snow/shape.wgsl` draws it.
 //!
-//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = [`OFFSET`] + [`NOISE`] n - r^2, of r in radii and
+//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, of r in radii and
 //! noise n of the flake's own (the procedural flake of the older system that the shape is from, with n from -1 to 1 in place of a
 //! noise that may leave a hole where the flake should be). Offset and strength are such that the mean over discs is the share of a flake
 //! that is ice, so near flakes hide what far ones, drawn as faint discs, do.
