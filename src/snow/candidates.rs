@@ -7,8 +7,8 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance: as of rain.
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work of the layer of what falls a pixel, and of a flake of the lattice, measured on a software driver (`cargo bench -- parts`) in
-/// units of a pixel with none of the parts.
+/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts: estimated from those
+/// of rain. `cargo bench -- parts` prints what a flake takes on a machine.
 const LAYER_OF_PIXEL: f64 = 0.2;
 const ONE_FLAKE: f64 = 0.6;
 
