@@ -279,6 +279,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FLASH_TRIGGER 66
 /** wk_flash_light */
 #define WK_STRUCT_TYPE_FLASH_LIGHT 67
+/** wk_snow */
+#define WK_STRUCT_TYPE_SNOW 70
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
 
@@ -3711,8 +3713,8 @@ typedef struct wk_report {
     double checked_error;
     /** Drops and stones around the camera; those in the picture were drawn. */
     uint32_t drops;
-    /** 0. */
-    uint32_t reserved1;
+    /** Flakes around the camera; those in the picture were drawn. 0 if none were. */
+    uint32_t flakes;
     /** Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
     double drop_weight;
     /** Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops. */
@@ -3723,6 +3725,8 @@ typedef struct wk_report {
      * The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
      */
     double contrast_gain;
+    /** Distance up to which flakes were drawn, m; farther snow is extinction alone. 0 if none were. */
+    double flakes_to_m;
 } wk_report;
 
 /** Every field of `wk_report` at its default. */
@@ -3745,11 +3749,12 @@ typedef struct wk_report {
     /* checked_error_bound */ 0.0, \
     /* checked_error */ 0.0, \
     /* drops */ 0, \
-    /* reserved1 */ 0, \
+    /* flakes */ 0, \
     /* drop_weight */ 0.0, \
     /* splashes_left_out_per_m2_s */ 0.0, \
     /* stones_left_out_per_m2_s */ 0.0, \
-    /* contrast_gain */ 0.0 \
+    /* contrast_gain */ 0.0, \
+    /* flakes_to_m */ 0.0 \
 }
 
 /** Effect whose cost is measured. */
@@ -4053,6 +4058,11 @@ typedef uint32_t wk_part;
 #define WK_PART_STARS 4
 /** Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK). */
 #define WK_PART_CLOUDS 5
+/**
+ * Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a veil, and without
+ * WK_PART_FOG too nothing of it is drawn).
+ */
+#define WK_PART_SNOW 6
 
 /** What a host wants of one part. */
 typedef struct wk_part_wish {
@@ -4535,6 +4545,75 @@ WK_API wk_status wk_shelter_init(wk_shelter *out, uint32_t struct_size);
 WK_API
 wk_status wk_shelter_shape_init(wk_shelter_shape *out,
                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Snow
+ *
+ * WK_STAGE_PARTICLES draws falling snow wherever the weather has it: flakes of the sizes and speeds that rate, kind and
+ * temperature give, each at a place that follows from seed and time alone, so all channels of a simulator draw the same
+ * flakes. The wind carries them, the host's depth hides them, shelters and occluder maps keep them off, sky, ground, sun
+ * and lamps light them. What is farther than the flakes is extinction in the air.
+ * ====================================================================================================
+ */
+
+/** How a view draws falling snow; what falls is the same. */
+typedef uint32_t wk_snow_model;
+
+/**
+ * Flakes near the camera; with a wk_budget none, where the picture does not need them or the time does not allow them
+ * (WK_PART_SNOW).
+ */
+#define WK_SNOW_MODEL_AUTOMATIC 0
+/** No flakes: all snow is extinction in the air. */
+#define WK_SNOW_MODEL_VEIL 1
+/** Flakes, whatever a budget says. */
+#define WK_SNOW_MODEL_FLAKES 2
+
+/** How a view draws falling snow. What falls does not depend on it. */
+typedef struct wk_snow {
+    /** sizeof(wk_snow) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SNOW. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Exposure time of a picture, s: flakes that move by more than their size in it are streaks. Range [1e-4, 0.1],
+     * default 1/250, at which flakes in a light wind show their shapes.
+     */
+    double shutter_s;
+    /**
+     * Most flakes to draw. The more, the farther they reach, up to 16 m; of what there is no room for some stand for
+     * others. Range [1000, 8 000 000], or 0, the default: 1 000 000, and 60 000 on a software driver.
+     */
+    uint32_t most_flakes;
+    /** A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose. */
+    wk_snow_model model;
+} wk_snow;
+
+/** Every field of `wk_snow` at its default. */
+#define WK_SNOW_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_snow), \
+    /* struct_type */ WK_STRUCT_TYPE_SNOW, \
+    /* next */ NULL, \
+    /* shutter_s */ 0.004, \
+    /* most_flakes */ 0, \
+    /* model */ WK_SNOW_MODEL_AUTOMATIC \
+}
+
+/**
+ * Sets how the view draws falling snow; NULL returns to the default. Unchanged after an error.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API wk_status wk_view_set_snow(wk_view *view, const wk_snow *snow);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SNOW_INIT`. `struct_size` is `sizeof(wk_snow)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

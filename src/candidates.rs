@@ -20,6 +20,7 @@ use crate::{
     plan::{Listed, Work},
     rain::RainSettings,
     sky::{SkyModel, SkySettings},
+    snow::SnowSettings,
     stars::candidates::StarMethod,
 };
 
@@ -34,12 +35,19 @@ pub enum Effect {
     Rain,
     /// Stars, planets and the glow between them.
     Stars,
+    /// Flakes of falling snow near the camera.
+    Snow,
 }
 
 impl Effect {
     /// All effects with the names that programs use for them.
-    pub const NAMES: [(&'static str, Effect); 4] =
-        [("sky", Effect::Sky), ("fog", Effect::Fog), ("rain", Effect::Rain), ("stars", Effect::Stars)];
+    pub const NAMES: [(&'static str, Effect); 5] = [
+        ("sky", Effect::Sky),
+        ("fog", Effect::Fog),
+        ("rain", Effect::Rain),
+        ("stars", Effect::Stars),
+        ("snow", Effect::Snow),
+    ];
 
     /// The effect of that name.
     ///
@@ -68,6 +76,8 @@ pub enum Method {
     Rain(RainSettings),
     /// A way to draw the night sky.
     Stars(StarMethod),
+    /// A way to draw falling snow.
+    Snow(SnowSettings),
 }
 
 /// One way to draw an effect.
@@ -93,6 +103,7 @@ impl Candidate {
             Method::Fog(m) => m == FogMethod::default(),
             Method::Rain(s) => s == RainSettings::default(),
             Method::Stars(m) => m == StarMethod::default(),
+            Method::Snow(m) => m == SnowSettings::default(),
         }
     }
 }
@@ -111,6 +122,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
         Effect::Fog => all(effect, crate::fog::candidates::candidates(), Method::Fog),
         Effect::Rain => all(effect, crate::rain::candidates::candidates(), Method::Rain),
         Effect::Stars => all(effect, crate::stars::candidates::candidates(), Method::Stars),
+        Effect::Snow => all(effect, crate::snow::candidates::candidates(), Method::Snow),
     }
 }
 

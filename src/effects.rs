@@ -12,6 +12,8 @@ use std::{
     sync::{Arc, Mutex},
 };
 
+use glam::DVec2;
+
 use crate::{
     almanac::sun::Utc,
     clouds::{self, CloudsView, HeldClouds},
@@ -24,12 +26,16 @@ use crate::{
     light::{Exposure, ToneCurve},
     lightning::{HeldLightning, LightningView},
     moment::{Moment, Scene},
-    plan::{self, StepWork, parts::Part},
+    plan::{
+        self, StepWork,
+        parts::{MOST_RUNGS, Part},
+    },
     planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
-    stage::{Diagnostic, DrawnEffect, Frame, Shot, Stages},
+    snow::{self, FlakeContrast, SnowSettings, SnowView},
+    stage::{Diagnostic, DrawnEffect, FallingTexture, Frame, Shot, Stages},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
 };
@@ -172,6 +178,7 @@ pub const PARTS: &[Part] = &[
     rain::candidates::RAIN,
     stars::candidates::STARS,
     clouds::candidates::CLOUDS,
+    snow::candidates::SNOW,
 ];
 
 /// Two parts of the list that cost more beside each other, and how much under the lamps of a scene.
@@ -188,7 +195,22 @@ pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {
 }
 
 /// What the planner compares by closed forms, since its gauge cannot see it.
-pub(crate) type Unseen = Streaks;
+#[derive(Clone, Copy)]
+pub(crate) struct Unseen {
+    rain: Option<Streaks>,
+    snow: Option<FlakeContrast>,
+}
+
+impl plan::Unseen for Unseen {
+    fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
+        let found = match (&self.rain, &self.snow) {
+            (Some(rain), _) if part.name == rain::candidates::RAIN.name => Some(rain.change(pixel, ndc, picture)),
+            (_, Some(snow)) if part.name == snow::candidates::SNOW.name => Some(snow.change(pixel, ndc, picture)),
+            _ => None,
+        };
+        found.unwrap_or_default()
+    }
+}
 
 /// The effects of a view.
 pub(crate) struct Effects {
@@ -196,6 +218,7 @@ pub(crate) struct Effects {
     pub fog: FogView,
     pub ground: GroundView,
     pub rain: RainView,
+    pub snow: SnowView,
     pub glass: GlassView,
     pub stars: StarsView,
     pub clouds: CloudsView,
@@ -205,7 +228,7 @@ pub(crate) struct Effects {
 }
 
 /// How many a view has.
-const COUNT: usize = if cfg!(test) { 9 } else { 8 };
+const COUNT: usize = if cfg!(test) { 10 } else { 9 };
 
 impl Effects {
     /// Those of a view.
@@ -213,11 +236,13 @@ impl Effects {
     /// # Errors
     /// A GPU fault.
     pub fn new(device: &Arc<Device>, shared: &Arc<Shared>, held: &Held) -> Result<Self> {
+        let falling = FallingTexture::default();
         Ok(Self {
             sky: SkyView::new(&held.sky)?,
             fog: FogView::new(device),
             ground: GroundView::new(device),
-            rain: RainView::new(device, RainSettings::default()),
+            rain: RainView::new(device, RainSettings::default(), falling.clone()),
+            snow: SnowView::new(SnowSettings::default(), falling),
             glass: GlassView::new(shared),
             stars: StarsView::default(),
             clouds: CloudsView::default(),
@@ -234,6 +259,7 @@ impl Effects {
             &mut self.fog,
             &mut self.ground,
             &mut self.rain,
+            &mut self.snow,
             &mut self.glass,
             &mut self.stars,
             &mut self.clouds,
@@ -250,6 +276,7 @@ impl Effects {
             &self.fog,
             &self.ground,
             &self.rain,
+            &self.snow,
             &self.glass,
             &self.stars,
             &self.clouds,
@@ -278,6 +305,8 @@ impl Effects {
         self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
         self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
+        self.snow.set_counting(frame.diagnostic == Diagnostic::Overdraw);
+        self.snow.gather(now, device);
         self.clouds.gather(now, held.clouds.model)?;
         #[cfg(test)]
         self.plane.gather(now);
@@ -285,14 +314,15 @@ impl Effects {
         self.stars.gather((now, frame), utc, &held.stars.settings, fog_depth)
     }
 
-    /// What streaks are worth in a picture, if the plan decides about them.
+    /// What streaks and flakes are worth in a picture, if the plan decides about them.
     pub fn unseen(&mut self, shot: &Shot<'_>) -> Option<Unseen> {
-        self.rain.streaks(shot)
+        let unseen = Unseen { rain: self.rain.streaks(shot), snow: self.snow.contrast(shot) };
+        (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)
     }
 
     /// Whether the plan decides about anything that its gauge cannot see.
     pub fn weighs_unseen(&self) -> bool {
-        self.rain.is_planned()
+        self.rain.is_planned() || self.snow.is_planned()
     }
 
     /// Work of building default tables, in pixels of a picture with these settings.

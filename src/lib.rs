@@ -34,6 +34,7 @@ pub mod planet;
 pub mod rain;
 pub mod scene;
 pub mod sky;
+pub mod snow;
 mod stage;
 pub mod stars;
 mod surroundings;

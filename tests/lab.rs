@@ -46,6 +46,8 @@ mod report;
 mod scenes;
 #[path = "../examples/lab/sky/mod.rs"]
 mod sky;
+#[path = "../examples/lab/snow.rs"]
+mod snow;
 #[path = "../examples/lab/source_lod.rs"]
 mod source_lod;
 #[path = "../examples/lab/stability/mod.rs"]

@@ -18,6 +18,8 @@ mod rain;
 mod scene;
 #[path = "../examples/probe/sky.rs"]
 mod sky;
+#[path = "../examples/probe/snow.rs"]
+mod snow;
 
 use std::sync::Arc;
 
@@ -138,6 +140,24 @@ fn rays_come_back_in_their_order_and_only_the_columns_of_a_question_are_read() {
     let e = ask(Question::Irradiance, "altitude_m,sun_zenith_deg\n0,200\n").unwrap_err();
     assert_eq!(e.to_string(), "line 2, column 3: sun_zenith_deg must be a number in [0, 180] deg, got \"200\"");
     assert!(ask(Question::Aerial, "").unwrap_err().to_string().contains("a header with altitude_m,sun_zenith_deg,.."));
+}
+
+#[test]
+fn flakes_fall_by_size_and_kind() {
+    let out = snow::speeds("id,diameter_mm,kind\na,1,unrimed\n\nb, 8 ,densely-rimed\nc,0,graupel\n").unwrap();
+    assert!(out.starts_with("id,diameter_mm,kind,speed_m_s\na,1,unrimed,0.8\nb, 8 ,densely-rimed,"), "{out}");
+    let speeds = column(&out, "speed_m_s");
+    assert!((speeds[1] / (0.79 * 8f64.powf(0.27)) - 1.0).abs() < 1e-12 && speeds[2] == 0.0, "{out}");
+    for (text, wanted) in [
+        ("", "line 1, column 1: a header with diameter_mm,kind is missing"),
+        ("diameter_mm\n1\n", "line 1, column 1: no column kind"),
+        ("kind,diameter_mm\nrimed,-1\n", "line 2, column 7: diameter_mm must be a number in [0, 100] mm"),
+        ("diameter_mm,kind\n2,slush\n", "line 2, column 3: kind must be one of unrimed, rimed"),
+        ("diameter_mm,kind\n2\n", "line 2, column 2: 1 fields, the header has 2"),
+    ] {
+        let e = snow::speeds(text).unwrap_err();
+        assert!(e.to_string().starts_with(wanted), "{text:?}: {e}");
+    }
 }
 
 #[test]

@@ -31,6 +31,8 @@ struct Bench {
     color: wgpu::Texture,
     depth: wgpu::Texture,
     frame_id: u64,
+    /// The rung of snow.
+    snow: usize,
 }
 
 impl Bench {
@@ -42,7 +44,7 @@ impl Bench {
         let view = View::new(&context)?;
         let texture = |format| textures::texture(&device, (SIZE.width, SIZE.height), format, 1);
         let (color, depth) = (texture(wgpu::TextureFormat::Rgba16Float), texture(wgpu::TextureFormat::R32Float));
-        Ok(Self { device, context, view, color, depth, frame_id: 0 })
+        Ok(Self { device, context, view, color, depth, frame_id: 0, snow: 0 })
     }
 
     /// Ground from row `horizon` of the picture down, sky above it.
@@ -65,8 +67,21 @@ impl Bench {
     }
 
     fn frame_with(&mut self, rungs: Rungs) -> Fallible<f64> {
-        self.view.set_budget(Budget::pinned(&rungs))?;
+        let [air, fog, sky, rain] = rungs;
+        self.view.set_budget(Budget::pinned(&[air, fog, sky, rain, 0, self.snow]))?;
         self.frame()
+    }
+
+    /// Time of a frame with flakes alone in times of the one without them before it, likewise.
+    fn ratio_of_snow(&mut self) -> Fallible<f64> {
+        let mut ratios = Vec::new();
+        for _ in 0..42 {
+            self.snow = 1;
+            let none = self.frame_with(NONE)?;
+            self.snow = 0;
+            ratios.push(self.frame_with(NONE)? / none);
+        }
+        Ok(median(&mut ratios[1..]))
     }
 
     /// Time of a frame with parts at these rungs in times of the one with none before it: the median of many, so that whatever else
@@ -164,6 +179,11 @@ pub fn run() -> Fallible<()> {
     let drops = bench.ratio([1, 1, 1, 0])? - 1.0 - cones;
     let each = drops * f64::from(SIZE.width * SIZE.height) / f64::from(bench.view.report().rain.drops.max(1));
     println!("  rain: {cones:.2}; drops {drops:.2}, {each:.2} pixels each");
+    bench.set("snow", bench.frame_id as f64 + 1.0)?;
+    let snow = bench.ratio_of_snow()? - 1.0;
+    let flakes = bench.view.report().snow.flakes;
+    let each = snow * f64::from(SIZE.width * SIZE.height) / f64::from(flakes.max(1));
+    println!("  snow: {snow:.2}, {flakes} flakes, {each:.2} pixels each");
     bench.set("clear", bench.frame_id as f64 + 1.0)?;
     bench.view.set_budget(Budget { tolerance: Some(1e-6), ..Budget::default() })?;
     for _ in 0..16 {

@@ -205,6 +205,20 @@ static bool hail(demo *d)
     return sun_at(d, 200, 40) && set(d, &w, &cloud);
 }
 
+static bool snow(demo *d, double rate_mm_h, double temperature_c, double visibility_m, double wind_m_s)
+{
+    wk_weather w = weather_here(visibility_m, 0.97);
+    wk_cloud_layer cloud = overcast(WK_CLOUD_NIMBOSTRATUS, 500);
+    wk_snow as_on_a_gpu = WK_SNOW_INIT;
+    w.temperature_c = temperature_c;
+    as_on_a_gpu.most_flakes = 1000000;
+    fall(&w, WK_PRECIPITATION_SNOW, rate_mm_h, wind_m_s, 155.0);
+    return set(d, &w, &cloud) && weather_check(wk_view_set_snow(d->weather.view, &as_on_a_gpu));
+}
+
+static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3, 650, 0.6); }
+static bool snowstorm(demo *d) { return sun_at(d, 200, 20) && snow(d, 4.0, -6.0, 250, 16.0); }
+
 static bool wet_road(demo *d)
 {
     wk_weather w = weather_here(40e3, 0.6);
@@ -372,6 +386,8 @@ const shot SHOTS[] = {
     {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
     {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
+    {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL},
+    {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
     {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},
     {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL},

@@ -14,7 +14,7 @@ use crate::timing::{Baseline, Ratio};
 use crate::{effect_charts, page, quadrature};
 
 /// What can be charted.
-pub const CHARTS: [&str; 5] = ["sky", "fog", "rain", "stars", "quadrature"];
+pub const CHARTS: [&str; 6] = ["sky", "fog", "rain", "snow", "stars", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -58,6 +58,7 @@ pub fn shaders(what: &str) -> String {
         "sky" | "quadrature" => &["common", "sky"],
         "fog" | "stability" => &["common", "fog", "frame", "sky"],
         "rain" => &["common", "fog", "frame", "rain", "sky"],
+        "snow" => &["common", "fog", "frame", "sky", "snow"],
         "stars" => &["common", "frame", "sky", "stars"],
         _ => &["common", "fog", "frame", "ground", "rain", "sky"],
     };
@@ -106,6 +107,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
         "sky" => effect_charts::sky(&lab, options)?,
         "fog" => effect_charts::fog(&lab, options)?,
         "rain" => effect_charts::rain(&lab, options)?,
+        "snow" => effect_charts::snow(&lab, options)?,
         "stars" => effect_charts::stars(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }

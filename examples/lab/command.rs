@@ -70,7 +70,9 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         return regression::compare(old.as_ref(), new.as_ref());
     }
     match words.as_slice() {
-        ["chart"] => ["quadrature", "fog", "rain", "stars", "sky"].iter().try_for_each(|c| chart::run(c, &options)),
+        ["chart"] => {
+            ["quadrature", "fog", "rain", "snow", "stars", "sky"].iter().try_for_each(|c| chart::run(c, &options))
+        }
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
         ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
         ["growth"] => growth::run(&options),

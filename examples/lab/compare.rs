@@ -11,7 +11,7 @@ use crate::chart::Lab;
 use crate::command::Options;
 use crate::picture::{Figures, Picture};
 use crate::plot::short;
-use crate::{fog, rain, scenes, sky, stars};
+use crate::{fog, rain, scenes, sky, snow, stars};
 
 /// Size of a picture of sky or fog.
 const SIZE: (u32, u32) = (128, 72);
@@ -39,13 +39,14 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
         Effect::Fog => "fog",
         Effect::Rain => "shower",
         Effect::Stars => "moonless",
+        Effect::Snow => "quiet",
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
     let panels = match a.effect {
         Effect::Sky => by_pixels([a.name, b.name], &sky_pictures(&lab, [a, b], scene, options.quick)?)?,
         Effect::Fog => by_pixels([a.name, b.name], &fog_pictures(&lab, [a, b], scene)?)?,
-        Effect::Rain => by_blocks(&lab, [a, b], scene)?,
+        Effect::Rain | Effect::Snow => by_blocks(&lab, [a, b], scene)?,
         Effect::Stars => by_pixels([a.name, b.name], &star_pictures(&lab, [a, b], scene)?)?,
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
@@ -105,12 +106,18 @@ fn by_pixels(names: [&str; 2], [a, b, truth]: &[Picture; 3]) -> Result<[Panel; 4
     ])
 }
 
-/// Rain, of which no two ways put drops in the same places: compared block by block over some moments, as its chart is. The
+/// Rain and snow, of which no two ways put drops in the same places: compared block by block over some moments, as its chart is. The
 /// last moment is shown.
 fn by_blocks(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Panel; 4]> {
-    let mut host = rain::Host::new(&lab.device, &scenes::rain()[scene], rain::SIZE)?;
-    let (truth, white) = host.truth(1)?;
-    let [a, b] = [host.drawn_by(pair[0])?, host.drawn_by(pair[1])?];
+    let snows = pair[0].effect == Effect::Snow;
+    let scene = if snows { scenes::snow()[scene] } else { scenes::rain()[scene] };
+    let mut host = rain::Host::new(&lab.device, &scene, rain::SIZE)?;
+    let (truth, white) = if snows { snow::truth(&mut host, 1)? } else { host.truth(1)? };
+    let mut drawn = |c: &Candidate| match c.method {
+        Method::Library(LibraryMethod::Snow(settings)) => snow::drawn_by(&mut host, settings),
+        _ => host.drawn_by(c),
+    };
+    let [a, b] = [drawn(pair[0])?, drawn(pair[1])?];
     let figures = |x: &rain::Blocks, y: &rain::Blocks| {
         let mut errors = x.errors(y, white);
         errors.sort_by(f64::total_cmp);

@@ -11,7 +11,7 @@ use crate::picture::{Figures, Picture};
 use crate::plot::{Titles, short};
 use crate::store::{Journal, Table};
 use crate::timing::{Ratio, interleaved};
-use crate::{fog, rain, scenes, sky, stars};
+use crate::{fog, rain, scenes, sky, snow, stars};
 
 /// What a chart says of a candidate.
 struct Measured {
@@ -115,7 +115,7 @@ fn family(c: &Candidate) -> &'static str {
         (Effect::Fog, "exact" | "even") => "closed form",
         (Effect::Fog, "froxels") => "froxels",
         (Effect::Fog, _) => "older laws",
-        (Effect::Sky | Effect::Rain, known) => known,
+        (Effect::Sky | Effect::Rain | Effect::Snow, known) => known,
         (Effect::Stars, _) => "night",
     }
 }
@@ -295,6 +295,57 @@ fn measure_rain(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
     if !journal.has(TRUTH_AGAIN) {
         // How far all drops are from all drops elsewhere: less cannot be asked.
         let again = hosts.iter_mut().map(|h| Ok(h.truth(2)?.0)).collect::<Result<Vec<_>>>()?;
+        let (error, each) = over_blocks(&again, &truths, &day);
+        let measured = Measured { cost: Ratio::default(), error, more: Vec::new(), each, units: vec![0.0] };
+        journal.push(measured.row(TRUTH_AGAIN, "truth", false))?;
+    }
+    Ok(())
+}
+
+/// Charts the ways to draw snow.
+///
+/// # Errors
+/// Files and the GPU.
+pub fn snow(lab: &Lab, options: &Options) -> Result<()> {
+    let list = scenes::snow();
+    let mut journal = open(lab, options, Effect::Snow, [&[], &["units"]], list.iter().map(|s| s.name))?;
+    if !(candidates(Effect::Snow).iter().all(|c| journal.has(c.name)) && journal.has(TRUTH_AGAIN)) {
+        measure_snow(lab, &list, &mut journal)?;
+    }
+    let titles = Titles {
+        title: "Snow: what a frame costs against how far it is from all flakes drawn",
+        x: "cost of fog and snow with large flakes in hardly any wind, 640x360, over the baseline's",
+        y: "95th percentile of the relative error of blocks: mean, and contrast of two sizes",
+        note: &format!(
+            "{} scenes by day, large flakes to storm; line: nothing is both cheaper and better; ring: the default",
+            list.len()
+        ),
+    };
+    end(journal, &titles, &options.out.join("snow")).map(|_| ())
+}
+
+fn measure_snow(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) -> Result<()> {
+    let day = vec![true; list.len()];
+    let mut hosts = list.iter().map(|s| rain::Host::new(&lab.device, s, rain::SIZE)).collect::<Result<Vec<_>>>()?;
+    let mut truths = Vec::new();
+    for (host, scene) in hosts.iter_mut().zip(list) {
+        eprintln!("  truth of {} ..", scene.name);
+        truths.push(snow::truth(host, 1)?);
+    }
+    let mut timed = rain::Host::new(&lab.device, &list[0], (640, 360))?;
+    measure(journal, Effect::Snow, |c| {
+        let Method::Library(LibraryMethod::Snow(settings)) = c.method else {
+            return Err(Error::range("candidate", "one of the snow", c.name));
+        };
+        let blocks = hosts.iter_mut().map(|h| snow::drawn_by(h, settings)).collect::<Result<Vec<_>>>()?;
+        let (error, each) = over_blocks(&blocks, &truths, &day);
+        timed.set_snow(settings)?;
+        let cost = interleaved(&lab.baseline, lab.rounds, |_| timed.timed())?;
+        Ok(Measured { cost, error, more: Vec::new(), each, units: vec![frame_units(c)] })
+    })?;
+    if !journal.has(TRUTH_AGAIN) {
+        // How far all flakes are from all flakes elsewhere: less cannot be asked.
+        let again = hosts.iter_mut().map(|h| Ok(snow::truth(h, 2)?.0)).collect::<Result<Vec<_>>>()?;
         let (error, each) = over_blocks(&again, &truths, &day);
         let measured = Measured { cost: Ratio::default(), error, more: Vec::new(), each, units: vec![0.0] };
         journal.push(measured.row(TRUTH_AGAIN, "truth", false))?;

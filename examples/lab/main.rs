@@ -27,6 +27,7 @@ mod regression;
 mod report;
 mod scenes;
 mod sky;
+mod snow;
 mod source_lod;
 mod stability;
 mod stars;

@@ -17,7 +17,7 @@ use crate::store::{Table, io};
 pub fn write(directory: &Path) -> Result<()> {
     let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
     let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
-    let (rain, stars) = (read("rain")?, read("stars")?);
+    let (rain, snow, stars) = (read("rain")?, read("snow")?, read("stars")?);
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
@@ -36,6 +36,9 @@ pub fn write(directory: &Path) -> Result<()> {
     if let Some(table) = &rain {
         rain_section(&mut out, table);
     }
+    if let Some(table) = &snow {
+        snow_section(&mut out, table);
+    }
     if let Some(table) = &stars {
         star_section(&mut out, table);
     }
@@ -43,7 +46,7 @@ pub fn write(directory: &Path) -> Result<()> {
         growth_section(&mut out, table);
     }
     stability::section(&mut out, directory)?;
-    how_section(&mut out, [&sky, &fog, &rain, &stars, &quadrature, &growth]);
+    how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &quadrature, &growth]);
     let path = directory.join("README.md");
     std::fs::write(&path, out).map_err(|e| io(&path, &e))
 }
@@ -263,6 +266,33 @@ const STARS_SAYS: &str = "\n`make lab ARGS=\"chart stars\"` draws these. `visibl
     and the glow at every pixel in f64, in the place of the even night of the same picture. A star is a few pixels, so the means \
     of blocks of 20 x 20 pixels are compared. *Light* is the worst scene's error of all light that stands on the even night.\n\n";
 
+const SNOW_SAYS: &str = "\nThe truth is every flake of the air within 14.8 m by itself, in f64, against which each way to draw is \
+    compared as rain is. Flakes of which there is no room are stood for by others, as many of each class as makes all hide the same; a \
+    shell of the lattice is left to the veil where its contrast would be off by more than the square root of 3.\n\n";
+
+fn snow_section(out: &mut String, t: &Table) {
+    let n = |r: &[String], c: &str| number(t, r, c);
+    out.push_str("## Which snow\n\n![cost of snow against error](snow.svg)\n\n");
+    let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
+    out.push_str("Error of blocks by scene, 95th percentile, per cent:\n\n| snow | cost | all |");
+    scenes.iter().for_each(|s| {
+        let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
+    });
+    out.push_str("\n|---|---|---|");
+    out.push_str(&"---|".repeat(scenes.len()));
+    out.push('\n');
+    for r in &t.rows {
+        let mark = if r[2] == "true" { " (default)" } else { "" };
+        let cost = format!("{} ({} to {})", short(n(r, "cost")), short(n(r, "cost_low")), short(n(r, "cost_high")));
+        let _ = write!(out, "| `{}`{mark} | {cost} | {} |", r[0], short(100.0 * n(r, "p95")));
+        scenes.iter().for_each(|s| {
+            let _ = write!(out, " {} |", short(100.0 * n(r, s)));
+        });
+        out.push('\n');
+    }
+    out.push_str(SNOW_SAYS);
+}
+
 fn star_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
     out.push_str("## Which stars\n\n![cost of stars against error](stars.svg)\n\n");
@@ -299,7 +329,7 @@ fn growth_section(out: &mut String, t: &Table) {
     out.push('\n');
 }
 
-fn how_section(out: &mut String, tables: [&Option<Table>; 6]) {
+fn how_section(out: &mut String, tables: [&Option<Table>; 7]) {
     out.push_str(
         "## How it was measured\n\n\
          - **Error**: |Y_A - Y_B| / (Y_B + 0.01 Y_white) in luminance after exposure, B the reference in f64, over all pixels of all \

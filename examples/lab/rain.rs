@@ -17,7 +17,8 @@ use welkin::rain::{
 };
 use welkin::scene::{Camera, HostLight};
 use welkin::sky::SkySettings;
-use welkin::weather::{Precipitation, PrecipitationKind, Weather};
+use welkin::snow::SnowSettings;
+use welkin::weather::{Precipitation, PrecipitationKind, Weather, hydrometeors::snow_extinction_per_m};
 use welkin::{Error, Result};
 
 use crate::brute::Film;
@@ -34,7 +35,7 @@ const PATCH: u32 = 4;
 /// Moments over which blocks are compared, s apart.
 pub const MOMENTS: usize = 6;
 const FOV: f64 = 0.9;
-const EYE: DVec3 = DVec3::new(0.0, 0.0, 12.0);
+pub const EYE: DVec3 = DVec3::new(0.0, 0.0, 12.0);
 /// Where the wall stands that hides the horizon, m ahead.
 const WALL_M: f64 = 60.0;
 /// Up to where the truth has drops.
@@ -63,7 +64,7 @@ fn camera(size: (u32, u32)) -> Camera {
 }
 
 /// Pixels from a point to its picture, at one metre.
-fn focal(size: (u32, u32)) -> f64 {
+pub fn focal(size: (u32, u32)) -> f64 {
     0.5 * f64::from(size.1) / (0.5 * FOV).tan()
 }
 
@@ -75,12 +76,16 @@ impl Host {
         let sky = SkySettings { orders: 4, suns: 32, altitudes: 14, ..SkySettings::default() };
         let mut context = Context::new(device.clone(), shared, ContextDesc { sky, seed: 5, ..Default::default() })?;
         context.set_sun(Some(GivenDirection { azimuth_deg: scene.sun_azimuth_deg, elevation_deg: scene.sun_deg }))?;
-        // Clear air but for the rain.
-        let extinction =
-            DropSizes::of_rain(scene.rate_mm_h, 1.0).extinction_per_m() + koschmieder_extinction_per_m(20_000.0);
+        // Clear air but for what falls.
+        let (kind, falling) = match scene.snow_c {
+            Some(_) => (PrecipitationKind::Snow, snow_extinction_per_m(scene.rate_mm_h)),
+            None => (PrecipitationKind::Rain, DropSizes::of_rain(scene.rate_mm_h, 1.0).extinction_per_m()),
+        };
+        let extinction = falling + koschmieder_extinction_per_m(20_000.0);
         let mut weather = Weather {
-            precipitation: Precipitation::of(PrecipitationKind::Rain, scene.rate_mm_h),
+            precipitation: Precipitation::of(kind, scene.rate_mm_h),
             visibility_m: -CONTRAST_THRESHOLD.ln() / extinction,
+            temperature_c: scene.snow_c.unwrap_or(Weather::default().temperature_c),
             ..Weather::default()
         };
         weather.wind.speed_m_s = scene.wind_m_s;
@@ -141,13 +146,39 @@ impl Host {
         self.device.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
     }
 
-    fn scene(&self) -> Result<Scene> {
+    /// What holds at the camera.
+    pub fn scene(&self) -> Result<Scene> {
         self.context.scene_at(EYE, self.context.time_s())
     }
 
     /// Draws from now on with these.
     pub fn set(&mut self, settings: RainSettings) -> Result<()> {
         self.view.set_rain(settings)
+    }
+
+    /// Draws snow from now on with these.
+    pub fn set_snow(&mut self, settings: SnowSettings) -> Result<()> {
+        self.view.set_snow(settings)
+    }
+
+    /// Sets the boxes that keep off what falls.
+    pub fn set_shelters(&mut self, boxes: &[Shelter]) -> Result<()> {
+        self.context.set_shelters(boxes)
+    }
+
+    /// Of the air at the camera.
+    pub fn wind_m_s(&self) -> DVec3 {
+        DVec3::X * self.scene.wind_m_s
+    }
+
+    /// Of the camera.
+    pub fn camera_m_s(&self) -> DVec3 {
+        DVec3::Y * self.scene.driving_m_s
+    }
+
+    /// Of its pictures.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
     }
 
     /// Goes to a moment.
@@ -160,7 +191,8 @@ impl Host {
         self.draw(Stages::PREPARE.with(Stages::MEDIUM).with(Stages::PARTICLES))
     }
 
-    fn frame(&mut self) -> Result<f64> {
+    /// Draws a whole frame, ms.
+    pub fn frame(&mut self) -> Result<f64> {
         self.draw(Stages::ALL.without(Stages::TONE))
     }
 
@@ -177,7 +209,7 @@ impl Host {
     }
 
     /// The luminances of what was drawn last.
-    fn luminances(&self) -> Result<Vec<f64>> {
+    pub fn luminances(&self) -> Result<Vec<f64>> {
         let texels = readback::rgba(&self.device, &self.color)?;
         Ok(texels.iter().map(|t| luminance(&[0, 1, 2].map(|i| f64::from(t[i])))).collect())
     }
@@ -196,6 +228,11 @@ impl Host {
 
     fn blocks(&mut self, settings: RainSettings) -> Result<Blocks> {
         self.set(settings)?;
+        self.pictures()
+    }
+
+    /// Blocks of pictures at some moments.
+    pub fn pictures(&mut self) -> Result<Blocks> {
         let mut blocks = Blocks::new(self.size);
         self.moments(|host, _| {
             host.frame()?;
@@ -206,7 +243,7 @@ impl Host {
     }
 
     /// Draws at some moments, the same for every way to draw: curtains of rain go by.
-    fn moments(&mut self, mut draw: impl FnMut(&mut Self, u64) -> Result<()>) -> Result<()> {
+    pub fn moments(&mut self, mut draw: impl FnMut(&mut Self, u64) -> Result<()>) -> Result<()> {
         let start = self.context.save()?;
         for i in 0..MOMENTS {
             self.at(self.context.time_s() + 7.3)?;
@@ -392,7 +429,7 @@ impl Drops {
 }
 
 /// From sums of light and cover to what is seen of them, one before the other.
-fn layer(sums: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub fn layer(sums: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let seen = |[light, cover]: &[f64; 2]| {
         let hidden = 1.0 - (-cover).exp();
         [if *cover > 0.0 { light / cover * hidden } else { 0.0 }, hidden]

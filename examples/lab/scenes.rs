@@ -130,6 +130,8 @@ pub struct RainScene {
     pub sun_azimuth_deg: f64,
     /// Two head lights beside the camera.
     pub lamps: bool,
+    /// Snow falls in air of this temperature, C, in place of rain.
+    pub snow_c: Option<f64>,
 }
 
 /// From a drizzle's rate to a cloudburst's, from noon to a night with head lights.
@@ -142,6 +144,7 @@ pub fn rain() -> Vec<RainScene> {
         sun_deg: 40.0,
         sun_azimuth_deg: 140.0,
         lamps: false,
+        snow_c: None,
     };
     vec![
         scene("light", 1.0, 2.0, 0.0),
@@ -152,6 +155,26 @@ pub fn rain() -> Vec<RainScene> {
         scene("storm", 25.0, 20.0, 0.0),
         RainScene { sun_deg: 12.0, sun_azimuth_deg: 10.0, ..scene("towards-the-sun", 6.0, 3.0, 0.0) },
         RainScene { sun_deg: -20.0, lamps: true, ..scene("head-lights", 10.0, 3.0, 0.0) },
+    ]
+}
+
+/// Snow before the same wall: large flakes in hardly any wind, dry snow, a storm, and a camera that drives.
+pub fn snow() -> Vec<RainScene> {
+    let scene = |name, rate_mm_h, snow_c, wind_m_s, driving_m_s| RainScene {
+        name,
+        rate_mm_h,
+        wind_m_s,
+        driving_m_s,
+        sun_deg: 25.0,
+        sun_azimuth_deg: 140.0,
+        lamps: false,
+        snow_c: Some(snow_c),
+    };
+    vec![
+        scene("quiet", 1.5, 0.3, 0.6, 0.0),
+        scene("dry", 0.5, -12.0, 3.0, 0.0),
+        scene("storm", 4.0, -6.0, 16.0, 0.0),
+        scene("driving", 1.0, -3.0, 3.0, 20.0),
     ]
 }
 
@@ -180,6 +203,7 @@ pub fn find(effect: Effect, name: &str) -> Result<usize> {
         Effect::Fog => fog().iter().map(|s| s.name).collect(),
         Effect::Rain => rain().iter().map(|s| s.name).collect(),
         Effect::Stars => STARS.iter().map(|s| s.name).collect(),
+        Effect::Snow => snow().iter().map(|s| s.name).collect(),
     };
     let fault = || Error::range("--scene", &format!("one of {}", names.join(", ")), name);
     names.iter().position(|n| *n == name).ok_or_else(fault)

@@ -4,6 +4,7 @@
 //! probe sky|aerial|irradiance --planet FILE [--model table3d|isotropic|directional|brute-force]
 //! probe fog --visibility METRES
 //! probe rain-speed
+//! probe snow-speed
 //! probe rain
 //! probe ice
 //! probe slab
@@ -23,6 +24,7 @@ mod lightning;
 mod rain;
 mod scene;
 mod sky;
+mod snow;
 
 use std::io::{Read as _, Write as _};
 use std::process::ExitCode;
@@ -37,6 +39,7 @@ use welkin::{Error, Result, Status};
 const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
                      probe fog --visibility METRES < distances.csv\n       \
                      probe rain-speed < diameters.csv\n       \
+                     probe snow-speed < flakes.csv\n       \
                      probe rain < rates.csv\n       \
                      probe ice < rates.csv\n       \
                      probe slab < slabs.csv\n       \
@@ -169,6 +172,7 @@ fn run() -> Result<String> {
         "irradiance" => sky(Question::Irradiance, arguments),
         "fog" => fog(arguments),
         "rain-speed" => Options::parse(&[], arguments).and_then(|_| rain::speeds(&read_input()?)),
+        "snow-speed" => Options::parse(&[], arguments).and_then(|_| snow::speeds(&read_input()?)),
         "rain" => Options::parse(&[], arguments).and_then(|_| rain::rates(&read_input()?)),
         "ice" => Options::parse(&[], arguments).and_then(|_| rain::ice(&read_input()?)),
         "slab" => Options::parse(&[], arguments).and_then(|_| clouds::slabs(&*device()?, &read_input()?)),

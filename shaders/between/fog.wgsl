@@ -11,8 +11,8 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    // What drops near the eye hide is drawn as drops.
-    let hidden = drawn.w * frame.drops.x * min(range, frame.drops.y);
+    // What drops and flakes near the eye hide is drawn as such.
+    let hidden = drawn.w * depth_of_drawn(range);
     var f = fog_beside_drops(fog, ray.origin, ray.direction, range, plane, hidden);
     f.radiance *= drawn.y;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);

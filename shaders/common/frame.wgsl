@@ -80,6 +80,8 @@ struct FrameUniform {
     clouds_over: f32,
     // The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
     mean_cloud: vec4f,
+    // Of falling snow, as drops: what drawn flakes hide, 1/m, up to which distance, m.
+    flakes: vec2f,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.
@@ -92,3 +94,8 @@ fn color_of(spectrum: vec3f) -> vec3f {
 
 // As frame.drawn; the gauge (plan/gauge.wgsl) sets it to see what a part is worth.
 var<private> drawn: vec4f;
+
+// Optical depth that what is drawn before the picture hides of what falls up to a range.
+fn depth_of_drawn(range: f32) -> f32 {
+    return frame.drops.x * min(range, frame.drops.y) + frame.flakes.x * min(range, frame.flakes.y);
+}

@@ -69,7 +69,7 @@ fn gauged(p: Looked) -> vec4u {
     let off = abs(shown[WITH_DECK] - with_volume) / (with_volume + 0.01) * (1.0 - p.mask);
     let clouds = select(0.0, min(off, 6e4), has_clouds);
     let kind = select(1.0, -1.0, p.range >= RANGE_SKY) * select(1.0, 0.0, p.mask > 0.5);
-    let hidden = frame.drops.x * min(p.range, frame.drops.y);
+    let hidden = depth_of_drawn(p.range);
     return vec4u(
         halves(change.x, change.y),
         halves(change.z, change.w),

@@ -2,7 +2,8 @@
 // The f64 twin and the derivation are in src/rain/lattice.rs and src/rain/reference.rs.
 //!include "common/depth.wgsl"
 //!include "surroundings/lights_binding.wgsl"
-//!include "rain/hash.wgsl"
+//!include "common/hash.wgsl"
+//!include "common/streak.wgsl"
 //!include "surroundings/shelter.wgsl"
 //!include "rain/phase.wgsl"
 //!include "rain/local.wgsl"
@@ -58,12 +59,8 @@ struct RainUniform {
 const SHELLS: u32 = 4u;
 // Fall speeds are whole numbers of this, m/s: a drop's fall phase is a product of integers, exact at any time.
 const SPEED_UNIT: f32 = 0.015625;
-// A streak is not drawn narrower than this many pixels; it gets fainter instead.
-const LEAST_PIXELS: f32 = 1.2;
 // Drops nearer than this fade away: they would be blobs that no eye could focus on.
 const NEAREST: f32 = 0.25;
-// A streak is drawn up to this share of its distance to either side.
-const LONGEST: f32 = 0.8;
 
 @group(0) @binding(0) var<uniform> rain: RainUniform;
 
@@ -168,18 +165,6 @@ fn in_picture(a: vec3f, b: vec3f) -> bool {
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// Half of the way that is drawn of what moves by `half` to either side of a place at distance `d`, and what its cover is
-// multiplied by. A streak that nears the eye is cut there, to the part of the exposure in which it goes `LONGEST` of `d` to
-// either side, and hides as much in that part as in all of it. So places d (1 - c) to d (1 + c) along a ray are darkened, by
-// what is at d, where c is that part: atanh(c) / c times what is there, whatever way the camera looks. The factor is its inverse.
-fn part_drawn(half: vec3f, d: f32) -> vec4f {
-    let whole = length(half) / d;
-    let c = min(whole, LONGEST);
-    let c2 = c * c;
-    // To .2 % of c / atanh(c).
-    return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
-}
-
 // The same of a drop of a `velocity`.
 fn drop_part(drop: Drop, velocity: vec3f) -> vec4f {
     return part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), max(length(drop.position), 1e-3));
@@ -207,24 +192,6 @@ struct Streak {
 fn gained(cover: f32) -> f32 {
     let most = min(cover, 1.0);
     return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);
-}
-
-// The part of the exposure for which a disc of radius 1 that goes from -reach to reach along y lies before a place, over the most that
-// any place has: the photometric model of Garg and Nayar (2007), whose tau / T is 1 / reach on the way of a disc's middle.
-fn passing(at: vec2f, reach: f32) -> f32 {
-    let chord = sqrt(max(1.0 - at.x * at.x, 0.0));
-    let passed = min(reach, at.y + chord) - max(-reach, at.y - chord);
-    return max(passed, 0.0) / (2.0 * min(reach, 1.0));
-}
-
-// The most of [`passing`] that any place has.
-fn longest_passing(reach: f32) -> f32 {
-    return min(1.0 / reach, 1.0);
-}
-
-// How far a disc of a radius goes in its own radii: what hardly moves has a way all the same.
-fn reach_of(stretch: f32, radius: f32) -> f32 {
-    return max(stretch / radius, 1e-3);
 }
 
 // The streak of a drop of a `velocity`, if it `shows`.

@@ -55,6 +55,8 @@ pub mod plan;
 
 pub mod rain;
 
+pub mod snow;
+
 pub mod area;
 
 pub mod wind_grid;

@@ -54,6 +54,9 @@ pub const WK_PART_RAIN: wk_part = 3;
 pub const WK_PART_STARS: wk_part = 4;
 /// Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK).
 pub const WK_PART_CLOUDS: wk_part = 5;
+/// Flakes of falling snow, where the view has no snow model of the host's choice. Rungs: flakes, none (all snow is a veil, and without
+/// WK_PART_FOG too nothing of it is drawn).
+pub const WK_PART_SNOW: wk_part = 6;
 
 /// Which optional fields of a wk_part_wish are set.
 pub type wk_part_wish_has_flags = u32;

@@ -159,6 +159,8 @@ pub const WK_STRUCT_TYPE_LIGHTNING: wk_struct_type = 65;
 pub const WK_STRUCT_TYPE_FLASH_TRIGGER: wk_struct_type = 66;
 /// wk_flash_light
 pub const WK_STRUCT_TYPE_FLASH_LIGHT: wk_struct_type = 67;
+/// wk_snow
+pub const WK_STRUCT_TYPE_SNOW: wk_struct_type = 70;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 

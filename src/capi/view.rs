@@ -141,8 +141,8 @@ pub struct wk_report {
     pub checked_error: f64,
     /// Drops and stones around the camera; those in the picture were drawn.
     pub drops: u32,
-    /// 0.
-    pub reserved1: u32,
+    /// Flakes around the camera; those in the picture were drawn. 0 if none were.
+    pub flakes: u32,
     /// Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
     pub drop_weight: f64,
     /// Splashes, 1/(m^2 s) on level ground, that were left out for lack of room: those of the smallest drops.
@@ -151,6 +151,8 @@ pub struct wk_report {
     pub stones_left_out_per_m2_s: f64,
     /// The contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
     pub contrast_gain: f64,
+    /// Distance up to which flakes were drawn, m; farther snow is extinction alone. 0 if none were.
+    pub flakes_to_m: f64,
 }
 
 impl wk_report {
@@ -173,11 +175,12 @@ impl wk_report {
         checked_error_bound: 0.0,
         checked_error: 0.0,
         drops: 0,
-        reserved1: 0,
+        flakes: 0,
         drop_weight: 0.0,
         splashes_left_out_per_m2_s: 0.0,
         stones_left_out_per_m2_s: 0.0,
         contrast_gain: 0.0,
+        flakes_to_m: 0.0,
     };
 }
 
@@ -374,6 +377,8 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
             splashes_left_out_per_m2_s: report.rain.splashes_left_out_per_m2_s,
             stones_left_out_per_m2_s: report.rain.stones_left_out_per_m2_s,
             contrast_gain: report.rain.contrast_gain,
+            flakes: report.snow.flakes,
+            flakes_to_m: report.snow.flakes_to_m,
             has: has.iter().filter(|f| f.0).fold(0, |all, f| all | f.1),
             ms: report.costs.map_or(0.0, |c| c.whole_ms),
             predicted_ms: expected.milliseconds.unwrap_or(0.0),

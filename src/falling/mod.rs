@@ -5,8 +5,11 @@
 
 pub mod area;
 pub(crate) mod curtain;
+pub mod drag;
 pub mod drops;
+pub mod flakes;
 pub mod ice;
+pub mod lattice;
 pub mod sizes;
 
 use crate::weather::Conditions;
@@ -14,7 +17,7 @@ use crate::weather::Conditions;
 /// Most rain areas at a time, and so most rains that fall at one place.
 pub const MAX_AREAS: usize = 16;
 
-/// pcg3d (Jarzynski and Olano 2020), as `shaders/rain/hash.wgsl` has it.
+/// pcg3d (Jarzynski and Olano 2020), as `shaders/common/hash.wgsl` has it.
 pub fn random3(key: [u32; 3]) -> [u32; 3] {
     let [mut x, mut y, mut z] = key.map(|k| k.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     x = x.wrapping_add(y.wrapping_mul(z));

@@ -5,6 +5,7 @@ use crate::{
     frame::View,
     glass::{GlassReport, Windscreen, reference::Cells},
     rain::RainSettings,
+    snow::SnowSettings,
 };
 
 impl View {
@@ -15,6 +16,16 @@ impl View {
     pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
         settings.validate_on(&self.device)?;
         self.effects.rain.settings = settings;
+        Ok(())
+    }
+
+    /// Sets how falling snow is drawn. Default: [`SnowSettings::default`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    pub fn set_snow(&mut self, settings: SnowSettings) -> Result<()> {
+        settings.validate()?;
+        self.effects.snow.settings = settings;
         Ok(())
     }
 

@@ -2,12 +2,14 @@
 //!
 //! A context works it out ([`crate::context::Context::scene_at`]); every effect reads it.
 
+mod around;
 mod regions;
 
 use std::cell::OnceCell;
 
 use glam::{DMat3, DVec3};
 
+pub use around::LightAround;
 pub(crate) use regions::{Region, WeatherOver};
 
 use crate::{

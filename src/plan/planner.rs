@@ -135,9 +135,9 @@ impl Presence {
 
 /// What the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
-    /// What the first steps of its part change at pixel number `pixel` of the gauge, at `ndc`, where the picture has this luminance
+    /// What the first steps of a part change at pixel number `pixel` of the gauge, at `ndc`, where the picture has this luminance
     /// and what drops hide this optical depth.
-    fn change(&self, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
+    fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
 }
 
 /// What a gauge was made of: a picture far from it needs another.
@@ -462,7 +462,7 @@ impl Choices {
                     (Worth::Unseen(channel), Some(unseen)) => {
                         let (x, y) = (i % GRID.0 as usize, i / GRID.0 as usize);
                         let ndc = DVec2::new(half(x, GRID.0), -half(y, GRID.1));
-                        let found = unseen.change(i, ndc, [sample.luminance, sample.hidden].map(f64::from));
+                        let found = unseen.change(spec, i, ndc, [sample.luminance, sample.hidden].map(f64::from));
                         let last = steps.end - 1;
                         changes[steps.clone()].copy_from_slice(&found[..steps.len()]);
                         changes[last] += sample.composed[channel];

@@ -12,9 +12,8 @@ use glam::{DVec2, DVec3};
 
 use super::{DropLight, StreakCamera, uniforms::Classes};
 use crate::{
-    light::luminance,
-    plan::{Unseen, parts::MOST_RUNGS},
-    scene::ViewRays,
+    plan::parts::MOST_RUNGS,
+    stage::{StreakContrast, Tone},
 };
 
 /// A streak is not drawn narrower than this many pixels: `LEAST_PIXELS` of `shaders/rain/drops.wgsl`.
@@ -54,27 +53,14 @@ fn gained(cover: f64, gain: f64) -> f64 {
     if gain == 1.0 { 1.0 } else { (1.0 - (1.0 - cover.min(1.0)).powf(gain)) / cover }
 }
 
-/// Angles between line of sight and drops at which the variance is tabulated.
-const ANGLES: usize = 9;
 /// Between which drops are counted, m: where near ones have faded, and up to where they are drawn.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
-
-/// What has been made of exposed light in a picture.
-pub(crate) type Tone = fn(f64) -> f64;
 
 /// What the streaks of a picture change in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Streaks {
-    rays: ViewRays,
-    y_sign: f64,
-    /// Where drops go as seen from the camera.
-    axis: DVec3,
-    /// Deviation of what they hide, by the sine of the angle from there.
-    deviations: [f64; ANGLES],
+    seen: StreakContrast,
     light: DropLight,
-    tone: Tone,
-    /// Lamps may make them as bright as they like.
-    lamps: bool,
 }
 
 impl Streaks {
@@ -86,35 +72,16 @@ impl Streaks {
         lamps: bool,
     ) -> Self {
         let fall = DVec3::Z * classes.flux[classes.flux.len() / 2].1;
-        let relative = wind_m_s - fall - shot.velocity_m_s;
-        let travel = relative.length() * shot.exposure_s;
         let pixel = shot.rays.pixel_angle(shot.height);
-        let deviations = std::array::from_fn(|i| {
-            let sine = i as f64 / (ANGLES - 1) as f64;
-            cover_variance(classes, pixel, (sine * travel, shot.gain), COUNTED_M).sqrt()
-        });
-        let axis = relative.normalize_or(DVec3::NEG_Z);
-        Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, light, tone, lamps }
+        let variance = |along_m: f64| cover_variance(classes, pixel, (along_m, shot.gain), COUNTED_M);
+        Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
-}
 
-impl Unseen for Streaks {
     /// What pixel number `i` of a picture changes with cones in place of drops, and without streaks, over its luminance and a hundredth
-    /// of white, beside what the veil in their place adds: so much that many pixels together spread as those of pictures do.
-    /// `picture` and `hidden` are its luminance without streaks and the optical depth of what they hide.
-    fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
-        let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
-        let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
-        let low = (at as usize).min(ANGLES - 2);
-        let part = at - low as f64;
-        let deviation = self.deviations[low] * (1.0 - part) + self.deviations[low + 1] * part;
-        let bright = (self.tone)(luminance(&self.light.radiance(d).to_array()));
-        let contrast = if self.lamps { 1e3 } else { (bright - picture) / (picture + 0.01) };
-        // Evenly spread in two dimensions (Roberts 2018), and normal (Box and Muller 1958).
-        let spread = |step: f64| ((i as f64 + 0.5) * step).fract();
-        let (u, v) = (spread(0.754_877_666_246_692_8), spread(0.569_840_290_998_053_3));
-        let normal = (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
-        let streaks = normal * deviation * contrast;
+    /// of white, beside what the veil in their place adds. `picture` and `hidden` are its luminance without streaks and the optical depth
+    /// of what they hide.
+    pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
+        let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));
         // On the mean they bring their own light.
         [(CONES_MISS * streaks) as f32, (streaks - hidden * contrast) as f32, 0.0]
     }

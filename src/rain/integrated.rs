@@ -17,10 +17,10 @@ use glam::DVec3;
 
 use super::{
     Classes,
-    drops::GRAVITY_M_S2,
     lattice::{SHELLS, fraction, side_m},
     uniforms::{MovingAir, StreakCamera},
 };
+pub use crate::falling::drag::step;
 use crate::surroundings::WindMap;
 
 /// Longest time that is stepped over, s; what is longer starts anew.
@@ -29,19 +29,6 @@ pub(crate) const MOST_S: f64 = 10.0;
 const STEP_S: f64 = 1.0 / 60.0;
 /// Most steps of a frame.
 const MOST_STEPS: f64 = 8.0;
-
-/// One step: velocity (m/s) and way (m) after `dt_s` of a drop of `velocity_m_s` in air of `air_m_s`, that falls at
-/// `terminal_m_s` at rest. Vectors (east, north, up). `shaders/rain/step.wgsl` has the same.
-pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
-    let terminal = terminal_m_s.max(1e-3);
-    let at_rest = GRAVITY_M_S2 / terminal;
-    let pull = ((velocity_m_s - air_m_s).length() / terminal).clamp(0.25, 8.0);
-    let rate = at_rest * if dt_s * at_rest > 0.5 { 1.0 } else { pull };
-    let settled = air_m_s - DVec3::Z * (GRAVITY_M_S2 / rate);
-    let gone = -libm::expm1(-rate * dt_s);
-    let difference = velocity_m_s - settled;
-    (velocity_m_s - difference * gone, settled * dt_s + difference * (gone / rate))
-}
 
 /// `StepUniform` of `shaders/rain/step.wgsl`, which explains the fields.
 #[repr(C)]

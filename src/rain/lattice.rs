@@ -13,7 +13,10 @@
 use glam::DVec3;
 
 use super::Classes;
-pub use crate::falling::random3;
+pub use crate::falling::{
+    lattice::{fraction, nearest, short_seed},
+    random3,
+};
 pub(super) use crate::weather::smoothstep;
 
 /// Shells of the lattice.
@@ -44,13 +47,6 @@ pub fn hidden_m(shells: usize) -> f64 {
 /// Side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
     SIDE_M * WIDER[shell]
-}
-
-/// `x` metres as a fraction of `side`, in 2^-32 of it; wraps.
-pub fn fraction(x: f64, side: f64) -> u32 {
-    let cells = x / side;
-    // 2^32 itself would saturate.
-    ((cells - cells.floor()) * 4_294_967_296.0) as u64 as u32
 }
 
 /// How far the lattice of one shell has come at a moment, in 2^-32 of its side.
@@ -86,11 +82,6 @@ impl Moment {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
     }
-}
-
-/// From `camera` to the copy of `place` nearest to it, m.
-pub fn nearest(place: [u32; 3], camera: [u32; 3], side: f64) -> DVec3 {
-    DVec3::from([0, 1, 2].map(|i| f64::from(place[i].wrapping_sub(camera[i]) as i32) / 4_294_967_296.0 * side))
 }
 
 /// One drop of the lattice.
@@ -147,11 +138,6 @@ pub fn drops(
             })
         })
     })
-}
-
-/// The seed's 32 bits that drops are made of.
-pub(super) fn short_seed(seed: u64) -> u32 {
-    (seed ^ (seed >> 32)) as u32
 }
 
 #[cfg(test)]

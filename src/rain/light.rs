@@ -4,20 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::moment::Scene;
-
-/// What lights the drops about a camera, cd/m^2 and lux or these times an exposure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DropLight {
-    /// Mean radiance of the sky as a drop passes it on.
-    pub above: DVec3,
-    /// That of the ground.
-    pub below: DVec3,
-    /// Irradiance of the sun or moon.
-    pub sun: DVec3,
-    /// Where it stands: east, north, up.
-    pub to_sun: DVec3,
-}
+pub use crate::moment::LightAround as DropLight;
 
 /// What a drop scatters of light that comes from where `c` = 1 is straight behind it, 4 pi on the whole: rays through the
 /// sphere and the backward share that makes rainbows (geometric optics of water: asymmetry .88 of what is not diffracted). As
@@ -39,28 +26,6 @@ pub fn sky_share(z: f64) -> f64 {
 }
 
 impl DropLight {
-    /// Of a scene: the mean of its sky and of its ground. In steady rain that is within 1 % of the light of the veil, so that no
-    /// ring shows where the veil takes over from drops.
-    pub fn of(scene: &Scene) -> Self {
-        let light = scene.brighter();
-        let g = &scene.ground;
-        let lux = if light == &scene.sun { g.sun_lux } else { g.moon_lux };
-        let level = light.direction.z.max(0.0);
-        let albedo = scene.planet.ground_albedo;
-        let below = [0, 1, 2].map(|i| albedo[i] * (g.sky_lux[i] + lux[i] * level) / PI);
-        Self {
-            above: DVec3::from(g.sky_lux) / PI,
-            below: DVec3::from(below),
-            sun: DVec3::from(lux),
-            to_sun: light.direction,
-        }
-    }
-
-    /// In the units of a picture that is exposed so.
-    pub fn exposed(self, exposure: f64) -> Self {
-        Self { above: self.above * exposure, below: self.below * exposure, sun: self.sun * exposure, ..self }
-    }
-
     /// Radiance of a drop seen along the unit vector `d`, without lamps.
     pub fn radiance(&self, d: DVec3) -> DVec3 {
         self.below.lerp(self.above, sky_share(d.z)) + self.sun * (phase(d.dot(self.to_sun)) / (4.0 * PI))

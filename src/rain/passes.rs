@@ -21,11 +21,11 @@ use crate::{
         is_kept,
         pass::{self, QuadsDesc},
     },
+    stage::FallingTexture,
     surroundings::{self, SurroundingsBlock},
 };
 
-/// Light of the drops times the picture's exposure, and the share of what lies behind that they hide.
-pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(super) use crate::stage::LAYER_FORMAT as FORMAT;
 
 /// Drops as one more veil before the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
@@ -46,7 +46,7 @@ pub(crate) struct RainLayer {
     /// Whether it counts how often its pixels are drawn, in place of the drops' light.
     counts: bool,
     none: Option<wgpu::TextureView>,
-    texture: Option<(wgpu::Texture, wgpu::TextureView)>,
+    texture: FallingTexture,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
@@ -96,7 +96,7 @@ pub(super) const STARTS: [usize; 5] = {
 
 impl RainLayer {
     /// A layer of light, or one that counts how often its pixels are drawn.
-    pub fn new(device: &Device, counts: bool) -> Self {
+    pub fn new(device: &Device, texture: FallingTexture, counts: bool) -> Self {
         Self {
             counts,
             blocks: crate::gpu::bind::block(&device.device, "rain", STARTS[4]),
@@ -109,7 +109,7 @@ impl RainLayer {
             stepped: None,
             stones: None,
             none: None,
-            texture: None,
+            texture,
             bound: None,
         }
     }
@@ -121,40 +121,14 @@ impl RainLayer {
 
     /// Bytes of GPU memory that the layer holds.
     pub fn bytes(&self) -> u64 {
-        let layer = self.texture.as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()));
         let cones = self.cones.as_ref().map_or(0, ConePass::bytes);
         let listed = self.listed.as_ref().map_or(0, |l| l.0.bytes() + l.1.bytes());
-        layer + cones + listed + self.stepped.as_ref().map_or(0, |s| s.bytes())
+        self.texture.bytes() + cones + listed + self.stepped.as_ref().map_or(0, |s| s.bytes())
     }
 
-    /// Lets the picture's layer go, which the driver may not have had memory for.
-    pub fn forget_picture(&mut self) {
-        self.texture = None;
-    }
-
-    /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
-    pub fn view(&mut self, device: &Device, size: wgpu::Extent3d) -> &wgpu::TextureView {
-        let fits = |(t, _): &(wgpu::Texture, wgpu::TextureView)| (t.width(), t.height()) == (size.width, size.height);
-        if !self.texture.as_ref().is_some_and(fits) {
-            self.texture = None;
-        }
-        &self
-            .texture
-            .get_or_insert_with(|| {
-                let texture = device.device.create_texture(&wgpu::TextureDescriptor {
-                    label: Some("drops"),
-                    size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format: FORMAT,
-                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-                    view_formats: &[],
-                });
-                let view = texture.create_view(&Default::default());
-                (texture, view)
-            })
-            .1
+    /// The layer before the picture, which other effects may share.
+    pub fn texture(&self) -> &FallingTexture {
+        &self.texture
     }
 
     /// Makes stones and cones ready, and what keeps rain off these.
@@ -197,7 +171,7 @@ impl RainLayer {
         self.write(device, drawn);
         let multi = depth.is_some_and(Layer::is_multisampled);
         self.bind(device, depth, multi);
-        self.view(device, color.size());
+        self.texture.view(device, color.size());
         let kind = (multi, depth.is_some(), drawn.maps);
         let sheltered = drawn.surroundings.shelters();
         let areas = drawn.local.is_some();
@@ -301,11 +275,11 @@ impl RainLayer {
         (over, around): (bool, &wgpu::BindGroup),
         draw: impl FnOnce(&mut wgpu::RenderPass<'_>, &Self),
     ) {
-        let (Some((.., group)), Some((_, target))) = (&self.bound, &self.texture) else { return };
+        let (Some((.., group)), Some(target)) = (&self.bound, self.texture.held()) else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("drops"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
+                view: &target,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {

@@ -1,16 +1,15 @@
 //! From the weather and a camera to what the drops' shader reads.
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
+
+pub(crate) use crate::stage::StreakCamera;
 
 use super::{
     lattice::{CLASSES, FADE, Moment, SHELLS, SIDE_M, SPEED_UNIT, short_seed, side_m},
     light::DropLight,
     sizes::DropSizes,
 };
-use crate::{
-    scene::{DepthUniform, ViewRays},
-    weather::Falling,
-};
+use crate::{scene::DepthUniform, weather::Falling};
 
 /// Diameters that are drawn as drops, mm: what is smaller shows as a veil only.
 const DRAWN_MM: (f64, f64) = (0.5, 6.0);
@@ -82,22 +81,6 @@ impl Classes {
         });
         Self { table, per_shell: upto as u32, weight: 1.0 / share, extinction_per_m: extinction, flux }
     }
-}
-
-/// A camera among drops.
-pub(crate) struct StreakCamera<'a> {
-    /// From camera-relative east-north-up to clip space.
-    pub clip: DMat4,
-    pub rays: &'a ViewRays,
-    pub height: u32,
-    pub y_sign: f32,
-    /// East, north, up of a point fixed to the world.
-    pub position_m: DVec3,
-    /// Of the camera.
-    pub velocity_m_s: DVec3,
-    pub exposure_s: f64,
-    /// Contrast gain of what falls.
-    pub gain: f64,
 }
 
 /// The air that the drops fall in.

@@ -17,11 +17,10 @@ use crate::{
     error::Result,
     falling::{FallingLayer, curtain},
     gpu::Device,
-    light::ToneCurve,
     moment::{Moment, Scene},
     stage::{
-        ColorSpace, Composition, Drawing, DrawnEffect, PutPart, RainReport, Recording, Report, Shot, Stages, Texture,
-        rounding,
+        Composition, Drawing, DrawnEffect, FallingTexture, PutPart, RainReport, Recording, Report, Shot, Stages,
+        Texture, rounding,
     },
     weather::{Conditions, Falling},
     wind::Remembered,
@@ -94,9 +93,9 @@ impl RainPresence {
 }
 
 impl RainView {
-    pub fn new(device: &Device, settings: RainSettings) -> Self {
+    pub fn new(device: &Device, settings: RainSettings, layer: FallingTexture) -> Self {
         Self {
-            layer: RainLayer::new(device, false),
+            layer: RainLayer::new(device, layer, false),
             settings,
             shares: [1.0; 2],
             counted: Vec::new(),
@@ -131,7 +130,8 @@ impl RainView {
     /// Says whether the layer counts how often its pixels are drawn, in place of their light; its passes are made anew where that changes.
     pub fn set_counting(&mut self, device: &Device, counts: bool) {
         if self.layer.counts() != counts {
-            (self.layer, self.areas) = (RainLayer::new(device, counts), None);
+            let layer = self.layer.texture().clone();
+            (self.layer, self.areas) = (RainLayer::new(device, layer, counts), None);
         }
     }
 
@@ -172,11 +172,6 @@ impl RainView {
     /// Sets the drawn share of all rain, and the share of near rain drawn as single drops.
     fn set_shares(&mut self, shares: [f32; 2]) {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
-    }
-
-    /// The layer for a picture like `color`.
-    fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
-        self.layer.view(device, color.size())
     }
 
     /// What drops or cones of the weather's own rain hide where all are drawn, as an extinction (their discs: half of theirs,
@@ -276,9 +271,9 @@ impl RainView {
         self.set_near(to.device, shot.now);
         let columns = Columns { field: &self.field, scene: &shot.now.scene, clip: shot.clip(), veiled: shot.veiled };
         let counts = self.layer.counts();
-        let target = self.layer.view(to.device, shot.color.texture.size());
+        let target = self.layer.texture().view(to.device, shot.color.texture.size());
         let pass = self.areas.get_or_insert_with(|| Box::new(AreaPass::new(to.device, counts)));
-        pass.draw(to, &columns, with, shot.frame.depth_layer(), target)?;
+        pass.draw(to, &columns, with, shot.frame.depth_layer(), &target)?;
         Ok(true)
     }
 
@@ -327,17 +322,7 @@ impl RainView {
     }
 
     fn camera<'a>(&self, shot: &Shot<'a>) -> StreakCamera<'a> {
-        let scene = &shot.now.scene;
-        StreakCamera {
-            clip: shot.clip(),
-            rays: shot.rays,
-            height: shot.color.texture.height(),
-            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
-            position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
-            velocity_m_s: scene.world_to_enu * shot.frame.camera_velocity_m_s,
-            exposure_s: self.settings.shutter_s,
-            gain: self.settings.contrast_gain,
-        }
+        StreakCamera::new(shot, self.settings.shutter_s, self.settings.contrast_gain)
     }
 
     /// What streaks are worth in a picture, if the plan decides about them.
@@ -348,12 +333,7 @@ impl RainView {
         let (device, now) = (shot.device, shot.now);
         let (classes, _) = self.falling_here(device, &now.scene);
         let wind = now.carrying().ok()?.velocity_m_s();
-        let tone: fn(f64) -> f64 = match (shot.frame.color_space, now.tone) {
-            (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
-            (_, ToneCurve::Exponential) => |x| ToneCurve::Exponential.apply(x),
-            (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
-        };
-        let light = (DropLight::of(&now.scene).exposed(shot.exposure), tone);
+        let light = (DropLight::of(&now.scene).exposed(shot.exposure), shot.tone());
         Some(Streaks::new((&classes, wind), &self.camera(shot), light, now.has_lamps()))
     }
 
@@ -441,7 +421,7 @@ impl DrawnEffect for RainView {
 
     fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
         if stages.has(Stages::PARTICLES) && self.kept().is_any() {
-            let _ = self.layer(device, color);
+            let _ = self.layer.texture().view(device, color.size());
         }
     }
 
@@ -458,7 +438,7 @@ impl DrawnEffect for RainView {
             (to.block.drops, to.block.drawn[3]) = self.hidden(shot.device, shot.now);
         }
         if self.kept().is_any() {
-            let layer = self.layer(shot.device, shot.color.texture).clone();
+            let layer = self.layer.texture().view(shot.device, shot.color.texture.size());
             to.set_texture(Texture::Before, Some(layer));
         } else {
             to.stages = to.stages.without(Stages::PARTICLES);
@@ -476,7 +456,7 @@ impl DrawnEffect for RainView {
         }
         let over = self.draw_areas(shot, with, to)?;
         self.drawn = (shot.frame.frame_id, self.draw_near(shot, with, over, to)?);
-        to.passes += 1 + u32::from(over);
+        to.passes += u32::from(self.kept().is_any()) + u32::from(over);
         Ok(())
     }
 
@@ -507,7 +487,7 @@ impl DrawnEffect for RainView {
     }
 
     fn forget_picture(&mut self) {
-        self.layer.forget_picture();
+        self.layer.texture().forget();
     }
 }
 

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use super::{Composition, Frame, FrameFlags, OpaqueDraw, Recording, Report, Stages};
+use super::{ColorSpace, Composition, Frame, FrameFlags, OpaqueDraw, Recording, Report, Stages, Tone};
 use crate::{
     error::Result,
     gpu::{Device, Layer},
+    light::ToneCurve,
     moment::Moment,
     plan::{
         StepWork,
@@ -51,6 +52,15 @@ impl Shot<'_> {
     /// Pixels of the picture.
     pub fn pixels(&self) -> u64 {
         u64::from(self.color.texture.width()) * u64::from(self.color.texture.height())
+    }
+
+    /// What is made of exposed light in its picture.
+    pub fn tone(&self) -> Tone {
+        match (self.frame.color_space, self.now.tone) {
+            (ColorSpace::SceneLinear, _) | (_, ToneCurve::Linear) => |x| x,
+            (_, ToneCurve::Exponential) => |x| ToneCurve::Exponential.apply(x),
+            (_, ToneCurve::Filmic) => |x| ToneCurve::Filmic.apply(x),
+        }
     }
 
     /// From camera-relative east-north-up to clip space.

@@ -10,6 +10,7 @@ mod diagnostic;
 mod effect;
 mod opaque;
 mod recording;
+mod streak;
 mod target;
 mod uniform;
 
@@ -19,7 +20,8 @@ pub(crate) use effect::{Drawing, DrawnEffect, Prepare, PutPart, Shot};
 pub use opaque::DepthAccess;
 pub(crate) use opaque::{OpaqueDraw, OpaqueTarget};
 pub(crate) use recording::Recording;
-pub use recording::{CostItem, Costs, RainReport, Report};
+pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
+pub(crate) use streak::{FallingTexture, LAYER_FORMAT, StreakCamera, StreakContrast, Tone};
 pub use target::{ColorSpace, Stages};
 pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,

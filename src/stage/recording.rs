@@ -121,6 +121,8 @@ pub struct Report {
     pub bytes: u64,
     /// What of the rain round the camera was drawn.
     pub rain: RainReport,
+    /// What of the snow round the camera was drawn.
+    pub snow: SnowReport,
     /// What each effect cost, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// Effects with something opaque that was not drawn, because the host's depth may only be read
@@ -145,6 +147,15 @@ pub struct RainReport {
     pub splashes_left_out_per_m2_s: f64,
     /// Likewise the smallest stones that did not hop.
     pub stones_left_out_per_m2_s: f64,
+}
+
+/// What of the snow round the camera was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SnowReport {
+    /// Flakes round the camera, of which those in the picture were drawn; 0 where none were.
+    pub flakes: u32,
+    /// Distance up to which flakes were drawn, m; what is farther is extinction alone.
+    pub flakes_to_m: f64,
 }
 
 fn ms_since(start: Instant) -> f64 {

@@ -65,6 +65,9 @@ pub(crate) struct FrameUniform {
     pub clouds_over: f32,
     /// The mean light of clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without any.
     pub mean_cloud: [f32; 4],
+    /// As `drops`, of flakes.
+    pub flakes: [f32; 2],
+    pub pad: [f32; 2],
 }
 
 /// Whether a format holds light and not the steps of a display.
@@ -127,6 +130,8 @@ pub(crate) fn uniform(
         clouds_drawn: 0.0,
         clouds_over: 0.0,
         mean_cloud: [0.0; 4],
+        flakes: [0.0; 2],
+        pad: [0.0; 2],
     }
 }
 

@@ -7,7 +7,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
     wind_field::*, wind_grid::*, windscreen::*,
 };
 
@@ -185,6 +185,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_view_get_costs(h.cast(), null_mut(), 0, 0, null_mut())
         }),
         case("wk_view_set_rain", "view", false, |h| unsafe { wk_view_set_rain(h.cast(), null()) }),
+        case("wk_view_set_snow", "view", false, |h| unsafe { wk_view_set_snow(h.cast(), null()) }),
         case("wk_view_set_budget", "view", false, |h| unsafe { wk_view_set_budget(h.cast(), null()) }),
         case("wk_view_report_time", "view", false, |h| unsafe { wk_view_report_time(h.cast(), 1.0) }),
         case("wk_view_save_plan", "view", false, |h| unsafe { wk_view_save_plan(h.cast(), null_mut(), 0, null_mut()) }),

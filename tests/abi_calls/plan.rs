@@ -43,7 +43,7 @@ fn drawn(world: &World) -> [u32; 4] {
         assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL & !WK_STAGE_TONE), WK_OK, "{}", message());
         assert_eq!(wk_view_get_plan(world.view, &mut plan), WK_OK);
     }
-    assert_eq!(plan.part_count, 5);
+    assert_eq!(plan.part_count, 6);
     [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN].map(|number| part(world, number).rung)
 }
 
@@ -104,19 +104,18 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         wished(&behind, "budget.wishes[1].importance must be in [0, 1], got");
         wished(&[behind[0], behind[2], behind[1]], "budget.wishes[2].importance must be in [0, 1], got");
     }
-    let parts =
-        "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, WK_PART_CLOUDS, got 6";
-    wished(&[wish(WK_PART_FOG, 0.5), wish(6, 0.5)], &format!("budget.wishes[1].part {parts}"));
+    let parts = "must be one of WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN, WK_PART_STARS, WK_PART_CLOUDS, WK_PART_SNOW, got 7";
+    wished(&[wish(WK_PART_FOG, 0.5), wish(7, 0.5)], &format!("budget.wishes[1].part {parts}"));
     wished(&[wish(WK_PART_FOG, 0.5); 2], "budget.wishes[1].part must be a part that is not in the list yet, got 1");
     wished(&[at_rung(WK_PART_RAIN, 3)], "budget.wishes[0].rung must be in [0, 2] for rain: drops, cones, none, got 3");
-    wished(&[at_rung(WK_PART_AIR, 0); 7], "budget.wish_count must be at most 6, got 7");
+    wished(&[at_rung(WK_PART_AIR, 0); 8], "budget.wish_count must be at most 7, got 8");
     wished(&[wk_part_wish { has: 4, ..wish(WK_PART_AIR, 0.5) }], "budget.wishes[0].has");
     for milliseconds in [0.0, -1.0, 2e5, f64::NAN, f64::INFINITY] {
         assert_eq!(unsafe { wk_view_report_time(world.view, milliseconds) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().starts_with("wk_view_report_time: milliseconds must be in (0, 1e5] ms"), "{}", message());
         assert_eq!(report(&world).has & WK_REPORT_HAS_REPORTED_MS, 0);
     }
-    for part in [5, u32::MAX] {
+    for part in [7, u32::MAX] {
         let mut plan = init::<wk_part_plan>("wk_part_plan");
         assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());

@@ -9,7 +9,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*, query::*, rain::*,
-    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
     weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
@@ -125,6 +125,7 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
+        case("wk_snow", "snow", true, move |p| unsafe { wk_view_set_snow(view, p.cast()) }),
         case("wk_lightning", "lightning", true, move |p| unsafe { wk_context_set_lightning(context, p.cast()) }),
         case("wk_flash_trigger", "flash", true, move |p| unsafe { wk_context_trigger_flash(context, p.cast()) }),
         case("wk_flash_light", "out_light", false, move |p| unsafe {

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
     ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    report::*, sky::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_field::*, wind_grid::*, windscreen::*,
+    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -717,6 +717,10 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_view_set_rain", |d, w| {
         let view = handle(d, &w.views);
         set_one(d, "wk_rain", |p| unsafe { wk_view_set_rain(view, p.cast()) })
+    }),
+    ("wk_view_set_snow", |d, w| {
+        let view = handle(d, &w.views);
+        set_one(d, "wk_snow", |p| unsafe { wk_view_set_snow(view, p.cast()) })
     }),
     ("wk_view_set_budget", |d, w| {
         let mut budget = Struct::random(d, "wk_budget", 6);

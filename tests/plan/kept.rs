@@ -74,7 +74,7 @@ fn a_pinned_plan_says_what_it_does_not_keep() {
     let mut bench = Bench::new();
     let fog = PlanScene { weather: "fog", ..PlanScene::yard() };
     bench.set(&fog);
-    let mut pinned = |rungs: [usize; 6], tolerance, milliseconds| {
+    let mut pinned = |rungs: [usize; 7], tolerance, milliseconds| {
         let budget = Budget { tolerance, milliseconds, ..Budget::pinned(&rungs) };
         bench.view.set_budget(budget).unwrap();
         for _ in 0..12 {
@@ -86,10 +86,10 @@ fn a_pinned_plan_says_what_it_does_not_keep() {
         assert_eq!(plan.rungs(), rungs);
         plan
     };
-    let plan = pinned([0, 1, 0, 0, 0, 0], Some(0.01), None);
+    let plan = pinned([0, 1, 0, 0, 0, 0, 0], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Tolerance && plan.error.p95 > 0.1, "{plan:?}");
-    let plan = pinned([0; 6], Some(0.01), None);
+    let plan = pinned([0; 7], Some(0.01), None);
     assert!(plan.gave_way == GaveWay::Nothing && plan.error.p95 == 0.0, "{plan:?}");
-    assert_eq!(pinned([0; 6], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
-    assert_eq!(pinned([0; 6], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
+    assert_eq!(pinned([0; 7], Some(0.01), Some(4.0)).gave_way, GaveWay::Time);
+    assert_eq!(pinned([0; 7], Some(0.01), Some(6.0)).gave_way, GaveWay::Nothing);
 }

@@ -1,0 +1,22 @@
+// Flakes before a host's picture; where that has several samples a pixel, the first stands for them.
+//!include "common/host.wgsl"
+//!include "snow/flakes.wgsl"
+
+@group(0) @binding(1) var host_depth: HostDepth;
+
+override HAS_DEPTH: bool = true;
+
+// Range of the host's picture at a pixel.
+fn range_at(position: vec4f) -> f32 {
+    if HAS_DEPTH {
+        let uv = position.xy / vec2f(textureDimensions(host_depth));
+        let depth = textureLoad(host_depth, vec2i(position.xy), 0).r;
+        return view_range(flakes.depth, depth, vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * flakes.y_sign));
+    }
+    return RANGE_SKY;
+}
+
+@fragment
+fn flake_fragment(in: FlakeVarying) -> @location(0) vec4f {
+    return flake_color(in, range_at(in.position));
+}

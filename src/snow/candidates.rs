@@ -1,0 +1,72 @@
+//! The ways to draw falling snow that are charted against each other, with what they cost.
+
+use super::{SnowModel, SnowSettings};
+use crate::plan::parts::{Part, Worth};
+use crate::plan::{Listed, StepWork, Units, Work};
+
+/// Flakes, at two rungs: each near the camera, or none, so that all snow is extinction in the fog's layer. Importance: as of rain.
+pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
+
+/// Work of the layer of what falls a pixel, and of a flake of the lattice, in units of a pixel with none of the parts: estimated from those
+/// of rain. `cargo bench -- parts` prints what a flake takes on a machine.
+const LAYER_OF_PIXEL: f64 = 0.2;
+const ONE_FLAKE: f64 = 0.6;
+
+/// Work of the step from flakes to a veil, in a picture of so many pixels and flakes.
+pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
+    let fixed = ONE_FLAKE * f64::from(flakes) + LAYER_OF_PIXEL * pixels as f64;
+    [StepWork { fixed, ..StepWork::default() }]
+}
+
+/// Work of a flake of the lattice: its place for four corners, whether the picture shows it, and the pixels of the few that it shows.
+const FLAKE: Units = Units { samples: 30.0, texels: 1.0, bytes: 8.0 };
+/// Work that every pixel pays once anything falls: the layer cleared, read and put before the picture.
+const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
+
+fn work(settings: &SnowSettings) -> Work {
+    match settings.model {
+        // As much as the fog does anyway, and no layer.
+        SnowModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
+        SnowModel::Automatic | SnowModel::Flakes => Work {
+            // They move: every frame.
+            view: Units::default().plus(FLAKE, f64::from(settings.most_flakes.unwrap_or(1_000_000))),
+            pixel: LAYER,
+            ..Work::default()
+        },
+    }
+}
+
+/// All candidates.
+pub fn candidates() -> Vec<Listed<SnowSettings>> {
+    let flakes = |n| SnowSettings { model: SnowModel::Flakes, most_flakes: Some(n), ..SnowSettings::default() };
+    let named = [
+        ("veil", SnowSettings { model: SnowModel::Veil, ..SnowSettings::default() }),
+        ("flakes-20k", flakes(20_000)),
+        ("flakes-250k", flakes(250_000)),
+        ("automatic", SnowSettings::default()),
+        ("flakes-1m", flakes(1_000_000)),
+        ("flakes-4m", flakes(4_000_000)),
+    ];
+    let candidate =
+        |(name, method): (&'static str, SnowSettings)| Listed { name, method, work: work(&method), offered: true };
+    named.into_iter().map(candidate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Price;
+
+    #[test]
+    fn flakes_cost_by_their_number() {
+        let all = candidates();
+        let cost = |name: &str| {
+            let c = all.iter().find(|c| c.name == name).unwrap();
+            c.work.frame(640 * 360, true).at(&Price::default())
+        };
+        assert!(cost("veil") < cost("flakes-20k") && cost("flakes-20k") < cost("flakes-250k"));
+        let per_flake = (cost("flakes-4m") - cost("flakes-1m")) / 3e6;
+        assert!((per_flake / ((cost("flakes-1m") - cost("flakes-250k")) / 750e3) - 1.0).abs() < 1e-9);
+        all.iter().for_each(|c| c.method.validate().unwrap());
+    }
+}

@@ -1,0 +1,71 @@
+//! The shape of a flake, as `shaders/snow/shape.wgsl` draws it.
+//!
+//! Each flake is a disc that noise eats away at: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, of r in radii and
+//! noise n of the flake's own (the procedural flake of the older system that the shape is from, with n from -1 to 1 in place of a
+//! noise that may leave a hole where the flake should be). Offset and strength are such that the mean over discs is the share of a flake
+//! that is ice, so near flakes hide what far ones, drawn as faint discs, do.
+
+use crate::falling::random3;
+
+/// Octaves of the noise.
+const OCTAVES: u32 = 4;
+/// Cells of the coarsest in a radius.
+const CELLS: f64 = 2.2;
+/// What is added to the noise.
+const OFFSET: f64 = 0.8563;
+/// What the noise counts for.
+const NOISE: f64 = 2.0;
+
+fn corner(cell: [i32; 2], seed: u32) -> f64 {
+    f64::from(random3([cell[0] as u32, cell[1] as u32, seed])[0] >> 8) * (2.0 / 16_777_215.0) - 1.0
+}
+
+fn noise(p: [f64; 2], seed: u32) -> f64 {
+    let cell = p.map(|v| v.floor() as i32);
+    let w = p.map(|v| v - v.floor()).map(|t| t * t * (3.0 - 2.0 * t));
+    let at = |x: i32, y: i32| corner([cell[0] + x, cell[1] + y], seed);
+    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    mix(mix(at(0, 0), at(1, 0), w[0]), mix(at(0, 1), at(1, 1), w[0]), w[1])
+}
+
+/// How much the flake of a seed hides at a place in radii, 0 to 1.
+pub fn flake_shape(at: [f64; 2], seed: u32) -> f64 {
+    let square = at[0] * at[0] + at[1] * at[1];
+    if square >= 1.0 {
+        return 0.0;
+    }
+    let (mut sum, mut strength, mut scale) = (0.0, 0.5, CELLS);
+    for i in 0..OCTAVES {
+        sum += strength * noise(at.map(|v| v * scale), seed.wrapping_add(i));
+        strength *= 0.5;
+        scale *= 2.0;
+    }
+    (1.0 - libm::exp(-5.0 * (OFFSET + NOISE * sum - square))).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::falling::flakes::AREA_RATIO;
+
+    fn mean(seed: u32) -> f64 {
+        let n = 40;
+        let at = |i: i32| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
+        let sum: f64 =
+            (0..n).flat_map(|y| (0..n).map(move |x| (x, y))).map(|(x, y)| flake_shape([at(x), at(y)], seed)).sum();
+        sum * 4.0 / f64::from(n * n) / std::f64::consts::PI
+    }
+
+    #[test]
+    fn shapes_are_as_much_ice_as_flakes_are_and_no_two_are_alike() {
+        let all: Vec<f64> = (0..600).map(|i| mean(i * 7919)).collect();
+        let mid = all.iter().sum::<f64>() / all.len() as f64;
+        assert!((mid / AREA_RATIO - 1.0).abs() < 0.02, "{mid}");
+        assert!(all.iter().all(|m| *m > 0.05), "a flake is never nothing: {all:?}");
+        let apart = |a: u32, b: u32| {
+            let points = (0..20).map(|i| [f64::from(i) / 20.0 - 0.5, 0.3]);
+            points.map(|p| (flake_shape(p, a) - flake_shape(p, b)).abs()).sum::<f64>()
+        };
+        assert!(apart(1, 2) > 0.5 && apart(5, 5) == 0.0);
+    }
+}

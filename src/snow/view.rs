@@ -1,0 +1,216 @@
+//! The falling snow of a view: what it draws of it, from moment and camera.
+
+use super::{
+    SnowSettings, candidates,
+    contrast::FlakeContrast,
+    lattice::Flakes,
+    passes::{FlakeDraw, SnowPass},
+    settings::SnowModel,
+    uniforms::{FlakesUniform, MovingAir},
+};
+use crate::{
+    error::Result,
+    falling::{FallingLayer, drops, flakes::FlakeSizes},
+    gpu::Device,
+    moment::{LightAround, Moment},
+    stage::{
+        Composition, Drawing, DrawnEffect, FallingTexture, PutPart, Recording, Report, Shot, SnowReport, Stages,
+        StreakCamera, Texture,
+    },
+    weather::Falling,
+};
+
+/// Steps in which snow sets in below its cloud, so that a climbing camera does not count flakes anew in each frame.
+const ONSET_STEPS: f64 = 32.0;
+
+/// What flakes were counted for.
+#[derive(Clone, Copy, PartialEq)]
+struct Counted {
+    falling: Falling,
+    temperature_c: f64,
+    factor: f64,
+    begun: f64,
+    most: u32,
+}
+
+/// What a view holds for its flakes.
+pub(crate) struct SnowView {
+    pub settings: SnowSettings,
+    /// The layer before the picture, which what else falls shares.
+    layer: FallingTexture,
+    pass: Option<Box<SnowPass>>,
+    /// Flakes as they were counted last.
+    counted: Option<Box<(Counted, Flakes)>>,
+    /// Whether there are any at the camera.
+    is_there: bool,
+    /// Whether pixels are counted in place of the flakes' light.
+    counts: bool,
+    /// Share of the flakes that the plan draws, and whether something else lies in the layer in this frame.
+    share: f32,
+    over: bool,
+    drawn: (u64, SnowReport),
+}
+
+impl SnowView {
+    pub fn new(settings: SnowSettings, layer: FallingTexture) -> Self {
+        Self {
+            settings,
+            layer,
+            pass: None,
+            counted: None,
+            is_there: false,
+            counts: false,
+            share: 1.0,
+            over: false,
+            drawn: (u64::MAX, SnowReport::default()),
+        }
+    }
+
+    /// Says whether the layer counts how often its pixels are drawn, in place of their light.
+    pub fn set_counting(&mut self, counts: bool) {
+        self.counts = counts;
+    }
+
+    /// Finds the flakes around the camera.
+    pub fn gather(&mut self, now: &Moment<'_>, device: &Device) {
+        let scene = &now.scene;
+        let c = &scene.conditions;
+        let falling = c.precipitation;
+        let layer = FallingLayer::new(c);
+        let begun = ((layer.top_m - scene.place.altitude_m) / layer.soft_m).clamp(0.0, 1.0);
+        self.is_there = falling.snow_mm_h > 0.0 && begun > 0.0 && self.settings.model != SnowModel::Veil;
+        if !self.is_there {
+            return;
+        }
+        let counted = Counted {
+            falling,
+            temperature_c: c.air.temperature_c,
+            factor: drops::factor_in(&c.air, c.air.station_altitude_m),
+            begun: (begun * ONSET_STEPS).ceil() / ONSET_STEPS,
+            most: self.settings.most_on(device),
+        };
+        if self.counted.as_ref().is_none_or(|kept| kept.0 != counted) {
+            let sizes = FlakeSizes::new(&falling, counted.temperature_c, counted.factor);
+            let flakes = Flakes::new(&sizes, counted.begun, counted.most);
+            match &mut self.counted {
+                Some(kept) => **kept = (counted, flakes),
+                None => self.counted = Some(Box::new((counted, flakes))),
+            }
+        }
+        self.is_there = self.flakes().is_some_and(|f| f.drawn > 0);
+    }
+
+    fn flakes(&self) -> Option<&Flakes> {
+        self.counted.as_ref().map(|kept| &kept.1)
+    }
+
+    /// Whether the plan decides about them.
+    pub fn is_planned(&self) -> bool {
+        self.settings.model == SnowModel::Automatic && self.is_there
+    }
+
+    /// Whether the plan keeps any in this frame.
+    fn is_kept(&self) -> bool {
+        self.is_there && self.share > 0.0
+    }
+
+    /// What flakes are worth in a picture, if the plan decides about them.
+    pub fn contrast(&self, shot: &Shot<'_>) -> Option<FlakeContrast> {
+        let flakes = self.flakes().filter(|_| self.is_planned())?;
+        let wind = shot.now.carrying().ok()?.velocity_m_s();
+        let light = (LightAround::of(&shot.now.scene).exposed(shot.exposure), shot.tone());
+        let camera = StreakCamera::new(shot, self.settings.shutter_s, 1.0);
+        Some(FlakeContrast::new((flakes, wind), &camera, light, shot.now.has_lamps()))
+    }
+}
+
+impl DrawnEffect for SnowView {
+    fn stages(&self) -> Stages {
+        if self.is_there { Stages::PARTICLES } else { Stages(0) }
+    }
+
+    fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
+        if stages.has(Stages::PARTICLES) && self.is_kept() {
+            let _ = self.layer.view(device, color.size());
+        }
+    }
+
+    fn parts(&mut self, shot: &Shot<'_>, stages: Stages, put: &mut PutPart<'_>) {
+        let is_there = stages.has(Stages::PARTICLES) && self.is_planned();
+        let flakes = if is_there { self.flakes().map_or(0, |f| f.drawn) } else { 0 };
+        put(&candidates::SNOW, is_there, &candidates::snow_work(shot.pixels(), flakes));
+    }
+
+    /// Leaves to the flakes what they hide, beside what else falls and is drawn.
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        self.share = if self.is_planned() { shot.share(&candidates::SNOW, 0) } else { 1.0 };
+        self.over = to.texture(Texture::Before).is_some();
+        let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(()) };
+        let own = [flakes.hidden_per_m, flakes.hidden_m()].map(|v| v as f32);
+        let block = &mut to.block;
+        // One share for all that falls: of each by the optical depth that it hides.
+        let (others, mine) = (block.drops[0] * block.drops[1], own[0] * own[1]);
+        if mine > 0.0 {
+            block.drawn[3] = (block.drawn[3] * others + self.share * mine) / (others + mine);
+        }
+        block.flakes = own;
+        if self.is_kept() && to.asked.has(Stages::PARTICLES) {
+            to.set_texture(Texture::Before, Some(self.layer.view(shot.device, shot.color.texture.size())));
+            to.stages = to.stages.with(Stages::PARTICLES);
+        }
+        if to.stages.has(Stages::SURFACE.with(Stages::PARTICLES)) {
+            to.near = (to.near.0.min(flakes.slowest_m_s()), to.near.1.max(flakes.reach_m()));
+        }
+        Ok(())
+    }
+
+    fn draw(&mut self, shot: &Shot<'_>, with: &Drawing<'_>, to: &mut Recording<'_>) -> Result<()> {
+        if !with.composition.stages.has(Stages::PARTICLES) || !self.is_kept() {
+            return Ok(());
+        }
+        let Some(flakes) = self.flakes().copied() else { return Ok(()) };
+        let (now, c) = (shot.now, &shot.now.scene.conditions);
+        let wind = now.carrying()?;
+        let air = MovingAir {
+            displacement_m: wind.displacement_m(),
+            velocity_m_s: wind.velocity_m_s(),
+            time_s: now.time_s,
+            extinction_per_m: c.fog.extinction_per_m + c.aerosol.extinction_per_m,
+        };
+        let light = LightAround::of(&now.scene).exposed(shot.exposure);
+        let camera = StreakCamera::new(shot, self.settings.shutter_s, 1.0);
+        let block = FlakesUniform { share: self.share, ..FlakesUniform::new(now.seed, &flakes, &light, &camera, &air) };
+        let target = self.layer.view(to.device, shot.color.texture.size());
+        if self.pass.as_ref().is_some_and(|pass| pass.counts() != self.counts) {
+            self.pass = None;
+        }
+        let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, self.counts)));
+        let drawn = FlakeDraw {
+            block: &block,
+            surroundings: with.surroundings,
+            maps: now.has_maps(),
+            target: &target,
+            over: self.over,
+            depth: shot.frame.depth_layer(),
+        };
+        pass.draw(to.device, to.encoder, &drawn)?;
+        self.drawn = (shot.frame.frame_id, SnowReport { flakes: flakes.drawn, flakes_to_m: flakes.reach_m() });
+        to.passes += 1;
+        Ok(())
+    }
+
+    /// The layer is counted by the rain, which always holds it.
+    fn bytes(&self) -> u64 {
+        self.pass.as_ref().map_or(0, |pass| pass.bytes())
+    }
+
+    fn report(&self, report: &mut Report) {
+        if self.drawn.0 == report.frame_id {
+            report.snow = self.drawn.1;
+        }
+    }
+
+    fn forget_picture(&mut self) {
+        self.layer.forget();
+    }
+}

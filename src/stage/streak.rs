@@ -1,0 +1,148 @@
+//! What effects share that draw what falls near the camera: its camera, the layer before the picture, and how much it stands out.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::{DMat4, DVec2, DVec3};
+
+use super::Shot;
+use crate::{gpu::Device, light::luminance, scene::ViewRays};
+
+/// Light of what falls times the picture's exposure, and the share of what lies behind that it hides.
+pub(crate) const LAYER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// A camera among things that fall past it, as streaks while the shutter is open.
+pub(crate) struct StreakCamera<'a> {
+    /// From camera-relative east-north-up to clip space.
+    pub clip: DMat4,
+    pub rays: &'a ViewRays,
+    pub height: u32,
+    pub y_sign: f32,
+    /// East, north, up of a point fixed to the world.
+    pub position_m: DVec3,
+    /// Of the camera.
+    pub velocity_m_s: DVec3,
+    pub exposure_s: f64,
+    /// Contrast gain of what falls.
+    pub gain: f64,
+}
+
+impl<'a> StreakCamera<'a> {
+    /// That of a shot whose shutter is open for `exposure_s`.
+    pub fn new(shot: &Shot<'a>, exposure_s: f64, gain: f64) -> Self {
+        let scene = &shot.now.scene;
+        Self {
+            clip: shot.clip(),
+            rays: shot.rays,
+            height: shot.color.texture.height(),
+            y_sign: if shot.frame.origin_bottom_left { -1.0 } else { 1.0 },
+            position_m: DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m),
+            velocity_m_s: scene.world_to_enu * shot.frame.camera_velocity_m_s,
+            exposure_s,
+            gain,
+        }
+    }
+}
+
+/// What falls near the camera as one more veil before the picture: premultiplied, one sample a pixel. The effects of a view that draw
+/// into it share it: clones are the same layer.
+#[derive(Clone, Default)]
+pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
+
+impl FallingTexture {
+    fn locked(&self) -> MutexGuard<'_, Option<(wgpu::Texture, wgpu::TextureView)>> {
+        // A panic elsewhere leaves a layer or none, both of which are whole.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The layer for a picture of this size, made anew if that changed; its content is what was drawn last.
+    pub fn view(&self, device: &Device, size: wgpu::Extent3d) -> wgpu::TextureView {
+        let mut held = self.locked();
+        if held.as_ref().is_none_or(|(t, _)| (t.width(), t.height()) != (size.width, size.height)) {
+            *held = None;
+        }
+        let make = || {
+            let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("what falls"),
+                size: wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: LAYER_FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        };
+        held.get_or_insert_with(make).1.clone()
+    }
+
+    /// The layer as it is, if there is one.
+    pub fn held(&self) -> Option<wgpu::TextureView> {
+        self.locked().as_ref().map(|(_, view)| view.clone())
+    }
+
+    /// Bytes of GPU memory that it holds.
+    pub fn bytes(&self) -> u64 {
+        self.locked().as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()))
+    }
+
+    /// Lets the picture's layer go, which the driver may not have had memory for.
+    pub fn forget(&self) {
+        *self.locked() = None;
+    }
+}
+
+/// Angles between line of sight and streaks at which the variance is tabulated.
+const ANGLES: usize = 9;
+
+/// What has been made of exposed light in a picture.
+pub(crate) type Tone = fn(f64) -> f64;
+
+/// How much streaks stand out of a picture, for the planner.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StreakContrast {
+    rays: ViewRays,
+    y_sign: f64,
+    /// Where the things go as seen from the camera.
+    axis: DVec3,
+    /// Deviation of what they hide, by the sine of the angle from there.
+    deviations: [f64; ANGLES],
+    tone: Tone,
+    /// Lamps may make them as bright as they like.
+    lamps: bool,
+}
+
+impl StreakContrast {
+    /// Of things that go with a velocity before a camera. `variance`: from pixel to pixel, of the share that they hide, where they go so
+    /// many metres across the line of sight during the exposure.
+    pub fn new(
+        shot: &StreakCamera<'_>,
+        velocity_m_s: DVec3,
+        variance: impl Fn(f64) -> f64,
+        (tone, lamps): (Tone, bool),
+    ) -> Self {
+        let relative = velocity_m_s - shot.velocity_m_s;
+        let travel = relative.length() * shot.exposure_s;
+        let deviations = std::array::from_fn(|i| variance(i as f64 / (ANGLES - 1) as f64 * travel).sqrt());
+        let axis = relative.normalize_or(DVec3::NEG_Z);
+        Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
+    }
+
+    /// What pixel number `i` changes by things that are bright as `radiance` says in a direction, over its luminance and a hundredth of
+    /// white; and by how much they are brighter than it. So much that many pixels together spread as those of pictures do.
+    pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
+        let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
+        let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
+        let low = (at as usize).min(ANGLES - 2);
+        let part = at - low as f64;
+        let deviation = self.deviations[low] * (1.0 - part) + self.deviations[low + 1] * part;
+        let bright = (self.tone)(luminance(&radiance(d).to_array()));
+        let contrast = if self.lamps { 1e3 } else { (bright - picture) / (picture + 0.01) };
+        // Evenly spread in two dimensions (Roberts 2018), and normal (Box and Muller 1958).
+        let spread = |step: f64| ((i as f64 + 0.5) * step).fract();
+        let (u, v) = (spread(0.754_877_666_246_692_8), spread(0.569_840_290_998_053_3));
+        let normal = (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
+        [normal * deviation * contrast, contrast]
+    }
+}
