@@ -15,6 +15,7 @@
 //! ```
 
 use crate::{
+    clouds::candidates::CloudMethod,
     error::{Error, Result},
     fog::candidates::FogMethod,
     plan::{Listed, Work},
@@ -37,16 +38,19 @@ pub enum Effect {
     Stars,
     /// Flakes of falling snow near the camera.
     Snow,
+    /// Layers of cloud.
+    Clouds,
 }
 
 impl Effect {
     /// All effects with the names that programs use for them.
-    pub const NAMES: [(&'static str, Effect); 5] = [
+    pub const NAMES: [(&'static str, Effect); 6] = [
         ("sky", Effect::Sky),
         ("fog", Effect::Fog),
         ("rain", Effect::Rain),
         ("stars", Effect::Stars),
         ("snow", Effect::Snow),
+        ("clouds", Effect::Clouds),
     ];
 
     /// The effect of that name.
@@ -78,6 +82,8 @@ pub enum Method {
     Stars(StarMethod),
     /// A way to draw falling snow.
     Snow(SnowSettings),
+    /// A way to draw clouds.
+    Clouds(CloudMethod),
 }
 
 /// One way to draw an effect.
@@ -104,6 +110,7 @@ impl Candidate {
             Method::Rain(s) => s == RainSettings::default(),
             Method::Stars(m) => m == StarMethod::default(),
             Method::Snow(m) => m == SnowSettings::default(),
+            Method::Clouds(m) => m == CloudMethod::default(),
         }
     }
 }
@@ -123,6 +130,7 @@ pub fn candidates(effect: Effect) -> Vec<Candidate> {
         Effect::Rain => all(effect, crate::rain::candidates::candidates(), Method::Rain),
         Effect::Stars => all(effect, crate::stars::candidates::candidates(), Method::Stars),
         Effect::Snow => all(effect, crate::snow::candidates::candidates(), Method::Snow),
+        Effect::Clouds => all(effect, crate::clouds::candidates::candidates(), Method::Clouds),
     }
 }
 

@@ -14,6 +14,8 @@ mod canvas;
 mod chart;
 #[path = "../examples/lab/clouds.rs"]
 mod clouds;
+#[path = "../examples/lab/cloudscapes.rs"]
+mod cloudscapes;
 #[path = "support/coarse_sky.rs"]
 mod coarse_sky;
 #[path = "../examples/lab/command.rs"]

@@ -54,7 +54,7 @@ fn of_older_systems(effect: Effect) -> Vec<Candidate> {
             source("source-140k", 140_000, 0),
             source("source-replicated-140k", 20_000, 6),
         ],
-        Effect::Fog | Effect::Stars | Effect::Snow => Vec::new(),
+        Effect::Fog | Effect::Stars | Effect::Snow | Effect::Clouds => Vec::new(),
     }
 }
 

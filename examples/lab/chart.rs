@@ -14,7 +14,7 @@ use crate::timing::{Baseline, Ratio};
 use crate::{effect_charts, page, quadrature};
 
 /// What can be charted.
-pub const CHARTS: [&str; 6] = ["sky", "fog", "rain", "snow", "stars", "quadrature"];
+pub const CHARTS: [&str; 7] = ["sky", "fog", "rain", "snow", "stars", "clouds", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -109,6 +109,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
         "rain" => effect_charts::rain(&lab, options)?,
         "snow" => effect_charts::snow(&lab, options)?,
         "stars" => effect_charts::stars(&lab, options)?,
+        "clouds" => effect_charts::clouds(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }
     page::write(&options.out)

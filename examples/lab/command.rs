@@ -7,7 +7,7 @@ use welkin::{Error, Result, Status};
 use crate::candidates::{Candidate, Effect, candidate};
 use crate::{chart, clouds, compare, growth, regression, report, stability};
 
-const USAGE: &str = "usage: lab chart [sky|fog|rain|stars|quadrature]    cost against error, with plots
+const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature]    cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
        lab compare A B [--scene NAME]     two candidates' pictures side by side
@@ -70,9 +70,9 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         return regression::compare(old.as_ref(), new.as_ref());
     }
     match words.as_slice() {
-        ["chart"] => {
-            ["quadrature", "fog", "rain", "snow", "stars", "sky"].iter().try_for_each(|c| chart::run(c, &options))
-        }
+        ["chart"] => ["quadrature", "fog", "rain", "snow", "stars", "clouds", "sky"]
+            .iter()
+            .try_for_each(|c| chart::run(c, &options)),
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
         ["chart", other] => Err(usage(&format!("unknown effect `{other}`, one of {}", chart::CHARTS.join(", ")))),
         ["growth"] => growth::run(&options),

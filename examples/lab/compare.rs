@@ -11,7 +11,7 @@ use crate::chart::Lab;
 use crate::command::Options;
 use crate::picture::{Figures, Picture};
 use crate::plot::short;
-use crate::{fog, rain, scenes, sky, snow, stars};
+use crate::{cloudscapes, fog, rain, scenes, sky, snow, stars};
 
 /// Size of a picture of sky or fog.
 const SIZE: (u32, u32) = (128, 72);
@@ -40,6 +40,7 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
         Effect::Rain => "shower",
         Effect::Stars => "moonless",
         Effect::Snow => "quiet",
+        Effect::Clouds => "fair-cumulus",
     });
     let scene = scenes::find(a.effect, wanted)?;
     let lab = Lab::open(options)?;
@@ -48,6 +49,7 @@ pub fn run(a: &Candidate, b: &Candidate, options: &Options) -> Result<()> {
         Effect::Fog => by_pixels([a.name, b.name], &fog_pictures(&lab, [a, b], scene)?)?,
         Effect::Rain | Effect::Snow => by_blocks(&lab, [a, b], scene)?,
         Effect::Stars => by_pixels([a.name, b.name], &star_pictures(&lab, [a, b], scene)?)?,
+        Effect::Clouds => by_pixels([a.name, b.name], &cloud_pictures(&lab, [a, b], scene)?)?,
     };
     std::fs::create_dir_all(&options.out).map_err(|e| crate::store::io(&options.out, &e))?;
     let stem = options.out.join(format!("compare-{}-{}-{wanted}", a.name, b.name));
@@ -76,6 +78,16 @@ fn fog_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Pictu
     let host = fog::host(&scene, SIZE)?;
     let one = |c: &Candidate| bench.make(c, &scene, &host)?.picture();
     Ok([one(pair[0])?, one(pair[1])?, fog::truth(&scene, &host)?])
+}
+
+fn cloud_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Picture; 3]> {
+    let mut host = cloudscapes::Host::new(&lab.device, &scenes::CLOUDS[scene], cloudscapes::SIZE)?;
+    let mut one = |c: &Candidate| match c.method {
+        Method::Library(LibraryMethod::Clouds(method)) => host.picture(&method),
+        _ => Err(Error::range("candidate", "one of the clouds", c.name)),
+    };
+    let [a, b] = [one(pair[0])?, one(pair[1])?];
+    Ok([a, b, host.truth()?])
 }
 
 fn star_pictures(lab: &Lab, pair: [&Candidate; 2], scene: usize) -> Result<[Picture; 3]> {

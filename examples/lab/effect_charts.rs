@@ -11,7 +11,7 @@ use crate::picture::{Figures, Picture};
 use crate::plot::{Titles, short};
 use crate::store::{Journal, Table};
 use crate::timing::{Ratio, interleaved};
-use crate::{fog, rain, scenes, sky, snow, stars};
+use crate::{cloudscapes, fog, rain, scenes, sky, snow, stars};
 
 /// What a chart says of a candidate.
 struct Measured {
@@ -117,6 +117,9 @@ fn family(c: &Candidate) -> &'static str {
         (Effect::Fog, _) => "older laws",
         (Effect::Sky | Effect::Rain | Effect::Snow, known) => known,
         (Effect::Stars, _) => "night",
+        (Effect::Clouds, "deck") => "deck",
+        (Effect::Clouds, "volume") => "a sixteenth of the pixels",
+        (Effect::Clouds, _) => "more pixels",
     }
 }
 
@@ -399,6 +402,35 @@ pub fn stars(lab: &Lab, options: &Options) -> Result<()> {
         note: "moonless, moonlit, dusk; line: nothing is both cheaper and better; ring: the default",
     };
     end(journal, &titles, &options.out.join("stars")).map(|_| ())
+}
+
+/// Charts the ways to draw clouds.
+///
+/// # Errors
+/// Files and the GPU.
+pub fn clouds(lab: &Lab, options: &Options) -> Result<()> {
+    let names = scenes::CLOUDS.iter().map(|s| s.name);
+    let mut journal = open(lab, options, Effect::Clouds, [&[], &["units"]], names)?;
+    let host = |scene, size| cloudscapes::Host::new(&lab.device, scene, size);
+    let mut hosts = scenes::CLOUDS.iter().map(|s| host(s, cloudscapes::SIZE)).collect::<Result<Vec<_>>>()?;
+    let truths = hosts.iter_mut().map(cloudscapes::Host::truth).collect::<Result<Vec<_>>>()?;
+    let mut timed = host(&scenes::CLOUDS[0], (640, 360))?;
+    measure(&mut journal, Effect::Clouds, |c| {
+        let Method::Library(LibraryMethod::Clouds(method)) = c.method else {
+            return Err(Error::range("candidate", "one of the clouds", c.name));
+        };
+        let drawn = hosts.iter_mut().map(|h| h.picture(&method)).collect::<Result<Vec<_>>>()?;
+        let (error, each) = luminance_over_scenes(&drawn.into_iter().zip(&truths).collect::<Vec<_>>())?;
+        let cost = interleaved(&lab.baseline, lab.rounds, |i| timed.timed(&method, i == 0))?;
+        Ok(Measured { cost, error, more: Vec::new(), each, units: vec![frame_units(c)] })
+    })?;
+    let titles = Titles {
+        title: "Clouds: what a frame costs against how far it is from a march of every pixel",
+        x: "cost of a picture of fair cumulus, the camera turning, 640x360, over the baseline's",
+        y: "95th percentile of the relative error in luminance",
+        note: "six skies from below, above and inside; line: nothing is both cheaper and better; ring: the default",
+    };
+    end(journal, &titles, &options.out.join("clouds")).map(|_| ())
 }
 
 /// How well the work units foretell the times: the factor between both, candidate by candidate.

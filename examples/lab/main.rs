@@ -10,6 +10,7 @@ mod candidates;
 mod canvas;
 mod chart;
 mod clouds;
+mod cloudscapes;
 #[path = "../../tests/support/coarse_sky.rs"]
 mod coarse_sky;
 mod command;

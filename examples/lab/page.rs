@@ -17,7 +17,7 @@ use crate::store::{Table, io};
 pub fn write(directory: &Path) -> Result<()> {
     let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
     let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
-    let (rain, snow, stars) = (read("rain")?, read("snow")?, read("stars")?);
+    let (rain, snow, stars, clouds) = (read("rain")?, read("snow")?, read("stars")?, read("clouds")?);
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
@@ -37,16 +37,19 @@ pub fn write(directory: &Path) -> Result<()> {
         rain_section(&mut out, table);
     }
     if let Some(table) = &snow {
-        snow_section(&mut out, table);
+        by_scene(&mut out, table, ("Which snow", "snow", "blocks"), SNOW_SAYS);
     }
     if let Some(table) = &stars {
         star_section(&mut out, table);
+    }
+    if let Some(table) = &clouds {
+        by_scene(&mut out, table, ("Which clouds", "clouds", "pixels"), CLOUDS_SAYS);
     }
     if let Some(table) = &growth {
         growth_section(&mut out, table);
     }
     stability::section(&mut out, directory)?;
-    how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &quadrature, &growth]);
+    how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &clouds, &quadrature, &growth]);
     let path = directory.join("README.md");
     std::fs::write(&path, out).map_err(|e| io(&path, &e))
 }
@@ -270,11 +273,12 @@ const SNOW_SAYS: &str = "\nThe truth is every flake of the air within 14.8 m by 
     compared as rain is. Flakes of which there is no room are stood for by others, as many of each class as makes all hide the same; a \
     shell of the lattice is left to the veil where its contrast would be off by more than the square root of 3.\n\n";
 
-fn snow_section(out: &mut String, t: &Table) {
+/// A chart and the table of its rows by scene.
+fn by_scene(out: &mut String, t: &Table, (title, name, what): (&str, &str, &str), says: &str) {
     let n = |r: &[String], c: &str| number(t, r, c);
-    out.push_str("## Which snow\n\n![cost of snow against error](snow.svg)\n\n");
+    let _ = write!(out, "## {title}\n\n![cost of {name} against error]({name}.svg)\n\n");
     let scenes: Vec<&String> = t.columns.iter().filter(|c| c.starts_with("p95_")).collect();
-    out.push_str("Error of blocks by scene, 95th percentile, per cent:\n\n| snow | cost | all |");
+    let _ = write!(out, "Error of {what} by scene, 95th percentile, per cent:\n\n| {name} | cost | all |");
     scenes.iter().for_each(|s| {
         let _ = write!(out, " {} |", s.trim_start_matches("p95_"));
     });
@@ -290,8 +294,12 @@ fn snow_section(out: &mut String, t: &Table) {
         });
         out.push('\n');
     }
-    out.push_str(SNOW_SAYS);
+    out.push_str(says);
 }
+
+const CLOUDS_SAYS: &str = "\n`make lab ARGS=\"chart clouds\"` draws these. `deck` is the default model, `volume-double-steps` what `WK_CLOUD_MODEL_VOLUME` draws: it marches a sixteenth of the pixels \
+    in a frame and takes the others over from earlier ones, `quarter-of-pixels` a quarter, `every-pixel` all. The truth is every \
+    pixel in four times as many steps; pictures are compared once they have settled, and timed while the camera turns.\n\n";
 
 fn star_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
@@ -329,7 +337,7 @@ fn growth_section(out: &mut String, t: &Table) {
     out.push('\n');
 }
 
-fn how_section(out: &mut String, tables: [&Option<Table>; 7]) {
+fn how_section(out: &mut String, tables: [&Option<Table>; 8]) {
     out.push_str(
         "## How it was measured\n\n\
          - **Error**: |Y_A - Y_B| / (Y_B + 0.01 Y_white) in luminance after exposure, B the reference in f64, over all pixels of all \

@@ -2,6 +2,7 @@
 
 use welkin::fog::{FogLayer, FogLight, Patches, Phase, Profile, koschmieder_extinction_per_m};
 use welkin::sky::Planet;
+use welkin::weather::CloudKind;
 use welkin::{Error, Result};
 
 use crate::candidates::Effect;
@@ -193,6 +194,34 @@ pub const STARS: [StarScene; 3] = [
     StarScene { name: "dusk", sun_deg: -9.0, moon_deg: -40.0 },
 ];
 
+/// One layer of cloud, seen by day.
+#[derive(Clone, Copy, Debug)]
+pub struct CloudScene {
+    pub name: &'static str,
+    pub kind: CloudKind,
+    pub cover: f64,
+    pub base_m: f64,
+    pub height_m: f64,
+    pub pitch_deg: f64,
+    pub sun_deg: f64,
+}
+
+/// From below, from above, inside, far and thin.
+pub const CLOUDS: [CloudScene; 6] = {
+    const fn scene(name: &'static str, kind: CloudKind, at: [f64; 5]) -> CloudScene {
+        let [cover, base_m, height_m, pitch_deg, sun_deg] = at;
+        CloudScene { name, kind, cover, base_m, height_m, pitch_deg, sun_deg }
+    }
+    [
+        scene("fair-cumulus", CloudKind::Cumulus, [0.4, 1000.0, 2.0, 20.0, 45.0]),
+        scene("evening-cumulus", CloudKind::Cumulus, [0.4, 1000.0, 2.0, 10.0, 8.0]),
+        scene("altocumulus", CloudKind::Altocumulus, [0.6, 4000.0, 2.0, 35.0, 40.0]),
+        scene("cirrus", CloudKind::Cirrus, [0.5, 9000.0, 2.0, 40.0, 30.0]),
+        scene("deck-from-above", CloudKind::Stratocumulus, [1.0, 800.0, 3000.0, -15.0, 40.0]),
+        scene("among-towers", CloudKind::ToweringCumulus, [0.5, 1000.0, 2500.0, 0.0, 30.0]),
+    ]
+};
+
 /// A scene's index by name.
 ///
 /// # Errors
@@ -204,6 +233,7 @@ pub fn find(effect: Effect, name: &str) -> Result<usize> {
         Effect::Rain => rain().iter().map(|s| s.name).collect(),
         Effect::Stars => STARS.iter().map(|s| s.name).collect(),
         Effect::Snow => snow().iter().map(|s| s.name).collect(),
+        Effect::Clouds => CLOUDS.iter().map(|s| s.name).collect(),
     };
     let fault = || Error::range("--scene", &format!("one of {}", names.join(", ")), name);
     names.iter().position(|n| *n == name).ok_or_else(fault)

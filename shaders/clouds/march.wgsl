@@ -2,7 +2,9 @@
 //!include "between/air.wgsl"
 //!include "clouds/about.wgsl"
 
-// Most steps through one layer; depth of a step in cloud, scaled, at most; distance from which on steps grow with it.
+// How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at most; distance from
+// which on steps grow with it.
+override CLOUD_FINENESS: f32 = 1.0;
 override CLOUD_STEPS: u32 = 96u;
 override CLOUD_STEP_DEPTH: f32 = 0.5;
 override CLOUD_STEP_ANGLE: f32 = 0.004;
@@ -46,7 +48,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     var out = seen;
     let thickness = 1.0 / layer.size.y;
     let scaled = layer.medium.y;
-    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * scaled), thickness / 64.0, thickness / 12.0);
+    let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * scaled), thickness / 64.0, thickness / 12.0) / CLOUD_FINENESS;
+    let most = u32(f32(CLOUD_STEPS) * CLOUD_FINENESS);
     var gone = first;
     var tried = 0u;
     while out.transmittance > CLOUD_LEAST {
@@ -56,8 +59,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         var at: CloudPlace;
         var here: CloudHere;
         here.extinction = 0.0;
-        while here.extinction <= 0.0 && tried < CLOUD_STEPS && gone < last {
-            step = min(max(fine, CLOUD_STEP_ANGLE * gone), last - gone);
+        while here.extinction <= 0.0 && tried < most && gone < last {
+            step = min(max(fine, CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone), last - gone);
             t = gone + jitter * step;
             at = cloud_place(layer, direction, t);
             here = cloud_here(layer, at);

@@ -1,7 +1,8 @@
 //! The ways to draw clouds that are charted against each other, with what they cost.
 
+use super::{CloudModel, CloudSettings};
 use crate::plan::{
-    StepWork,
+    Listed, StepWork, Units, Work,
     parts::{Part, Worth},
 };
 
@@ -18,4 +19,49 @@ const LAID: f64 = 0.3;
 /// Work of the step from the volume to the deck in a picture of so many pixels, a share of which looks towards the clouds.
 pub(crate) fn clouds_work(pixels: u64, share: f64) -> StepWork {
     StepWork { fixed: pixels as f64 * (LAID + share * MARCHED), ..StepWork::default() }
+}
+
+/// A way to draw clouds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CloudMethod {
+    /// What is drawn.
+    pub model: CloudModel,
+    /// How finely.
+    pub settings: CloudSettings,
+}
+
+/// Work of a ray: steps, of which each reads the map and the noise, and the light where there is cloud.
+const RAY: Units = Units { samples: 60.0, texels: 120.0, bytes: 0.0 };
+/// Of a pixel that is followed back and laid over the sky.
+const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
+
+/// Of a pixel of the deck.
+const DECK: Units = Units { samples: 0.1, texels: 0.0, bytes: 0.0 };
+
+impl CloudMethod {
+    fn work(&self) -> Work {
+        if self.model == CloudModel::Deck {
+            return Work { pixel: DECK, ..Work::default() };
+        }
+        let rays = self.settings.fineness / f64::from(self.settings.side * self.settings.side);
+        Work { pixel: FOLLOWED.plus(RAY, rays), ..Work::default() }
+    }
+}
+
+/// All candidates.
+pub fn candidates() -> Vec<Listed<CloudMethod>> {
+    let volume = |fineness, side| CloudMethod { model: CloudModel::Volume, settings: CloudSettings { fineness, side } };
+    let named = [
+        ("deck", CloudMethod::default()),
+        ("volume-quarter-steps", volume(0.25, 4)),
+        ("volume-half-steps", volume(0.5, 4)),
+        ("volume", volume(1.0, 4)),
+        ("volume-double-steps", volume(2.0, 4)),
+        ("quarter-of-pixels", volume(1.0, 2)),
+        ("every-pixel-half-steps", volume(0.5, 1)),
+        ("every-pixel", volume(1.0, 1)),
+        ("every-pixel-double-steps", volume(2.0, 1)),
+        ("every-pixel-fourfold-steps", volume(4.0, 1)),
+    ];
+    named.map(|(name, method)| Listed { name, method, work: method.work(), offered: true }).into()
 }

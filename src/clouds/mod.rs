@@ -29,6 +29,7 @@ pub mod probe;
 pub mod reference;
 mod round;
 mod rows;
+pub mod settings;
 pub mod shadow;
 mod shadow_map;
 mod shape;
@@ -41,6 +42,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use held::HeldClouds;
 pub(crate) use march::CloudRays;
+pub use settings::CloudSettings;
 pub(crate) use view::CloudsView;
 
 /// How clouds are drawn.

@@ -35,7 +35,8 @@ struct Resolve {
 struct Pipelines {
     picture_layout: wgpu::BindGroupLayout,
     shadow_layouts: [wgpu::BindGroupLayout; 2],
-    march: wgpu::RenderPipeline,
+    /// By its fineness ([`super::CloudSettings`]).
+    march: (f64, wgpu::RenderPipeline),
     follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     march_layouts: [wgpu::BindGroupLayout; 2],
@@ -54,7 +55,7 @@ fn make(
 }
 
 impl Pipelines {
-    fn new(device: &Device, sky: &wgpu::BindGroupLayout) -> Result<Self> {
+    fn new(device: &Device, sky: &wgpu::BindGroupLayout, fineness: f64) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
         let march_layout = layout(&[
@@ -86,16 +87,21 @@ impl Pipelines {
                 (3, Slot::Sampler),
             ])
         });
-        let march = ("clouds/march_view.wgsl", "march");
+        let march_layouts = [march_layout, sky.clone()];
         let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
-            march: make(device, march, &[&march_layout, sky], &[SEEN, PAIR], &[])?,
-            march_layouts: [march_layout, sky.clone()],
+            march: (fineness, Self::march(device, &march_layouts, fineness)?),
+            march_layouts,
             follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
             resolve: Vec::new(),
             picture_layout,
             shadow_layouts,
         })
+    }
+
+    fn march(device: &Device, layouts: &[wgpu::BindGroupLayout; 2], fineness: f64) -> Result<wgpu::RenderPipeline> {
+        let march = ("clouds/march_view.wgsl", "march");
+        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &[("CLOUD_FINENESS", fineness)])
     }
 
     fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
@@ -163,6 +169,8 @@ pub(super) struct CloudFrame<'a> {
     pub shaded: Option<Shaded<'a>>,
     /// What the clouds of all directions are made of.
     pub around: Around,
+    /// Of the march ([`super::CloudSettings`]).
+    pub fineness: f64,
     /// The frame is a pure function of view and time.
     pub is_pure: bool,
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
@@ -344,8 +352,11 @@ impl CloudPasses {
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
-            None => Pipelines::new(device, of.sky.0)?,
+            None => Pipelines::new(device, of.sky.0, of.fineness)?,
         };
+        if pipelines.march.0 != of.fineness {
+            pipelines.march = (of.fineness, Pipelines::march(device, &pipelines.march_layouts, of.fineness)?);
+        }
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
         let group = self.march_group(device, &pipelines.march_layouts[0], of);
@@ -397,7 +408,7 @@ impl CloudPasses {
         let mut passes = 1 + u32::from(has_shadows);
         if of.wanted.march {
             let [seen, reach] = &picture.marched;
-            run(encoder, (&[seen, reach], None), &pipelines.march, &[group, of.sky.1]);
+            run(encoder, (&[seen, reach], None), &pipelines.march.1, &[group, of.sky.1]);
             passes += 1;
         }
         if of.wanted.march && has_history {

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::{
-    CloudModel,
+    CloudModel, CloudSettings,
     candidates::{CLOUDS, clouds_work},
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
@@ -18,9 +18,7 @@ use crate::{
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
 };
 
-/// Side of the squares of pixels of which one is marched a frame.
-const SIDE: u32 = 4;
-/// Their order: each is far from those before it.
+/// The order of the pixels of a square: each is far from those before it.
 const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
 /// Stages whose draws show them as they are.
 const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
@@ -48,6 +46,7 @@ struct Made {
 /// The clouds of a view.
 #[derive(Default)]
 pub(crate) struct CloudsView {
+    pub settings: CloudSettings,
     overhead: Option<Overhead>,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
@@ -154,6 +153,11 @@ impl Overhead {
 }
 
 impl CloudsView {
+    /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history to wait for.
+    fn side(&self, frame: &Frame<'_>) -> u32 {
+        if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.side }
+    }
+
     /// How a picture's clouds follow from the last frame's.
     fn picture(&self, shot: &Shot<'_>) -> (PictureUniform, Before) {
         let (frame, now) = (shot.frame, shot.now);
@@ -161,7 +165,7 @@ impl CloudsView {
         let here = Before { clip: shot.clip(), eye: now.eye, drift_m, exposure: shot.exposure };
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
         let size = shot.color.texture.size();
-        let side = side(frame);
+        let side = self.side(frame);
         let moved = last.map_or(DVec3::ZERO, |b| {
             (here.drift_m - b.drift_m).extend(0.0) - now.scene.world_to_enu * (here.eye - b.eye)
         });
@@ -175,11 +179,6 @@ impl CloudsView {
         };
         (uniform, here)
     }
-}
-
-/// Side of the squares of a frame: a pure function of view and time has no history to wait for.
-fn side(frame: &Frame<'_>) -> u32 {
-    if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { SIDE }
 }
 
 impl DrawnEffect for CloudsView {
@@ -225,11 +224,11 @@ impl DrawnEffect for CloudsView {
         if shadows {
             to.block.cloud_shadow = shadow_strength(&shot.now.scene);
         }
-        let wanted = self.wanted(shot, to);
+        let (wanted, side) = (self.wanted(shot, to), self.side(shot.frame));
         self.wanted = is_there.then_some(wanted);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
             let texture = shot.color.texture;
-            let holds = passes.hold(shot.device, (texture.width(), texture.height()), side(shot.frame));
+            let holds = passes.hold(shot.device, (texture.width(), texture.height()), side);
             if !wanted.is_begun {
                 self.kept = holds && self.before.is_some();
             }
@@ -271,6 +270,7 @@ impl DrawnEffect for CloudsView {
             behind: self.behind.as_ref(),
             shaded,
             around,
+            fineness: self.settings.fineness,
             is_pure: shot.frame.is_pure(),
             is_multisampled: sampling.multisampled()[1],
             depth_kinds: f64::from(shot.rays.depth_kinds()),

@@ -1,6 +1,7 @@
 //! What a host sets and asks of a view's effects.
 
 use crate::{
+    clouds::CloudSettings,
     error::Result,
     frame::View,
     glass::{GlassReport, Windscreen, reference::Cells},
@@ -16,6 +17,16 @@ impl View {
     pub fn set_rain(&mut self, settings: RainSettings) -> Result<()> {
         settings.validate_on(&self.device)?;
         self.effects.rain.settings = settings;
+        Ok(())
+    }
+
+    /// Sets how finely clouds are drawn that are a volume. Default: [`CloudSettings::default`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; nothing changes then.
+    pub fn set_clouds(&mut self, settings: CloudSettings) -> Result<()> {
+        settings.validate()?;
+        self.effects.clouds.settings = settings;
         Ok(())
     }
 

@@ -65,7 +65,7 @@ pub fn disc_s10(galactic: DVec3) -> f64 {
     sum * S10_PER_LV_PC2
 }
 
-/// Light of the stars that are not drawn as points, S10, along a galactic direction (unit): from a table of [`Starlight`], within 3 %
+/// Light of the stars that are not drawn as points, S10, along a galactic direction (unit): from a table of [`Starlight`], within 4 %
 /// of it.
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_within_three_percent_of_the_integral() {
+    fn the_table_is_within_four_percent_of_the_map() {
         let starlight = Starlight::measured();
         let mut off: Vec<_> = (0..1000)
             .map(|i| {
@@ -146,7 +146,7 @@ mod tests {
             .collect();
         off.sort_by(f64::total_cmp);
         println!("table of starlight: {:.2} %", 100.0 * off[999]);
-        assert!(off[999] < 0.03, "{}", off[999]);
+        assert!(off[999] < 0.04, "{}", off[999]);
     }
 
     #[test]

@@ -43,7 +43,7 @@ fn drawn(world: &World) -> [u32; 4] {
         assert_eq!(wk_view_record(world.view, &frame, WK_STAGE_ALL & !WK_STAGE_TONE), WK_OK, "{}", message());
         assert_eq!(wk_view_get_plan(world.view, &mut plan), WK_OK);
     }
-    assert_eq!(plan.part_count, 6);
+    assert_eq!(plan.part_count, 7);
     [WK_PART_AIR, WK_PART_FOG, WK_PART_SKY, WK_PART_RAIN].map(|number| part(world, number).rung)
 }
 
