@@ -297,9 +297,10 @@ fn by_scene(out: &mut String, t: &Table, (title, name, what): (&str, &str, &str)
     out.push_str(says);
 }
 
-const CLOUDS_SAYS: &str = "\n`make lab ARGS=\"chart clouds\"` draws these. `deck` is the default model, `volume-double-steps` what `WK_CLOUD_MODEL_VOLUME` draws: it marches a sixteenth of the pixels \
-    in a frame and takes the others over from earlier ones, `quarter-of-pixels` a quarter, `every-pixel` all. The truth is every \
-    pixel in four times as many steps; pictures are compared once they have settled, and timed while the camera turns.\n\n";
+const CLOUDS_SAYS: &str = "\n`make lab ARGS=\"chart clouds\"` draws these. `deck` is the default model, `volume-double-steps` what \
+    `WK_CLOUD_MODEL_VOLUME` draws: it marches a sixteenth of the pixels in a frame and takes the others over from earlier ones, \
+    `quarter-of-pixels` a quarter, `every-pixel` all. The truth is every pixel in four times as many steps; pictures are compared \
+    once they have settled, and timed while the camera turns.\n\n";
 
 fn star_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);

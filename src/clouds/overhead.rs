@@ -118,7 +118,8 @@ impl Overhead {
         })
     }
 
-    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of the lowest of them lies over it, m.
+    /// The mean light of its broken clouds as they look from the place, cd/m^2, their cover, and how far the base of the lowest of them
+    /// lies over it, m.
     /// From below half of what is seen is lit from above and half through the cloud, from above all is lit.
     pub fn on_the_mean(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);

@@ -29,7 +29,8 @@
 //! # Glow
 //! Airglow of 145 S10 at the zenith (Benn and Ellison 1998), brighter below by van Rhijn 1921; zodiacal light by table 16 of Leinert et
 //! al. 1998; starlight as Pioneer 10 mapped it beyond the planets' dust (Leinert et al. 1998, tables 37 and 38; [`starlight`]), between
-//! its places as a disc of stars and dust with the luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, a star of magnitude 10 a square degree, is 8.34e-7 cd/m^2. The air dims all three and scatters the dome's mean back.
+//! its places as a disc of stars and dust with the luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, a star of magnitude 10 a square
+//! degree, is 8.34e-7 cd/m^2. The air dims all three and scatters the dome's mean back.
 //!
 //! # Settings
 //! [`StarSettings`]: a host's own stars, its own matrix, whether planets are drawn, the airglow.
