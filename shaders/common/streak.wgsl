@@ -13,7 +13,7 @@ fn part_drawn(half: vec3f, d: f32) -> vec4f {
     let whole = length(half) / d;
     let c = min(whole, LONGEST);
     let c2 = c * c;
-    // To .2 % of c / atanh(c).
+    // To 0.2 % of c / atanh(c).
     return vec4f(half * (c / max(whole, 1e-9)), 1.0 - c2 * (0.33333333 + c2 * (0.08888889 + 0.085 * c2)));
 }
 

@@ -255,21 +255,9 @@ impl Live {
         let anchor = Anchor::new(world, desc.floor_center);
         // As small as there are any: the start makes the field.
         let none = FlowSettings { cells: [2, 2, 1], ..FlowSettings::default() };
-        let mut live = Self {
-            corner: anchor.corner(&desc),
-            desc,
-            anchor,
-            field: FlowField::new(&none, &FlowObstacles::default(), |_| DVec3::ZERO)?,
-            time_s,
-            begun_s: time_s,
-            start: None,
-            parts: (0, 0.0),
-            stood: [0; 2],
-            standing: None,
-            solved_for: [f64::INFINITY; 3],
-            awake_s: 0.0,
-            rests: false,
-        };
+        let field = FlowField::new(&none, &FlowObstacles::default(), |_| DVec3::ZERO)?;
+        let corner = anchor.corner(&desc);
+        let mut live = Self::standing_still(desc, anchor, corner, field, time_s);
         live.restart(world, time_s)?;
         Ok(live)
     }
@@ -277,11 +265,18 @@ impl Live {
     /// One that goes on from saved numbers, of which `field` is still without.
     pub fn saved(world: &World, desc: WindFieldDesc, anchor: Anchor, corner: [i64; 3], time_s: f64) -> Result<Self> {
         let roughness_m = Inflow::new(world, time_s, desc.mode).profile.roughness_length_m;
-        Ok(Self {
-            field: FlowField::new(&settings(&desc, roughness_m, 0), &FlowObstacles::default(), |_| DVec3::ZERO)?,
+        let settings = settings(&desc, roughness_m, 0);
+        let field = FlowField::new(&settings, &FlowObstacles::default(), |_| DVec3::ZERO)?;
+        Ok(Self::standing_still(desc, anchor, corner, field, time_s))
+    }
+
+    /// With nothing of a step or a start under way, and nothing known of what stands in it.
+    fn standing_still(desc: WindFieldDesc, anchor: Anchor, corner: [i64; 3], field: FlowField, time_s: f64) -> Self {
+        Self {
             desc,
             anchor,
             corner,
+            field,
             time_s,
             begun_s: time_s,
             start: None,
@@ -291,7 +286,7 @@ impl Live {
             solved_for: [f64::INFINITY; 3],
             awake_s: 0.0,
             rests: false,
-        })
+        }
     }
 
     /// Begins anew from the steady field of a moment.

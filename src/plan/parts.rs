@@ -33,7 +33,7 @@ pub enum Worth {
     /// A closed form says what each rung changes (`plan::Unseen`); to the last rung the gauge adds what then stands in the part's
     /// place, in this channel.
     Unseen(usize),
-    /// The gauge estimates it in this channel, whether the part is drawn now or not: over the picture it is right, in a pixel by chance.
+    /// The gauge estimates it in this channel, whether the part is drawn now or not: the error of the whole picture, not where in it.
     Estimated(usize),
 }
 

@@ -119,6 +119,12 @@ struct Measured {
     ratio: f64,
 }
 
+/// The solid angle that a place in a column stands for, up to a factor.
+fn area(column: usize) -> f64 {
+    let height = DECLINATIONS_DEG[(column + 1).min(24)] - DECLINATIONS_DEG[column.saturating_sub(1)];
+    height * DECLINATIONS_DEG[column].to_radians().cos()
+}
+
 /// The light of the stars that are not drawn as points, S10.
 pub struct Starlight(Vec<Measured>);
 
@@ -132,12 +138,10 @@ impl Starlight {
                 if *blue == X {
                     continue;
                 }
-                let declination = DECLINATIONS_DEG[j];
-                let height = DECLINATIONS_DEG[(j + 1).min(24)] - DECLINATIONS_DEG[j.saturating_sub(1)];
-                let direction = to_galactic * equatorial_direction(10.0 * i as f64, declination);
+                let direction = to_galactic * equatorial_direction(10.0 * i as f64, DECLINATIONS_DEG[j]);
                 let s10 = f64::from(*blue) + RED_SHARE * (f64::from(*red) - f64::from(*blue));
                 let ratio = (s10 / disc_s10(direction)).ln();
-                all.push(Measured { direction, area: height * declination.to_radians().cos(), ratio });
+                all.push(Measured { direction, area: area(j), ratio });
             }
         }
         Self(all)
@@ -203,11 +207,7 @@ mod tests {
     #[test]
     fn starlight_has_the_tables_colour() {
         let of = |table: &[[u16; 25]; 36]| {
-            let rows = table.iter().flat_map(|row| row.iter().zip(&DECLINATIONS_DEG).enumerate());
-            let light = rows.map(|(j, (v, declination))| {
-                let height = DECLINATIONS_DEG[(j + 1).min(24)] - DECLINATIONS_DEG[j.saturating_sub(1)];
-                f64::from(*v) * height * declination.to_radians().cos()
-            });
+            let light = table.iter().flat_map(|row| row.iter().enumerate().map(|(j, v)| f64::from(*v) * area(j)));
             light.sum::<f64>()
         };
         let redder = of(&RED_S10) / of(&BLUE_S10);
