@@ -6,11 +6,14 @@ use glam::{DMat3, DVec3, dvec3};
 
 use super::*;
 use crate::{
-    effects::{COUPLINGS, ContextDesc},
+    almanac::sun::Utc,
     flow::{WindFieldMode, WindWalls},
+    light::{Exposure, ToneCurve},
+    planet::Planet,
+    scene::WorldFrame,
     surroundings::{Planes, Shelter},
     weather::{Weather, Wind, derive},
-    world::Made,
+    world::{Couplings, Made},
 };
 
 /// A world with a field, led as a context leads it.
@@ -34,17 +37,18 @@ fn small(mode: WindFieldMode) -> WindFieldDesc {
 
 impl Bench {
     fn new(mode: WindFieldMode) -> Self {
-        let d = ContextDesc::default();
         let made = Made {
-            frame: d.world,
-            planet: d.planet,
+            frame: WorldFrame::default(),
+            planet: Planet::earth(),
             seed: 3,
-            exposure: d.exposure,
-            tone: d.tone,
-            utc_at_zero: d.utc_at_zero,
+            exposure: Exposure::default(),
+            tone: ToneCurve::default(),
+            utc_at_zero: Utc(1_782_036_000.0),
         };
+        // No light is asked for here.
+        let couplings = Couplings { dim: |_| Ok(()), night_lux: |_, _, _, _| Ok([0.0; 3]) };
         let weather = derive(&weather(8.0)).expect("a weather");
-        let mut world = World::new(made, weather, COUPLINGS).expect("a world");
+        let mut world = World::new(made, weather, couplings).expect("a world");
         world.set.shelters.push(house(dvec3(-10.0, 0.0, 6.0), DVec3::ZERO));
         let mut bench = Self { world, flow: HeldFlow::default() };
         bench.flow.set(&bench.world, Some(small(mode)), 0.0).expect("a field");
