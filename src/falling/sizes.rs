@@ -88,8 +88,11 @@ impl Part {
     /// Of `rate_mm_h` where speeds are `factor` times those at sea level.
     fn new(slope_per_mm: f64, rate_mm_h: f64, factor: f64) -> Self {
         let lambda = slope_per_mm * libm::pow(rate_mm_h.max(LEAST_RATE_MM_H), -0.21);
+        if rate_mm_h <= 0.0 {
+            return Self { n0: 0.0, lambda };
+        }
         let unit: f64 = NODES.iter().map(|[d, w, v]| w * RATE * d * d * d * v * libm::exp(-lambda * d)).sum();
-        Self { n0: rate_mm_h.max(0.0) / (unit * factor), lambda }
+        Self { n0: rate_mm_h / (unit * factor), lambda }
     }
 
     /// Integral of D^`power` N(D) from `a` to `b` mm: by parts, from power 0 up.

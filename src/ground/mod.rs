@@ -42,6 +42,6 @@ pub(crate) use hollows::pattern_axes;
 pub use host::GroundCell;
 pub use texture::{GroundTexture, SNIPPET_GLSL, SNIPPET_WGSL};
 pub(crate) use uniform::GroundUniform;
-use uniform::WetScene;
+use uniform::{DropsKept, WetScene};
 pub(crate) use view::{GroundSeen, GroundView};
 pub use water::GroundWater;

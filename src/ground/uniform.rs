@@ -133,21 +133,42 @@ fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { 1e3 } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
-/// Speeds of the drops in the middle of each twelfth of the water that falls; without rain, those of steady rain.
-fn falls_m_s(scene: &Scene) -> [[f32; 4]; 3] {
-    let c = &scene.conditions;
-    let mut falling = c.precipitation;
-    if falling.rain_mm_h + falling.drizzle_mm_h <= 0.0 {
-        falling.rain_mm_h = 3.0;
+/// What follows from the sizes of drops alone, kept while the same falls: sums over all sizes would cost more than the rest of a frame's
+/// recording. The rings that a rate makes are as many at every altitude, and all speeds change by one factor.
+#[derive(Default)]
+pub(crate) struct DropsKept {
+    rings: Option<(Falling, f64)>,
+    falls: Option<(Falling, [f64; 12])>,
+}
+
+impl DropsKept {
+    /// See [`ring_drops_per_m2_s`].
+    fn rings_per_m2_s(&mut self, falling: &Falling) -> f64 {
+        let kept = self.rings.filter(|(of, _)| of == falling);
+        kept.unwrap_or_else(|| *self.rings.insert((*falling, ring_drops_per_m2_s(&DropSizes::new(falling, 1.0))))).1
     }
-    let sizes = DropSizes::new(&falling, factor_in(&c.air, scene.place.altitude_m));
-    let middles = std::array::from_fn::<f64, 12, _>(|i| (i as f64 + 0.5) / 12.0);
-    let speeds = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| sizes.speed_m_s(d) as f32);
-    std::array::from_fn(|i| std::array::from_fn(|k| speeds[4 * i + k]))
+
+    /// Speeds of the drops in the middle of each twelfth of the water that falls; without rain, those of steady rain.
+    fn falls_m_s(&mut self, scene: &Scene) -> [[f32; 4]; 3] {
+        let c = &scene.conditions;
+        let mut falling = c.precipitation;
+        if falling.rain_mm_h + falling.drizzle_mm_h <= 0.0 {
+            falling.rain_mm_h = 3.0;
+        }
+        let kept = self.falls.filter(|(of, _)| *of == falling);
+        let (_, speeds) = kept.unwrap_or_else(|| {
+            let sizes = DropSizes::new(&falling, 1.0);
+            let middles = std::array::from_fn::<f64, 12, _>(|i| (i as f64 + 0.5) / 12.0);
+            let speeds = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| sizes.speed_m_s(d));
+            *self.falls.insert((falling, speeds))
+        });
+        let factor = factor_in(&c.air, scene.place.altitude_m);
+        std::array::from_fn(|i| std::array::from_fn(|k| (factor * speeds[4 * i + k]) as f32))
+    }
 }
 
 impl WetScene<'_> {
-    pub fn uniform(&self) -> GroundUniform {
+    pub fn uniform(&self, drops: &mut DropsKept) -> GroundUniform {
         let (scene, cover) = (self.scene, self.cover);
         let rain = self.falling.rain_mm_h;
         let lamp = scene.brighter();
@@ -159,8 +180,7 @@ impl WetScene<'_> {
         let near = at.rem_euclid(DVec2::splat(PERIOD_M));
         let cell = (near / RING_CELL_M).floor();
         let slots = self.time_s / RING_SLOT_S;
-        let factor = factor_in(&scene.conditions.air, scene.place.altitude_m);
-        let drops = ring_drops_per_m2_s(&DropSizes::new(&self.falling, factor));
+        let rings = drops.rings_per_m2_s(&self.falling);
         let [u, v] = axes.map(|a| (scene.world_to_enu * a).as_vec3().to_array());
         let f = |c: [f64; 3]| c.map(|v| v as f32);
         let (rows, last, cell_m) = self.terrain_rows();
@@ -190,7 +210,7 @@ impl WetScene<'_> {
             slot_share: (slots - slots.floor()) as f32,
             film_slope: (THIN_FILM_SLOPE + (CLOSED_FILM_SLOPE - THIN_FILM_SLOPE) * film) as f32,
             water_slope: wind2.sqrt() as f32,
-            ring_chance: (drops * RING_CELL_M * RING_CELL_M * RING_SLOT_S / RING_LAYERS).min(1.0) as f32,
+            ring_chance: (rings * RING_CELL_M * RING_CELL_M * RING_SLOT_S / RING_LAYERS).min(1.0) as f32,
             pixel: self.pixel.map(|v| v as f32),
             depth_step: self.depth_rounding[0] as f32,
             depth_ulp: self.depth_rounding[1] as f32,
@@ -201,7 +221,7 @@ impl WetScene<'_> {
             glaze: self.glaze as f32,
             wind: self.wind_m_s.map_or([0.0; 3], |w| w.as_vec3().to_array()),
             pad: 0.0,
-            falls: self.wind_m_s.map_or([[0.0; 4]; 3], |_| falls_m_s(scene)),
+            falls: self.wind_m_s.map_or([[0.0; 4]; 3], |_| drops.falls_m_s(scene)),
             terrain_x: rows[0],
             terrain_y: rows[1],
             terrain_z: rows[2],

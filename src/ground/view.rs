@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use super::{GroundGrid, GroundUniform, Hollows, SurfaceClass, WetScene};
+use super::{DropsKept, GroundGrid, GroundUniform, Hollows, SurfaceClass, WetScene};
 use crate::{
     error::Result,
     gpu::Device,
@@ -36,12 +36,13 @@ pub(crate) struct GroundView {
     has_terrain: bool,
     /// Water and surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
+    drops: DropsKept,
 }
 
 impl GroundView {
     pub fn new(device: &Device) -> Self {
         let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
-        Self { buffer, block: None, has_terrain: false, views: [None, None] }
+        Self { buffer, block: None, has_terrain: false, views: [None, None], drops: DropsKept::default() }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -61,7 +62,7 @@ impl GroundView {
         self.has_terrain = held.terrain.is_some();
         self.block = None;
         if let (true, Some(color), Some(_)) = (wet, frame.color, frame.depth) {
-            self.block = Some(uniform(now, (frame, color), held, glaze, fog_depth)?);
+            self.block = Some(wet_scene(now, (frame, color), held, glaze, fog_depth)?.uniform(&mut self.drops));
         }
         Ok(self.block.is_some())
     }
@@ -109,17 +110,17 @@ fn normals(frame: &Frame<'_>, now: &Moment<'_>) -> (DMat3, [f32; 2]) {
     (turned, if signed { [1.0, 0.0] } else { [2.0, -1.0] })
 }
 
-/// The block of `shaders/ground/uniform.wgsl`.
-fn uniform(
-    now: &Moment<'_>,
+/// What the block of `shaders/ground/uniform.wgsl` is made of.
+fn wet_scene<'a>(
+    now: &'a Moment<'_>,
     (frame, color): (&Frame<'_>, &wgpu::Texture),
-    held: &GroundSeen<'_>,
+    held: &'a GroundSeen<'_>,
     glaze: f64,
     fog_depth: f64,
-) -> Result<GroundUniform> {
+) -> Result<WetScene<'a>> {
     let (width, height) = (f64::from(color.width()), f64::from(color.height()));
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
-    let seen = WetScene {
+    Ok(WetScene {
         scene: &now.scene,
         cover: &held.cover,
         falling: now.here.precipitation,
@@ -139,6 +140,5 @@ fn uniform(
         surface_class: held.surface_class,
         normals: normals(frame, now),
         wind_m_s: now.is_sheltered().then(|| now.carrying().map(|c| c.velocity_m_s())).transpose()?,
-    };
-    Ok(seen.uniform())
+    })
 }

@@ -32,8 +32,7 @@ impl Storms<'_> {
             || (set.cells.is_empty() && set.flashes_per_minute.is_some_and(|r| r > 0.0))
             || self.held.triggered.iter().any(|t| (from_s..until_s).contains(&t.time_s));
         let by_weather = set.cells.is_empty() && set.flashes_per_minute.is_none();
-        let timeline = &self.world.timeline;
-        let thunders = || timeline.changes_between(from_s, until_s) || timeline.at(until_s).precipitation.thunder > 0.0;
+        let thunders = || self.world.timeline.is_ever_between(from_s, until_s, |c| c.precipitation.thunder > 0.0);
         !(by_host || by_weather && thunders())
     }
 

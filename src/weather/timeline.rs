@@ -121,6 +121,13 @@ impl Timeline {
         self.changes.iter().any(|c| c.start_s <= b && c.end_s() >= a)
     }
 
+    /// Whether the conditions at some time from `a` to `b` may be such; what blends into such or out of them is.
+    pub fn is_ever_between(&self, a: f64, b: f64, is_such: impl Fn(&Conditions) -> bool) -> bool {
+        let (a, b) = (a.min(b), a.max(b));
+        let mut within = self.changes.iter().filter(|c| c.start_s <= b && c.end_s() >= a);
+        within.any(|c| is_such(&c.to)) || is_such(&self.at(a))
+    }
+
     /// Moves the present to `now_s` and forgets what has ended before it. Earlier times do nothing.
     pub fn advance(&mut self, now_s: f64) {
         self.advance_keeping(now_s, now_s);
@@ -234,6 +241,23 @@ mod tests {
             steepest = steepest.max(step * 600.0);
         }
         assert!(steepest < 1.6, "the fastest second is 1.5 times the mean one, as smoothstep says: {steepest}");
+    }
+
+    #[test]
+    fn what_blends_in_or_out_is_there_between_two_times_and_what_no_change_brings_is_not() {
+        let (clear, fog) = clear_and_fog();
+        let mut timeline = Timeline::new(clear);
+        timeline.change(fog, 100.0, 50.0).unwrap();
+        timeline.change(clear, 300.0, 50.0).unwrap();
+        let fogs = |c: &Conditions| c.extinction_per_m > 1.01 * clear.extinction_per_m;
+        let ever = |a, b| timeline.is_ever_between(a, b, fogs);
+        assert!(
+            [(90.0, 100.0), (120.0, 130.0), (200.0, 210.0), (310.0, 320.0), (0.0, 500.0)]
+                .iter()
+                .all(|&(a, b)| ever(a, b))
+        );
+        assert!(!ever(0.0, 99.0) && !ever(350.0, 360.0));
+        assert!(!timeline.is_ever_between(0.0, 500.0, |c| c.precipitation.thunder > 0.0), "changes bring no thunder");
     }
 
     #[test]
