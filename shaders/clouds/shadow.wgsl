@@ -6,6 +6,9 @@
 
 @group(0) @binding(7) var<uniform> shadows: CloudShadows;
 
+// Along a side of the map.
+override SHADOW_TEXELS: f32 = 512.0;
+
 const SHADOW_STEPS: u32 = 12u;
 
 // Optical depth of a layer on the way of light to a place in the plane.

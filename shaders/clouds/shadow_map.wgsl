@@ -1,8 +1,5 @@
 // Where a place lies in the map of the clouds' shadows: CloudShadows of src/clouds/uniforms.rs.
 
-// Along a side of the map.
-const SHADOW_TEXELS: f32 = 512.0;
-
 struct CloudShadows {
     // Unit, towards the light (east, north, up), never level.
     to_light: vec3f,

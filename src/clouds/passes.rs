@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{
     picture::{BEHIND, PAIR, Picture, SEEN},
     round::{Around, Round},
-    shadow_map::{ShadowMap, Standing},
+    shadow_map::{Past, ShadowMap, Standing},
     tables::CloudTables,
     uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
 };
@@ -171,8 +171,7 @@ pub(super) struct CloudFrame<'a> {
     pub around: Around,
     /// Of the march ([`super::CloudSettings`]).
     pub fineness: f64,
-    /// The frame is a pure function of view and time.
-    pub is_pure: bool,
+    pub past: Past,
     /// The host's depth has several samples a pixel, and which kinds of depth there are.
     pub is_multisampled: bool,
     pub depth_kinds: f64,
@@ -318,13 +317,13 @@ impl CloudPasses {
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         layout: &wgpu::BindGroupLayout,
-        (shaded, is_pure): (Option<&Shaded<'_>>, bool),
+        (shaded, past): (Option<&Shaded<'_>>, Past),
     ) -> Result<wgpu::BindGroup> {
         if shaded.is_some() && self.shadows.is_none() {
-            (self.shadows, self.shaded) = (Some(ShadowMap::new(device)?), None);
+            (self.shadows, self.shaded) = (Some(ShadowMap::new(device, &self.tables, &self.block)?), None);
         }
         if let (Some(of), Some(shadows)) = (shaded, &mut self.shadows) {
-            shadows.draw(device, encoder, &self.tables, &self.block, of.lie, is_pure);
+            shadows.draw(device, encoder, of.lie, past);
         }
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
         if let Some((made, group)) = &self.shaded
@@ -375,7 +374,7 @@ impl CloudPasses {
                 none => none.insert(Round::new(device, &[march, sky])?),
             };
             if of.wanted.round {
-                passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.is_pure);
+                passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.past);
             }
             // The pass over the picture has cleared what lies below it.
             round.copy(encoder, made, picture.of.0.1);
@@ -400,7 +399,7 @@ impl CloudPasses {
         let resolve = pipelines.resolve(device, kind)?;
         device.queue.write_buffer(&self.picture_block, 0, bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
-        let shaded = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.is_pure))?;
+        let shaded = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
         let groups = match &picture.groups {
             Some(groups) => groups.clone(),
             None => self.picture_groups(device, &pipelines.picture_layout, of.frame, picture),

@@ -4,7 +4,7 @@
 use super::{
     picture::SEEN,
     rows::{self, Rows},
-    shadow_map::Standing,
+    shadow_map::{Past, Standing},
 };
 use crate::{
     error::Result,
@@ -68,16 +68,16 @@ impl Round {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = 8 * SIDE as u64 * SIDE as u64;
 
-    /// Makes some rows anew, or all of them; answers the passes that it took. `is_pure`: nothing of earlier frames may show.
+    /// Makes some rows anew, or all of them; answers the passes that it took.
     pub fn draw(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         groups: &[&wgpu::BindGroup],
         here: Around,
-        is_pure: bool,
+        past: Past,
     ) -> u32 {
         let rests = self.around == Some(here);
-        let holds = self.around.is_some_and(|before| !is_pure && !here.leaps_from(&before));
+        let holds = self.around.is_some_and(|before| past == Past::Kept && !here.leaps_from(&before));
         self.around = Some(here);
         let Some((first, count)) = self.rows.due(SIDE, ROWS, rests, holds) else { return 0 };
         rows::draw(encoder, &self.view, (SIDE, first, count), &self.pipeline, groups);

@@ -1,5 +1,6 @@
 //! The map of the clouds' shadows that pictures read: a window about the camera in a plane at the station's height, fixed to the air that
-//! carries the clouds, so that a frame makes only some rows of it anew.
+//! carries the clouds, so that a frame makes only some rows of it anew. A new map is coarse at first: all of it at once would cost as much as
+//! ten frames.
 
 use glam::{DVec2, DVec3};
 
@@ -19,6 +20,7 @@ use crate::{
         pass::{self, FullscreenDesc},
     },
     moment::Moment,
+    stage::{Frame, FrameFlags},
     weather::smoothstep,
 };
 
@@ -26,12 +28,36 @@ use crate::{
 const TEXELS: u32 = 512;
 /// Metres a texel.
 const TEXEL_M: f64 = 40.0;
+/// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
+const COARSE: u32 = 64;
 /// Rows that a frame makes anew: a whole map within a second of frames, in which clouds change by a thousandth of their life.
 const ROWS: u32 = 8;
+/// The same while some of the map is coarse: in sixteen frames none is, as none of the picture is old.
+const ROWS_OF_NEW: u32 = 32;
 /// Sines of the light's elevation between which shadows begin to be told apart.
 const TOLD: [f64; 2] = [LOWEST, 0.07];
 /// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
+
+/// What a frame may take over from those before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Past {
+    Kept,
+    /// Nothing; those after it may take over from it.
+    Cut,
+    /// Nothing: it is a pure function of view and time.
+    None,
+}
+
+impl Past {
+    pub fn of(frame: &Frame<'_>) -> Self {
+        match frame.flags {
+            flags if flags.has(FrameFlags::NO_HISTORY) => Self::None,
+            flags if flags.has(FrameFlags::CUT) => Self::Cut,
+            _ => Self::Kept,
+        }
+    }
+}
 
 /// What the map is made of.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,14 +68,26 @@ pub(super) struct Standing {
     pub camera_m: DVec2,
 }
 
-/// The map and the pass that makes it.
+/// The map and the passes that make it.
 pub(super) struct ShadowMap {
     pub view: wgpu::TextureView,
     pub block: wgpu::Buffer,
-    layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
+    /// The clouds, which both maps are made of.
+    clouds: wgpu::BindGroup,
+    coarse: Coarse,
     standing: Option<Standing>,
     rows: Rows,
+    /// Rows that are still those of the coarse map.
+    coarse_rows: u32,
+}
+
+/// The coarse map, the pass that makes it and the one that spreads it over the map.
+struct Coarse {
+    view: wgpu::TextureView,
+    pipeline: wgpu::RenderPipeline,
+    spread: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
 }
 
 /// What the map is made of for a frame, how it lies, and where the camera stands in it.
@@ -81,16 +119,48 @@ pub(super) fn lie<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> 
     (standing, uniform)
 }
 
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+fn map(device: &Device, side: u32) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let texture = flat_texture(&device.device, "shadows of clouds", (side, side), FORMAT, usage);
+    texture.create_view(&Default::default())
+}
+
+fn pipeline(
+    device: &Device,
+    (shader, entry): (&str, &str),
+    layout: &wgpu::BindGroupLayout,
+    side: u32,
+) -> Result<wgpu::RenderPipeline> {
+    let constants = [("SHADOW_TEXELS", f64::from(side))];
+    let (layouts, targets) = ([layout], [FORMAT.into()]);
+    let of = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants: &constants, samples: 1 };
+    pass::fullscreen(device, &of)
+}
+
+impl Coarse {
+    fn new(device: &Device, shadow: &wgpu::BindGroupLayout, repeating: &wgpu::Sampler) -> Result<Self> {
+        let slots = [(2, Slot::Filtered), (5, Slot::Sampler)];
+        let layout = bind::layout(&device.device, "coarse shadows", wgpu::ShaderStages::FRAGMENT, &slots);
+        let view = map(device, COARSE);
+        let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("coarse shadows"),
+            layout: &layout,
+            entries: &[bind::view(2, &view), bind::sampler(5, repeating)],
+        });
+        Ok(Self {
+            pipeline: pipeline(device, ("clouds/shadow.wgsl", "shadow"), shadow, COARSE)?,
+            spread: pipeline(device, ("clouds/shadow_spread.wgsl", "spread"), &layout, TEXELS)?,
+            view,
+            group,
+        })
+    }
+}
+
 impl ShadowMap {
-    pub fn new(device: &Device) -> Result<Self> {
-        let format = wgpu::TextureFormat::R8Unorm;
-        let texture = flat_texture(
-            &device.device,
-            "shadows of clouds",
-            (TEXELS, TEXELS),
-            format,
-            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-        );
+    /// Of clouds in these tables and this block.
+    pub fn new(device: &Device, tables: &CloudTables, clouds: &wgpu::Buffer) -> Result<Self> {
         let slots = [
             (1, Slot::Uniform(size_of::<super::uniforms::CloudsUniform>())),
             (2, Slot::Filtered),
@@ -99,55 +169,60 @@ impl ShadowMap {
             (7, Slot::Uniform(size_of::<ShadowUniform>())),
         ];
         let layout = bind::layout(&device.device, "shadows of clouds", wgpu::ShaderStages::FRAGMENT, &slots);
-        let desc = FullscreenDesc {
-            shader: "clouds/shadow.wgsl",
-            entry: "shadow",
-            layouts: &[&layout],
-            targets: &[format.into()],
-            constants: &[],
-            samples: 1,
-        };
-        Ok(Self {
-            view: texture.create_view(&Default::default()),
-            block: bind::block(&device.device, "shadows of clouds", size_of::<ShadowUniform>()),
-            pipeline: pass::fullscreen(device, &desc)?,
-            layout,
-            standing: None,
-            rows: Rows::default(),
-        })
-    }
-
-    /// Bytes of GPU memory.
-    pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64;
-
-    /// Makes some rows anew, or all of them where nothing of the map holds any more.
-    pub fn draw(
-        &mut self,
-        device: &Device,
-        encoder: &mut wgpu::CommandEncoder,
-        tables: &CloudTables,
-        clouds: &wgpu::Buffer,
-        (here, block): (Standing, ShadowUniform),
-        is_pure: bool,
-    ) {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
-        let rests = self.standing == Some(here);
-        let holds = self.standing.is_some_and(|b| !is_pure && !here.leaps_from(&b));
-        self.standing = Some(here);
-        let Some((first, count)) = self.rows.due(TEXELS, ROWS, rests, holds) else { return };
+        let block = bind::block(&device.device, "shadows of clouds", size_of::<ShadowUniform>());
         let solid = tables.solid.view();
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadows of clouds"),
-            layout: &self.layout,
+            layout: &layout,
             entries: &[
                 bind::buffer(1, clouds),
                 bind::view(2, &tables.map),
                 bind::view(3, &solid),
                 bind::sampler(5, &tables.repeating),
-                bind::buffer(7, &self.block),
+                bind::buffer(7, &block),
             ],
         });
-        rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&group]);
+        Ok(Self {
+            view: map(device, TEXELS),
+            pipeline: pipeline(device, ("clouds/shadow.wgsl", "shadow"), &layout, TEXELS)?,
+            coarse: Coarse::new(device, &layout, &tables.repeating)?,
+            clouds: group,
+            block,
+            standing: None,
+            rows: Rows::default(),
+            coarse_rows: 0,
+        })
+    }
+
+    /// Bytes of GPU memory.
+    pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
+
+    /// Makes some rows anew, and before them the whole map coarsely where nothing of it holds any more or the picture is cut; where a
+    /// frame is a pure function of view and time, all rows.
+    pub fn draw(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (here, block): (Standing, ShadowUniform),
+        past: Past,
+    ) {
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+        let rests = past != Past::Cut && self.standing == Some(here);
+        let holds = past == Past::Kept && self.standing.is_some_and(|b| !here.leaps_from(&b));
+        self.standing = Some(here);
+        let begins = !holds && past != Past::None;
+        if begins {
+            self.coarse_rows = TEXELS;
+        }
+        let most = if self.coarse_rows > 0 { ROWS_OF_NEW } else { ROWS };
+        let Some((first, count)) = self.rows.due(TEXELS, most, rests, past != Past::None) else { return };
+        self.coarse_rows = self.coarse_rows.saturating_sub(count);
+        if begins {
+            let coarse = &self.coarse;
+            rows::draw(encoder, &coarse.view, (COARSE, 0, COARSE), &coarse.pipeline, &[&self.clouds]);
+            rows::draw(encoder, &self.view, (TEXELS, 0, TEXELS), &coarse.spread, &[&coarse.group]);
+        }
+        rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&self.clouds]);
     }
 }
 

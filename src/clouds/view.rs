@@ -155,7 +155,7 @@ impl Overhead {
 impl CloudsView {
     /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history to wait for.
     fn side(&self, frame: &Frame<'_>) -> u32 {
-        if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.side }
+        if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.square_side }
     }
 
     /// How a picture's clouds follow from the last frame's.
@@ -207,7 +207,7 @@ impl DrawnEffect for CloudsView {
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
         to.block.clouds_drawn = shot.share(&CLOUDS, 0);
-        if let Some(overhead) = &self.overhead {
+        if let Some(overhead) = self.overhead.as_ref().filter(|_| shot.is_gauged) {
             (to.block.mean_cloud, to.block.clouds_over) = overhead.on_the_mean(&shot.now.scene);
         }
         let is_drawn = to.block.clouds_drawn > 0.0;
@@ -271,7 +271,7 @@ impl DrawnEffect for CloudsView {
             shaded,
             around,
             fineness: self.settings.fineness,
-            is_pure: shot.frame.is_pure(),
+            past: shadow_map::Past::of(shot.frame),
             is_multisampled: sampling.multisampled()[1],
             depth_kinds: f64::from(shot.rays.depth_kinds()),
         };

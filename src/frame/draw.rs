@@ -45,6 +45,7 @@ impl<'a> Call<'a> {
             veiled: self.veiled,
             parts: PARTS,
             shares: [[1.0; MOST_RUNGS - 1]; MOST_PARTS],
+            is_gauged: false,
         }
     }
 }
@@ -106,6 +107,7 @@ impl View {
             self.planner.begin(&self.device, &here, &present, frame.is_pure());
             self.report.prediction = self.planner.prediction();
         }
+        shot.is_gauged = self.planner.budget().gauges();
         for (part, shares) in shot.shares.iter_mut().enumerate().take(PARTS.len()) {
             for (step, share) in shares.iter_mut().enumerate().take(PARTS[part].rungs.len() - 1) {
                 *share = self.planner.drawn_share(part, step);

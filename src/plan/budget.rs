@@ -68,7 +68,7 @@ impl Budget {
     }
 
     /// Whether it asks what pictures show.
-    pub(super) fn gauges(&self) -> bool {
+    pub(crate) fn gauges(&self) -> bool {
         self.tolerance.is_some() || self.milliseconds.is_some()
     }
 }

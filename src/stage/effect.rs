@@ -40,6 +40,8 @@ pub(crate) struct Shot<'a> {
     /// The parts of the plan, and the share of each step of each of them that is drawn.
     pub parts: &'static [Part],
     pub shares: [[f32; MOST_RUNGS - 1]; MOST_PARTS],
+    /// The plan gauges what parts are worth.
+    pub is_gauged: bool,
 }
 
 impl Shot<'_> {

@@ -14,8 +14,8 @@ use crate::drawn::{SIZE, Sky};
 const HEIGHT_M: f64 = 2500.0;
 const SCATTERED: &str = "LOWI 121150Z 00000KT 9999 SCT100 18/12 Q1015";
 
-/// The picture over a ground of this luminance, green.
-fn over_ground(sky: &mut Sky, luminance: f32) -> Vec<f64> {
+/// The picture over a ground of this luminance, green, of a frame with these flags.
+fn over_ground(sky: &mut Sky, luminance: f32, flags: FrameFlags) -> Vec<f64> {
     let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
     let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let write = |texture: &wgpu::Texture, texels: &[f32], bytes: u32| {
@@ -29,7 +29,7 @@ fn over_ground(sky: &mut Sky, luminance: f32) -> Vec<f64> {
     sky.frame_id += 1;
     let camera = Camera::look_to(DVec3::Z * HEIGHT_M, DVec3::NEG_Z, DVec3::Y, 1.0, 16.0 / 9.0, 0.1);
     let mut frame = Frame::new(sky.frame_id, camera, &sky.color, Some(&depth));
-    frame.flags = FrameFlags::NO_HISTORY;
+    frame.flags = flags;
     let stages = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::SURFACE);
     sky.view.record(&sky.context, &frame, stages).unwrap();
     readback::rgba(&sky.device, &sky.color).unwrap().iter().map(|t| f64::from(t[1])).collect()
@@ -37,7 +37,8 @@ fn over_ground(sky: &mut Sky, luminance: f32) -> Vec<f64> {
 
 /// What is left of the ground's light, pixel by pixel.
 fn left_of_ground(sky: &mut Sky) -> Vec<f64> {
-    let (dark, bright) = (over_ground(sky, 0.0), over_ground(sky, 1e4));
+    let of = FrameFlags::NO_HISTORY;
+    let (dark, bright) = (over_ground(sky, 0.0, of), over_ground(sky, 1e4, of));
     bright.iter().zip(dark).map(|(bright, dark)| (bright - dark) / 1e4).collect()
 }
 
@@ -81,4 +82,22 @@ fn the_mean_over_places_is_the_light_that_the_host_was_told() {
     let deck = Sky::new(SCATTERED, CloudModel::Deck);
     assert_eq!(deck.context.sun_share(DVec3::ZERO, 0.0).unwrap(), told);
     assert_eq!(sky.context.sun_share(DVec3::Z * 12e3, 0.0).unwrap(), 1.0, "above all clouds");
+}
+
+#[test]
+fn after_a_cut_shadows_are_coarse_for_sixteen_frames_and_then_as_without_history() {
+    let mut sky = Sky::new(SCATTERED, CloudModel::Volume);
+    let luminance = 1e6;
+    let whole = over_ground(&mut sky, luminance, FrameFlags::NO_HISTORY);
+    let off = |picture: &[f64]| {
+        let mut off: Vec<f64> = picture.iter().zip(&whole).map(|(a, b)| (a / b - 1.0).abs()).collect();
+        off.sort_by(f64::total_cmp);
+        [50, 95].map(|percent| off[off.len() * percent / 100])
+    };
+    let cut = off(&over_ground(&mut sky, luminance, FrameFlags::CUT));
+    (0..15).for_each(|_| drop(over_ground(&mut sky, luminance, FrameFlags(0))));
+    let settled = off(&over_ground(&mut sky, luminance, FrameFlags(0)));
+    println!("shadows after a cut: off by {cut:.3?} in the median and at 95 %, then {settled:.4?}");
+    assert!(cut[0] < 0.1 && cut[1] > 0.1, "coarse, yet shadows: {cut:?}");
+    assert!(settled[1] < 0.01, "{settled:?}");
 }

@@ -1,0 +1,13 @@
+// A map of shadows from a coarse one, until its own rows are made.
+//!include "common/fullscreen.wgsl"
+
+@group(0) @binding(2) var coarse: texture_2d<f32>;
+@group(0) @binding(5) var repeating: sampler;
+
+// Along a side of the map.
+override SHADOW_TEXELS: f32 = 512.0;
+
+@fragment
+fn spread(in: FullscreenVarying) -> @location(0) vec4f {
+    return textureSampleLevel(coarse, repeating, in.position.xy / SHADOW_TEXELS, 0.0);
+}
