@@ -40,6 +40,12 @@ fn processor_ns() -> Fallible<u64> {
     Ok(sum)
 }
 
+/// The number below which such a share of numbers lies.
+pub fn quantile(of: &mut [f64], share: f64) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[((of.len() - 1) as f64 * share) as usize]
+}
+
 /// The median of numbers.
 pub fn median(of: &mut [f64]) -> f64 {
     of.sort_by(f64::total_cmp);
@@ -99,7 +105,7 @@ impl Copying {
     }
 }
 
-fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+pub fn texture(device: &Device, format: wgpu::TextureFormat) -> wgpu::Texture {
     textures::texture(device, (SIZE.width, SIZE.height), format, 1)
 }
 

@@ -110,7 +110,7 @@ impl Host {
     /// # Errors
     /// GPU faults.
     pub fn truth(&mut self) -> Result<Picture> {
-        let settings = CloudSettings { fineness: TRUE_FINENESS, side: 1 };
+        let settings = CloudSettings { fineness: TRUE_FINENESS, square_side: 1 };
         self.set(&CloudMethod { model: CloudModel::Volume, settings })?;
         self.frame(FrameFlags::NO_HISTORY)?;
         self.texels()

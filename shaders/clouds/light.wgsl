@@ -25,6 +25,8 @@ struct CloudDepths {
 // Per unit of the sun's irradiance facing it, of the sky's and of the ground's radiance.
 struct CloudScattered {
     sun: f32,
+    // Of the sun's, what is scattered for the first time: times the phase function.
+    once: f32,
     sky: f32,
     ground: f32,
 }
@@ -138,9 +140,10 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let forward = medium.rest.x * (at.to_sun + to_eye) / (1.0 - medium.rest.x);
     let share_forward = select((1.0 - exp(-forward)) / forward, 1.0 - 0.5 * forward, forward < 1e-3);
     let peak = max(phase - medium.rest.y, 0.0) / (1.0 - medium.rest.x) * share_forward;
-    let once = albedo * (smooth_phase + peak) * exp(-at.to_sun);
 
     var out: CloudScattered;
+    out.once = albedo * exp(-at.to_sun);
+    let once = out.once * (smooth_phase + peak);
     let often = share * (max(top, 0.0) + max(side, 0.0));
     out.sun = once + often + clamp(level_kept, -often, often);
     out.sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);

@@ -1,6 +1,7 @@
 // A ray through the layers of cloud: what they send to the eye, what they let through, and how far away they are.
 //!include "between/air.wgsl"
 //!include "clouds/about.wgsl"
+//!include "clouds/halo.wgsl"
 
 // How many steps a ray takes, over those of these: most steps through one layer; depth of a step in cloud, scaled, at most; distance from
 // which on steps grow with it.
@@ -50,6 +51,7 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     let scaled = layer.medium.y;
     let fine = clamp(CLOUD_STEP_DEPTH / (layer.size.w * scaled), thickness / 64.0, thickness / 12.0) / CLOUD_FINENESS;
     let most = u32(f32(CLOUD_STEPS) * CLOUD_FINENESS);
+    let halo = cloud_halo(layer.medium.x, direction);
     var gone = first;
     var tried = 0u;
     while out.transmittance > CLOUD_LEAST {
@@ -72,7 +74,7 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         }
         let depths = cloud_depths(layer, at, here.excess);
         let s = cloud_scattered(layer.medium.x, depths, -direction, -log(out.transmittance));
-        let light = layer.sun.rgb * s.sun + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
+        let light = layer.sun.rgb * (s.sun + s.once * halo) + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
         let left = exp(-here.extinction * scaled * step);
         let share = out.transmittance * (1.0 - left);
         out.light += light * share;

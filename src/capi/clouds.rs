@@ -7,6 +7,8 @@
 //! light at each pixel's place to the light on the mean, in which the host lit it (wk_context_get_light). A host that
 //! lights a thing of its own by itself, such as the view out of a cab, asks for the share at its place.
 
+use std::{ffi::c_void, ptr::null};
+
 use glam::DVec3;
 
 use super::{
@@ -14,10 +16,16 @@ use super::{
     conditions::position,
     context::{ContextObject, wk_context},
     input::{self, out},
-    layout,
+    layout::{self, init_struct, struct_size},
     status::*,
+    view::{ViewObject, wk_view},
 };
-use crate::{clouds::CloudModel, error::Status};
+use crate::{
+    clouds::{CloudModel, CloudSettings},
+    error::Status,
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_clouds.rs"));
 
 /// How clouds are drawn.
 pub type wk_cloud_model = u32;
@@ -28,7 +36,7 @@ pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 /// drawn as a deck. A sixteenth of the pixels is computed in a frame: count wk_frame.frame_id up by one.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
-/// Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK; a budget may draw it in place of a volume (WK_PART_CLOUDS). Part of the
+/// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS). Part of the
 /// saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
@@ -68,6 +76,57 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
             object.read().sun_share(DVec3::from_array(at), time_s).map_err(|e| e.renamed("position", "position_m"))?;
         // SAFETY: `out` found it to be neither NULL nor misaligned; the caller promises that it can be written.
         unsafe { to.write(share) };
+        Ok(Status::Ok)
+    })
+}
+
+/// How finely a view draws clouds that are a volume.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_clouds {
+    /// sizeof(wk_clouds) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CLOUDS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// How many steps a ray takes: twice the value, twice as many. Range [0.125, 16], default 2.
+    pub fineness: f64,
+    /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
+    /// 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+    pub square_side: u32,
+    /// 0.
+    pub reserved0: u32,
+}
+
+impl wk_clouds {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CLOUDS,
+        next: null(),
+        fineness: 2.0,
+        square_side: 4,
+        reserved0: 0,
+    };
+}
+
+/// Sets how finely the view draws clouds; NULL returns to the default. Unchanged after an error. docs/lab/README.md has
+/// cost and error of some choices.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_view_set_clouds(view: *mut wk_view, clouds: *const wk_clouds) -> wk_status {
+    guard("wk_view_set_clouds", |call| {
+        let object = call.get::<ViewObject>("view", view)?;
+        let mut settings = CloudSettings::default();
+        if !clouds.is_null() {
+            // SAFETY: the caller's promise about `clouds`.
+            let c = unsafe { layout::read(&"clouds", clouds)? };
+            // SAFETY: as above.
+            unsafe { layout::check_chain(&"clouds", c.next, &[])? };
+            settings = CloudSettings { fineness: c.fineness, square_side: c.square_side };
+        }
+        object.lock().set_clouds(settings)?;
         Ok(Status::Ok)
     })
 }

@@ -161,6 +161,8 @@ pub const WK_STRUCT_TYPE_FLASH_TRIGGER: wk_struct_type = 66;
 pub const WK_STRUCT_TYPE_FLASH_LIGHT: wk_struct_type = 67;
 /// wk_snow
 pub const WK_STRUCT_TYPE_SNOW: wk_struct_type = 70;
+/// wk_clouds
+pub const WK_STRUCT_TYPE_CLOUDS: wk_struct_type = 71;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 

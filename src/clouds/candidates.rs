@@ -43,16 +43,19 @@ impl CloudMethod {
         if self.model == CloudModel::Deck {
             return Work { pixel: DECK, ..Work::default() };
         }
-        let rays = self.settings.fineness / f64::from(self.settings.side * self.settings.side);
+        let rays = self.settings.fineness / f64::from(self.settings.square_side * self.settings.square_side);
         Work { pixel: FOLLOWED.plus(RAY, rays), ..Work::default() }
     }
 }
 
 /// All candidates.
 pub fn candidates() -> Vec<Listed<CloudMethod>> {
-    let volume = |fineness, side| CloudMethod { model: CloudModel::Volume, settings: CloudSettings { fineness, side } };
+    let volume = |fineness, square_side| CloudMethod {
+        model: CloudModel::Volume,
+        settings: CloudSettings { fineness, square_side },
+    };
     let named = [
-        ("deck", CloudMethod::default()),
+        ("deck", CloudMethod { model: CloudModel::Deck, ..CloudMethod::default() }),
         ("volume-quarter-steps", volume(0.25, 4)),
         ("volume-half-steps", volume(0.5, 4)),
         ("volume", volume(1.0, 4)),

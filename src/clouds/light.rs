@@ -59,6 +59,8 @@ pub struct Sources {
 pub struct Scattered {
     /// Of the sun's irradiance on what faces it.
     pub sun: f64,
+    /// Of that, what is scattered for the first time: times the phase function.
+    pub once: f64,
     /// Of the sky's radiance.
     pub sky: f64,
     /// Of the ground's radiance.
@@ -130,14 +132,14 @@ impl Sources {
         let momentum = (-turning * at.to_sun).exp() - (-at.to_sun).exp();
         let kept = of.scaled_albedo() * 3.0 * of.moments[1] / (4.0 * std::f64::consts::PI) * momentum;
         let level_kept = kept * (by_top * sine * along + by_side * cosine * down) / both;
-        let once = of.scaled_albedo()
-            * (of.smooth_phase(1.0 - straight) + of.peak(1.0 - straight, at.to_sun + to_eye))
-            * (-at.to_sun).exp();
+        let first = of.scaled_albedo() * (-at.to_sun).exp();
+        let once = first * (of.smooth_phase(1.0 - straight) + of.peak(1.0 - straight, at.to_sun + to_eye));
         let often = share * (top.max(0.0) + side.max(0.0));
 
         let sky_terms = |one: f64, other: f64| table_at(&self.sky, one, other, leak);
         Scattered {
             sun: once + often + level_kept.clamp(-often, often),
+            once: first,
             sky: through(sky_terms(at.above, at.below), -up, [sides_a, sides_c]).max(0.0),
             ground: through(sky_terms(at.below, at.above), up, [sides_a, sides_c]).max(0.0),
         }

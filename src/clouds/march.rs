@@ -9,9 +9,10 @@ use glam::{DVec2, DVec3};
 
 use super::{
     field::{Field, Shape, about, dome},
+    halo,
     held::Grown,
     light::{Depths, Sources},
-    overhead::{Overhead, light_on},
+    overhead::{ICE, Overhead, light_on},
     uniforms::{LayerLight, WIDTH_CELLS},
 };
 use crate::moment::Scene;
@@ -200,7 +201,9 @@ impl<'a> CloudRays<'a> {
         let sources = &self.sources[place.of.medium];
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
         let light = &place.of.light;
-        DVec3::from_array(light.sun) * s.sun
+        let is_ice = place.of.medium == ICE;
+        let halo = if is_ice { halo::excess(&sources.scattering, -direction.dot(sources.to_sun)) } else { [0.0; 3] };
+        DVec3::from_array(light.sun) * (s.sun + s.once * DVec3::from_array(halo))
             + DVec3::from_array(light.above) * s.sky
             + DVec3::from_array(light.below) * s.ground
     }

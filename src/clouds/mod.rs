@@ -4,7 +4,7 @@
 //! * Where there is cloud, [`field`]: a map that says how strongly cloud grows, fixed to the air that carries it, and solid noise that
 //!   frays its edges; [`cover`] finds how much of the map is cloud where a cover is asked for.
 //! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box of the depths about
-//!   a place. [`mod@reference`] follows photons.
+//!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures.
@@ -18,6 +18,7 @@
 pub mod candidates;
 pub mod cover;
 pub mod field;
+pub mod halo;
 mod held;
 pub mod light;
 pub mod map;
@@ -49,11 +50,10 @@ pub(crate) use view::CloudsView;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CloudModel {
-    /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The default, and the
-    /// cheapest.
-    #[default]
+    /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The cheapest.
     Deck,
-    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck.
+    /// Layers of a volume, marched ray by ray; a closed one seen from below is a deck. The default.
+    #[default]
     Volume,
 }
 

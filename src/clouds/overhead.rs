@@ -15,6 +15,8 @@ use crate::{
     world::light_above_clouds,
 };
 
+/// Number of the medium that is ice.
+pub(super) const ICE: usize = 1;
 /// Diameters of droplets for which tables are made, um.
 const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 /// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
@@ -147,7 +149,7 @@ impl Overhead {
 impl Layer {
     /// Which of two media it is made of: droplets, or ice.
     pub fn medium(&self) -> usize {
-        usize::from(self.slab.ice_fraction > 0.5)
+        if self.slab.ice_fraction > 0.5 { ICE } else { 0 }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Context {
-    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Deck`]. Light on the mean, conditions and what falls do
+    /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. Light on the mean, conditions and what falls do
     /// not change with it; [`Context::sun_share`] does.
     pub fn set_cloud_model(&mut self, model: CloudModel) {
         self.held.clouds.model = model;

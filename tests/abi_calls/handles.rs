@@ -186,6 +186,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_view_set_rain", "view", false, |h| unsafe { wk_view_set_rain(h.cast(), null()) }),
         case("wk_view_set_snow", "view", false, |h| unsafe { wk_view_set_snow(h.cast(), null()) }),
+        case("wk_view_set_clouds", "view", false, |h| unsafe { wk_view_set_clouds(h.cast(), null()) }),
         case("wk_view_set_budget", "view", false, |h| unsafe { wk_view_set_budget(h.cast(), null()) }),
         case("wk_view_report_time", "view", false, |h| unsafe { wk_view_report_time(h.cast(), 1.0) }),
         case("wk_view_save_plan", "view", false, |h| unsafe { wk_view_save_plan(h.cast(), null_mut(), 0, null_mut()) }),

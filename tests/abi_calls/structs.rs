@@ -126,6 +126,7 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_snow", "snow", true, move |p| unsafe { wk_view_set_snow(view, p.cast()) }),
+        case("wk_clouds", "clouds", true, move |p| unsafe { wk_view_set_clouds(view, p.cast()) }),
         case("wk_lightning", "lightning", true, move |p| unsafe { wk_context_set_lightning(context, p.cast()) }),
         case("wk_flash_trigger", "flash", true, move |p| unsafe { wk_context_trigger_flash(context, p.cast()) }),
         case("wk_flash_light", "out_light", false, move |p| unsafe {

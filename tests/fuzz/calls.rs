@@ -722,6 +722,10 @@ pub const CALLS: &[(&str, Call)] = &[
         let view = handle(d, &w.views);
         set_one(d, "wk_snow", |p| unsafe { wk_view_set_snow(view, p.cast()) })
     }),
+    ("wk_view_set_clouds", |d, w| {
+        let view = handle(d, &w.views);
+        set_one(d, "wk_clouds", |p| unsafe { wk_view_set_clouds(view, p.cast()) })
+    }),
     ("wk_view_set_budget", |d, w| {
         let mut budget = Struct::random(d, "wk_budget", 6);
         if d.one_in(2) {

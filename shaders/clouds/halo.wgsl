@@ -1,0 +1,25 @@
+// The halo of 22 degrees that ice makes about the lamp. Twin of src/clouds/halo.rs, where the model is described.
+//!include "clouds/light.wgsl"
+
+// Of red, green and blue: the least angle by which a prism turns light, rad, and the phase function there, 1/sr.
+const HALO_FROM: vec3f = vec3f(0.37984, 0.38249, 0.38779);
+const HALO_MOST: vec3f = vec3f(5.1095, 5.0817, 5.0272);
+// Angle over which it falls to 1/e, and radius of the disc that rounds its step, rad.
+const HALO_FALL: f32 = 0.0716;
+const HALO_DISC: f32 = 0.0047;
+// Share of what ice scatters.
+const HALO_SHARE: f32 = 0.039;
+
+// What the halo adds to the phase function of a medium and takes from it elsewhere, 1/sr, in a direction from the eye.
+fn cloud_halo(medium_index: f32, direction: vec3f) -> vec3f {
+    let cosine = dot(direction, clouds.to_sun);
+    // Droplets make none.
+    if medium_index < 1.0 {
+        return vec3f(0.0);
+    }
+    let angle = acos(clamp(cosine, -1.0, 1.0));
+    let begun = smoothstep(HALO_FROM - HALO_DISC, HALO_FROM + HALO_DISC, vec3f(angle));
+    let halo = HALO_MOST * begun * exp(-max(angle - HALO_FROM, vec3f(0.0)) / HALO_FALL);
+    let rest = clouds.media[1].rest;
+    return HALO_SHARE * (halo - min(cloud_phase(clouds.media[1], 1.0 - cosine), rest.y)) / (1.0 - rest.x);
+}
