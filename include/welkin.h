@@ -281,6 +281,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_FLASH_LIGHT 67
 /** wk_snow */
 #define WK_STRUCT_TYPE_SNOW 70
+/** wk_clouds */
+#define WK_STRUCT_TYPE_CLOUDS 71
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
 
@@ -5270,8 +5272,37 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
+/** How finely a view draws clouds that are a volume. */
+typedef struct wk_clouds {
+    /** sizeof(wk_clouds) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CLOUDS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** How many steps a ray takes: twice the value, twice as many. Range [0.125, 16], default 2. */
+    double fineness;
+    /**
+     * One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
+     * 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
+     */
+    uint32_t square_side;
+    /** 0. */
+    uint32_t reserved0;
+} wk_clouds;
+
+/** Every field of `wk_clouds` at its default. */
+#define WK_CLOUDS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_clouds), \
+    /* struct_type */ WK_STRUCT_TYPE_CLOUDS, \
+    /* next */ NULL, \
+    /* fineness */ 2.0, \
+    /* square_side */ 4, \
+    /* reserved0 */ 0 \
+}
+
 /**
- * Sets how views draw clouds. Default WK_CLOUD_MODEL_DECK; a budget may draw it in place of a volume (WK_PART_CLOUDS). Part of the
+ * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS). Part of the
  * saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
@@ -5293,6 +5324,22 @@ wk_status wk_context_get_sun_share(const wk_context *context,
                                    const double (*position_m)[3],
                                    double time_s,
                                    double *out_share);
+
+/**
+ * Sets how finely the view draws clouds; NULL returns to the default. Unchanged after an error. docs/lab/README.md has
+ * cost and error of some choices.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_view_set_clouds(wk_view *view,
+                             const wk_clouds *clouds);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CLOUDS_INIT`. `struct_size` is `sizeof(wk_clouds)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

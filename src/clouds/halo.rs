@@ -101,7 +101,9 @@ mod tests {
                 if let Some((angle, weight)) = turned(d, k, chance.even() - 0.5, n) {
                     halo += weight;
                     let bin = ((angle - least_turn(n)) / BIN_RAD) as usize;
-                    bins.get_mut(bin).map(|b| *b += weight);
+                    if let Some(b) = bins.get_mut(bin) {
+                        *b += weight;
+                    }
                 }
             }
         }
