@@ -3,6 +3,7 @@
 mod asked;
 mod drawn;
 mod elsewhere;
+mod handed;
 #[path = "../frame/lookup.rs"]
 mod lookup;
 mod plan;
