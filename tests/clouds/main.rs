@@ -7,6 +7,7 @@ mod handed;
 #[path = "../frame/lookup.rs"]
 mod lookup;
 mod plan;
+mod seams;
 mod shadows;
 #[path = "../support/textures.rs"]
 mod textures;
