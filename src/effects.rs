@@ -255,17 +255,17 @@ impl Effects {
         })
     }
 
-    /// All of them, in their order.
+    /// All of them, in their order: what hangs in the sky is drawn before what falls, which shows it behind columns of rain.
     pub fn each(&mut self) -> [&mut dyn DrawnEffect; COUNT] {
         [
             &mut self.sky,
             &mut self.fog,
             &mut self.ground,
+            &mut self.stars,
+            &mut self.clouds,
             &mut self.rain,
             &mut self.snow,
             &mut self.glass,
-            &mut self.stars,
-            &mut self.clouds,
             &mut self.lightning,
             &mut self.bow,
             #[cfg(test)]
@@ -279,11 +279,11 @@ impl Effects {
             &self.sky,
             &self.fog,
             &self.ground,
+            &self.stars,
+            &self.clouds,
             &self.rain,
             &self.snow,
             &self.glass,
-            &self.stars,
-            &self.clouds,
             &self.lightning,
             &self.bow,
             #[cfg(test)]

@@ -10,6 +10,7 @@ use welkin::{
     frame::{ColorSpace, Exposure, Frame, FrameFlags, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
     light::luminance,
+    rain::{AreaShape, RainArea},
     scene::{Camera, DepthKind, DepthMapping},
     weather::{Weather, Wind},
 };
@@ -262,4 +263,24 @@ fn resolve(device: &Device, from: &wgpu::Texture, to: &wgpu::Texture) {
         ..Default::default()
     }));
     device.queue.submit([encoder.finish()]);
+}
+
+/// Columns of rain stand before and behind clouds in the very first frame as in later ones.
+#[test]
+fn a_shower_among_clouds_is_whole_in_the_first_frame() {
+    let mut sky = Sky::new(BROKEN, CloudModel::Volume);
+    let shape = AreaShape::Ellipse([3000.0, 3000.0]);
+    let area = RainArea { center_m: [0.0, 5000.0, 0.0], shape, top_m: 2500.0, ..RainArea::default() };
+    sky.context.set_rain_areas(&[area]).unwrap();
+    let mut shot = |id: u64| {
+        let mut frame = Frame::new(id, camera(DVec3::Z * 2.0, FORWARD), &sky.color, None);
+        frame.flags = FrameFlags::NO_HISTORY;
+        sky.view.record(&sky.context, &frame, SEEN.with(Stages::PARTICLES)).unwrap();
+        let texels = readback::rgba(&sky.device, &sky.color).unwrap();
+        texels.iter().map(|t| [0, 1, 2].map(|k| f64::from(t[k]))).collect::<Vec<_>>()
+    };
+    let [first, second, third] = [1, 2, 3].map(&mut shot);
+    let off = [p95(&first, &third), p95(&second, &third)];
+    println!("first and second frame against the third: {off:.5?}");
+    assert!(off[0] < 1e-3 && off[1] < 1e-3, "{off:?}");
 }
