@@ -19,8 +19,13 @@ fn add_rain(classes: &mut [f64; CLASSES], sizes: &DropSizes) {
     }
 }
 
-/// The bows of a weather's low air, fog and what falls together, of all that they take of the light; `None` where there are no drops.
+/// The bows of a weather's low air, of all that takes its light; `None` where there are no drops.
 pub(crate) fn in_low_air(c: &Conditions) -> Option<Table> {
+    low_air(c).map(|shares| mixed(&shares))
+}
+
+/// What each class of drops takes of the light in a weather's low air, fog and what falls together, over all that is taken.
+pub(super) fn low_air(c: &Conditions) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let falling = FallingLayer::new(c);
     if falling.liquid_per_m > 0.0 {
@@ -32,18 +37,18 @@ pub(crate) fn in_low_air(c: &Conditions) -> Option<Table> {
     let fog = c.fog.extinction_per_m.max(0.0);
     classes[0] = fog * (1.0 - smoothstep(0.25, 0.75, c.fog.angstrom_exponent));
     let all = fog + falling.extinction_per_m();
-    (classes.iter().sum::<f64>() > 0.0).then(|| mixed(&classes.map(|v| v / all)))
+    (classes.iter().sum::<f64>() > 0.0).then(|| classes.map(|v| v / all))
 }
 
-/// The bows of the rain areas' drops on the mean; `None` without any.
-pub(super) fn in_areas(now: &Moment<'_>) -> Option<Table> {
+/// The same of the rain areas' drops on the mean; `None` without any.
+pub(super) fn areas(now: &Moment<'_>) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let factor = factor_in(&now.here.air, now.here.air.station_altitude_m);
     for region in now.weather.regions {
         add_rain(&mut classes, &DropSizes::new(&region.area.falling(), factor));
     }
     let all: f64 = classes.iter().sum();
-    (all > 0.0).then(|| mixed(&classes.map(|v| v / all)))
+    (all > 0.0).then(|| classes.map(|v| v / all))
 }
 
 /// Whether sun or moon, whichever is brighter, lights drops so directly that a bow shows.

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{
-    drops::{in_areas, in_low_air, is_lit, is_within},
-    table::{ENTRIES, STEP_RAD, Table},
+    drops::{areas, is_lit, is_within, low_air},
+    table::{CLASSES, ENTRIES, STEP_RAD, mixed},
 };
 use crate::{
     error::Result,
@@ -17,8 +17,8 @@ const _: () = assert!(ENTRIES == BOW_ENTRIES);
 /// What a view has of bows.
 #[derive(Default)]
 pub(crate) struct BowView {
-    /// Of the low air and of rain areas, where there are drops.
-    tables: [Option<Box<Table>>; 2],
+    /// What classes of drops take of the light in the low air and in rain areas, where there are any.
+    drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
 }
 
@@ -26,17 +26,11 @@ impl BowView {
     /// Finds the drops of a moment.
     pub fn gather(&mut self, now: &Moment<'_>) {
         self.is_lit = is_lit(&now.scene);
-        for (held, found) in self.tables.iter_mut().zip([in_low_air(&now.scene.conditions), in_areas(now)]) {
-            match (held, found) {
-                // No allocation while drops stand.
-                (Some(held), Some(found)) => **held = found,
-                (held, found) => *held = found.map(Box::new),
-            }
-        }
+        self.drops = [low_air(&now.scene.conditions), areas(now)];
     }
 
     fn has_drops(&self) -> bool {
-        self.tables.iter().any(Option::is_some)
+        self.drops.iter().any(Option::is_some)
     }
 }
 
@@ -58,10 +52,10 @@ impl DrawnEffect for BowView {
         let is_shown = self.has_drops() && self.is_lit && shows(shot);
         to.between_and_veil("BOW", yes(self.has_drops()), yes(is_shown));
         if is_shown {
-            for (to, table) in to.block.bows.iter_mut().zip(&self.tables) {
-                let Some(table) = table else { continue };
-                for (to, [r, g, b]) in to.iter_mut().zip(table.iter()) {
-                    *to = [*r as f32, *g as f32, *b as f32, 0.0];
+            for (to, shares) in to.block.bows.iter_mut().zip(&self.drops) {
+                let Some(shares) = shares else { continue };
+                for (to, [r, g, b]) in to.iter_mut().zip(mixed(shares)) {
+                    *to = [r, g, b, 0.0].map(|v| v as f32);
                 }
             }
         }

@@ -47,7 +47,8 @@ fn above_opposite(degrees: f64) -> DVec3 {
 
 impl Scene {
     fn new(weather: &Weather) -> Self {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        let device = Device::headless(&DeviceOptions { backends: wgpu::Backends::GL, ..DeviceOptions::default() })
+            .expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
         context.set_sun(Some(SUN)).unwrap();
@@ -55,7 +56,7 @@ impl Scene {
         context.set_cloud_model(CloudModel::Deck);
         context.set_weather(weather, 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
         Self { device, context, view, color }
     }
 
@@ -63,7 +64,7 @@ impl Scene {
     fn take(&mut self, frame_id: u64, forward: DVec3, fov: f64) -> (Vec<[f64; 3]>, Vec<DVec3>) {
         let camera = Camera::look_to(EYE, forward, DVec3::Z, fov, 16.0 / 9.0, 0.1);
         let mut frame = Frame::new(frame_id, camera, &self.color, None);
-        frame.flags = FrameFlags::NO_HISTORY;
+        (frame.flags, frame.cd_m2_per_unit) = (FrameFlags::NO_HISTORY, 1e3);
         self.view.record(&self.context, &frame, SEEN).unwrap();
         let texels = readback::rgba(&self.device, &self.color).unwrap();
         if let Ok(folder) = std::env::var("BOW_PICTURES") {
@@ -76,7 +77,7 @@ impl Scene {
             let eye = inverse.project_point3(DVec3::new(2.0 * uv[0] - 1.0, 1.0 - 2.0 * uv[1], 0.5)).normalize();
             camera.rotation().transpose() * eye
         };
-        let picture = texels.iter().map(|t| [0, 1, 2].map(|k| f64::from(t[k]))).collect();
+        let picture = texels.iter().map(|t| [0, 1, 2].map(|k| 1e3 * f64::from(t[k]))).collect();
         (picture, (0..SIZE.0 * SIZE.1).map(of).collect())
     }
 
