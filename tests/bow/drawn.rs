@@ -46,8 +46,8 @@ fn above_opposite(degrees: f64) -> DVec3 {
 }
 
 impl Scene {
-    fn new(weather: &Weather) -> Self {
-        let device = Device::headless(&DeviceOptions { backends: wgpu::Backends::GL, ..DeviceOptions::default() })
+    fn new(weather: &Weather, backends: wgpu::Backends) -> Self {
+        let device = Device::headless(&DeviceOptions { backends, ..DeviceOptions::default() })
             .expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
@@ -111,7 +111,7 @@ fn agrees_with_queries(scene: &mut Scene, frame_id: u64) {
 
 #[test]
 fn a_fogbow_in_pictures_is_that_of_the_queries() {
-    let mut scene = Scene::new(&fog());
+    let mut scene = Scene::new(&fog(), DeviceOptions::default().backends);
     agrees_with_queries(&mut scene, 2);
     let profile = scene.profile(6);
     let of = |from: f64, to: f64| luminance(&mean(&profile, from, to));
@@ -122,7 +122,7 @@ fn a_fogbow_in_pictures_is_that_of_the_queries() {
 
 #[test]
 fn a_rainbow_stands_at_42_degrees_with_a_second_one_at_51_and_a_dark_band_between() {
-    let mut scene = Scene::new(&rain(5.0));
+    let mut scene = Scene::new(&rain(5.0), DeviceOptions::default().backends);
     agrees_with_queries(&mut scene, 1);
     let profile = scene.profile(3);
     let of = |from: f64, to: f64| luminance(&mean(&profile, from, to));
@@ -151,7 +151,7 @@ fn a_shower_in_the_distance_has_a_bow_and_one_under_a_closed_deck_none() {
         ..RainArea::default()
     };
     let of = |id, weather: &Weather| {
-        let mut scene = Scene::new(weather);
+        let mut scene = Scene::new(weather, wgpu::Backends::GL);
         scene.context.set_rain_areas(&[area]).unwrap();
         let profile = scene.profile(id);
         let light = |from, to| luminance(&mean(&profile, from, to));
