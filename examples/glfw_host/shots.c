@@ -279,7 +279,7 @@ static bool rainbow(demo *d)
 {
     wk_weather w = weather_here(35e3, 0.6);
     wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.2, 2500.0);
-    const wk_rain_area area = shower(4000, 0, 6000, 2500, 12);
+    const wk_rain_area area = shower(6500, 0, 8000, 3000, 12);
     return sun_at(d, SITE_VIEW_AZIMUTH_DEG - 176.0, 22) && set(d, &w, &heaps) &&
            weather_check(wk_context_set_rain_areas(d->weather.context, &area, 1, sizeof area));
 }
