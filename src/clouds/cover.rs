@@ -101,18 +101,20 @@ fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
 /// Threshold of the map under which a layer covers what it is said to. Of a layer between kinds, between theirs by how near it is
 /// to each.
 pub fn threshold(slab: &CloudSlab) -> f64 {
-    if slab.cover >= 1.0 {
-        return CLOSED;
-    }
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((_, row), traits) in THRESHOLDS.iter().zip(traits()) {
         let off: f64 = traits.iter().zip(traits_of(slab)).map(|(a, b)| (a - b) * (a - b)).sum();
         let weight = 1.0 / (off * off + 1e-12);
-        sum += weight * of_kind(row, slab.cover);
+        sum += weight * of_kind(row, slab.cover.min(NEARLY_CLOSED));
         weights += weight;
     }
-    (sum / weights).max(CLOSED)
+    let closing = ((slab.cover - NEARLY_CLOSED) / (1.0 - NEARLY_CLOSED)).clamp(0.0, 1.0);
+    let open = (sum / weights).max(CLOSED);
+    open + (CLOSED - open) * closing
 }
+
+/// Cover from which on thresholds go evenly to [`CLOSED`]: quantiles go to infinity, and would leap as a layer closes.
+const NEARLY_CLOSED: f64 = 0.99;
 
 /// Threshold below all of the map: nothing is open.
 const CLOSED: f64 = -7.0;
