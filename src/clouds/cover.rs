@@ -13,7 +13,7 @@ use crate::{
     chance::normal_quantile,
     error::Result,
     noise::{NoiseImage, NoiseKind, NoiseSettings},
-    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive},
+    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive, smoothstep},
 };
 
 /// Zenith angle up to which the sky counts, degrees.
@@ -105,19 +105,17 @@ pub fn threshold(slab: &CloudSlab) -> f64 {
     for ((_, row), traits) in THRESHOLDS.iter().zip(traits()) {
         let off: f64 = traits.iter().zip(traits_of(slab)).map(|(a, b)| (a - b) * (a - b)).sum();
         let weight = 1.0 / (off * off + 1e-12);
-        sum += weight * of_kind(row, slab.cover.min(NEARLY_CLOSED));
+        sum += weight * of_kind(row, slab.cover);
         weights += weight;
     }
-    let closing = ((slab.cover - NEARLY_CLOSED) / (1.0 - NEARLY_CLOSED)).clamp(0.0, 1.0);
-    let open = (sum / weights).max(CLOSED);
-    open + (CLOSED - open) * closing
+    let threshold = (sum / weights).max(CLOSED);
+    threshold + (CLOSED - threshold) * smoothstep(CLOSES, 1.0, slab.cover)
 }
-
-/// Cover from which on thresholds go evenly to [`CLOSED`]: quantiles go to infinity, and would leap as a layer closes.
-const NEARLY_CLOSED: f64 = 0.99;
 
 /// Threshold below all of the map: nothing is open.
 const CLOSED: f64 = -7.0;
+/// Cover from which thresholds go over to [`CLOSED`], so that nothing leaps where a layer closes.
+const CLOSES: f64 = 0.99;
 
 /// What tells the kinds apart.
 fn traits_of(slab: &CloudSlab) -> [f64; 4] {

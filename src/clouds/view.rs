@@ -66,7 +66,8 @@ impl CloudsView {
     /// # Errors
     /// For a time that the weather does not know.
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
-        self.overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?);
+        let overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?);
+        self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;
         }
