@@ -1480,7 +1480,7 @@ typedef uint32_t wk_cloud_layer_has_flags;
 #define WK_CLOUD_LAYER_HAS_WATER 2
 /** droplet_radius_um */
 #define WK_CLOUD_LAYER_HAS_DROPLET_RADIUS 4
-/** wind_m_s and wind_from_deg. Not in this version: all layers move with the weather's wind. */
+/** wind_m_s and wind_from_deg */
 #define WK_CLOUD_LAYER_HAS_WIND 8
 
 /** One layer of cloud. */
@@ -1505,10 +1505,19 @@ typedef struct wk_cloud_layer {
     double water_g_m3;
     /** Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind. */
     double droplet_radius_um;
-    /** Optional, not in this version: speed of the layer's own wind, m/s. Default 0. */
+    /**
+     * Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
+     * middle of the layer, which grows and veers with height (docs/clouds.md). A change of it moves no cloud at once.
+     */
     double wind_m_s;
-    /** Optional, not in this version: where that wind comes from, degrees clockwise from true north. Default 0. */
+    /**
+     * Optional, with the field before: where that wind comes from, degrees clockwise from true north. Range [0, 360].
+     */
     double wind_from_deg;
+    /** Distance from cloud to cloud, m. Range [50, 200000]; 0, the default, by kind and thickness. */
+    double spacing_m;
+    /** Time in which its clouds come and go, s. Range [60, 1e6]; 0, the default, is 1200. */
+    double life_s;
 } wk_cloud_layer;
 
 /** Every field of `wk_cloud_layer` at its default. */
@@ -1524,7 +1533,9 @@ typedef struct wk_cloud_layer {
     /* water_g_m3 */ 0.0, \
     /* droplet_radius_um */ 0.0, \
     /* wind_m_s */ 0.0, \
-    /* wind_from_deg */ 0.0 \
+    /* wind_from_deg */ 0.0, \
+    /* spacing_m */ 0.0, \
+    /* life_s */ 0.0 \
 }
 
 /** Which optional fields of a wk_weather are set. */

@@ -46,7 +46,7 @@ use crate::{
     scene::{HostLight, Place, WorldFrame},
     surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
-    wind::{Drift, Wind, WindGrid, WindOver, WindVolume},
+    wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
 
 /// A direction to a light, given by the host in place of the almanac.
@@ -131,6 +131,8 @@ pub(crate) struct World {
     wind: Wind,
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
     pub drifted: Drift,
+    /// The same of the layers of cloud.
+    layers_drifted: LayerDrifts,
     pub set: Settings,
     pub night: NightSettings,
     pub maps: Option<Box<OccluderMaps>>,
@@ -184,6 +186,7 @@ impl World {
             timeline_revision: next_revision(),
             wind: Wind::new(seed),
             drifted: Drift::ZERO,
+            layers_drifted: LayerDrifts::ZERO,
             set: Settings {
                 shelters: Vec::new(),
                 terrain: None,
@@ -222,7 +225,8 @@ impl World {
     /// The weather over all places and times.
     pub fn over(&self) -> WeatherOver<'_> {
         let revision = self.timeline_revision;
-        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted, revision };
+        let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept, kept_layers, revision };
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
     }
 
@@ -275,6 +279,7 @@ impl World {
     /// Forgets what has ended, but for what is asked from `keep_s` on.
     pub fn forget_before(&mut self, keep_s: f64) {
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
+        self.layers_drifted = self.layers_drifted.kept(&self.timeline, keep_s);
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
