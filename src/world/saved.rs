@@ -130,6 +130,7 @@ impl World {
         let Settings {
             shelters,
             terrain: _,
+            tiles: _,
             regions,
             given_sun,
             given_moon,
@@ -184,6 +185,7 @@ impl World {
         let set = Settings {
             shelters,
             terrain: None,
+            tiles: None,
             regions: saved.areas,
             given_sun,
             given_moon,
@@ -210,6 +212,8 @@ impl World {
         self.timeline_revision = super::next_revision();
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.set, &mut other.set);
+        // Tiles are the host's, whatever is loaded.
+        swap(&mut self.set.tiles, &mut other.set.tiles);
         swap(&mut self.exposure, &mut other.beside.exposure);
         if let Some(tone) = &mut other.beside.tone {
             swap(&mut self.tone, tone);
