@@ -6304,7 +6304,7 @@ WK_API wk_status wk_context_set_terrain(wk_context *context, const wk_terrain *t
 
 /**
  * Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one
- * that is there keeps its water. Takes some ten milliseconds for 256 x 256 cells. Unchanged after an error.
+ * that is there keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
  * cells than a terrain may have.

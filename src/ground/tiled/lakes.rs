@@ -329,15 +329,13 @@ impl Lakes {
 
     /// Pours water into a pit. Answers what leaves the terrain.
     pub fn pour(&mut self, terrain: &Terrain, below: PitBelow<'_>, pit: CellId, water: f64) -> f64 {
-        let mut made = Vec::new();
-        let (mut lake, mut left) = (self.lake_at(terrain, pit), water);
-        loop {
-            made.push(lake);
-            left = self.fill(terrain, lake, left);
-            if left <= 0.0 {
-                break;
-            }
-            let Some(pit) = self.spills_to(lake).and_then(below) else { break };
+        let mut lake = self.lake_at(terrain, pit);
+        let mut left = self.fill(terrain, lake, water);
+        if left <= 0.0 {
+            return 0.0;
+        }
+        let mut made = vec![lake];
+        while let Some(pit) = self.spills_to(lake).and_then(below) {
             let next = self.lake_at(terrain, pit);
             if next == lake {
                 break;
@@ -348,6 +346,11 @@ impl Lakes {
             } else {
                 next
             };
+            made.push(lake);
+            left = self.fill(terrain, lake, left);
+            if left <= 0.0 {
+                break;
+            }
         }
         // What only passed on what came has no water.
         for lake in made {

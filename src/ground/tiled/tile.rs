@@ -171,7 +171,8 @@ impl TileWater {
         self.any_awake = false;
         let mut last: Option<([f32; 2], f64, bool, Surface)> = None;
         for run in 0..self.awake.len() {
-            if !self.awake[run] && !(rains && self.rain.rains_on(run)) {
+            let rained_on = rains && self.rain.rains_on(run);
+            if !self.awake[run] && !rained_on {
                 continue;
             }
             let mut stirs = false;

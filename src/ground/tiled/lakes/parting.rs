@@ -7,10 +7,10 @@ impl Lakes {
     /// Lowers every water by `depth_mm`. Answers how much went; `bared` gets the cells that fall dry.
     pub fn sink(&mut self, terrain: &Terrain, depth_mm: f64, bared: &mut Vec<CellId>) -> f64 {
         let all: Vec<u32> = (0..self.lakes.len() as u32).filter(|l| self.lakes[*l as usize].is_some()).collect();
-        let mut gone = 0.0;
+        let (mut gone, mut losing) = (0.0, Vec::new());
         for lake in all {
             let lost = self.of(lake).map_or(0.0, |(l, h)| depth_mm * h.level(l.held).1);
-            let mut losing = vec![(lake, lost)];
+            losing.push((lake, lost));
             while let Some((lake, lost)) = losing.pop() {
                 gone += self.lose(terrain, lake, lost, &mut losing, bared);
             }
