@@ -81,6 +81,8 @@ pub mod ground_grid;
 
 pub mod ground_texture;
 
+pub mod snowpack;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -233,10 +233,10 @@ impl HostGround {
         self.shade_rain(c, overs, shelters);
         let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
-        // What melts falls everywhere alike.
+        // What melts falls everywhere alike, less what snow takes of the rain.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
-        let fallen_mm = |liquid: f64| (liquid * liquid_stays + melting) * hours;
+        let fallen_mm = |liquid: f64| ((liquid * liquid_stays + melting) * hours).max(0.0);
         if overs.even() {
             let mm = fallen_mm(self.liquid(overs, own, 0));
             let shadow = &self.shadow;

@@ -16,6 +16,7 @@ use crate::{
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
     moment::Scene,
+    surroundings::SnowHere,
     weather::{Falling, SurfaceCover},
 };
 
@@ -76,6 +77,7 @@ pub(crate) struct GroundUniform {
     pub normal_x: [f32; 4],
     pub normal_y: [f32; 4],
     pub normal_z: [f32; 4],
+    pub snow: [f32; 4],
     pub looks: [SurfaceLook; CLASSES],
     pub waves: [[f32; 4]; WAVES],
 }
@@ -84,6 +86,8 @@ pub(crate) struct GroundUniform {
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
+    /// On level, open ground.
+    pub snow: SnowHere,
     /// What falls on it.
     pub falling: Falling,
     /// Share of level ground under clear ice.
@@ -231,6 +235,7 @@ impl WetScene<'_> {
             normal_x: normals[0],
             normal_y: normals[1],
             normal_z: normals[2],
+            snow: [self.snow.depth_m, self.snow.wetness, self.snow.albedo, 0.0].map(|v| v as f32),
             looks: self.looks(),
             waves: self.hollows.seen_from(at),
         }
@@ -313,6 +318,7 @@ mod tests {
                 normal_x,
                 normal_y,
                 normal_z,
+                snow,
                 looks
             ]
         );

@@ -9,6 +9,7 @@ use crate::{
     moment::Moment,
     scene::WorldKind,
     stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
+    surroundings::SnowHere,
     weather::SurfaceCover,
 };
 
@@ -24,6 +25,9 @@ pub(crate) struct GroundSeen<'a> {
     pub terrain: Option<(&'a GroundGrid, DMat3)>,
     /// Whether there is water on it.
     pub has_wet_terrain: bool,
+    /// Snow on level, open ground, and whether any lies on the terrain.
+    pub snow: SnowHere,
+    pub has_snowy_terrain: bool,
     /// Of ground of which nothing else is said.
     pub surface_class: SurfaceClass,
 }
@@ -34,6 +38,7 @@ pub(crate) struct GroundView {
     /// Of the frame, where there is any water on surfaces.
     block: Option<GroundUniform>,
     has_terrain: bool,
+    has_snow: bool,
     /// Water and surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
     drops: DropsKept,
@@ -42,7 +47,14 @@ pub(crate) struct GroundView {
 impl GroundView {
     pub fn new(device: &Device) -> Self {
         let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
-        Self { buffer, block: None, has_terrain: false, views: [None, None], drops: DropsKept::default() }
+        Self {
+            buffer,
+            block: None,
+            has_terrain: false,
+            has_snow: false,
+            views: [None, None],
+            drops: DropsKept::default(),
+        }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -60,8 +72,9 @@ impl GroundView {
         let glaze = glaze(now);
         let wet = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
         self.has_terrain = held.terrain.is_some();
+        self.has_snow = held.snow.depth_m > 0.0 || held.has_snowy_terrain;
         self.block = None;
-        if let (true, Some(color), Some(_)) = (wet, frame.color, frame.depth) {
+        if let (true, Some(color), Some(_)) = (wet || self.has_snow, frame.color, frame.depth) {
             self.block = Some(wet_scene(now, (frame, color), held, glaze, fog_depth)?.uniform(&mut self.drops));
         }
         Ok(self.block.is_some())
@@ -82,6 +95,8 @@ impl DrawnEffect for GroundView {
         let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
         let terrain = yes(drawn.is_some() && self.has_terrain);
         to.constant("TERRAIN", terrain, terrain);
+        let snow = yes(drawn.is_some() && self.has_snow);
+        to.constant("SNOW", snow, snow);
         to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
             shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(block));
@@ -123,6 +138,7 @@ fn wet_scene<'a>(
     Ok(WetScene {
         scene: &now.scene,
         cover: &held.cover,
+        snow: held.snow,
         falling: now.here.precipitation,
         glaze,
         hollows: held.hollows,

@@ -44,7 +44,7 @@ use crate::{
     moment::{Moment, Region, Scene, WeatherOver},
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
-    surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
+    surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid, WindOver, WindVolume},
 };
@@ -141,6 +141,8 @@ pub(crate) struct World {
     /// The wind round terrain and boxes, where something has solved for it.
     pub solved_wind: Option<Box<WindVolume>>,
     wind_texture: WindTexture,
+    /// The lying snow, where it is led through time.
+    pub snow: Option<Box<LyingSnow>>,
     pub time_s: f64,
     ephemeris: Ephemeris,
     couplings: Couplings,
@@ -202,6 +204,7 @@ impl World {
             host_wind: None,
             solved_wind: None,
             wind_texture: WindTexture::default(),
+            snow: None,
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             couplings,

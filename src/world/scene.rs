@@ -50,6 +50,9 @@ fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
 }
 
+/// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
+const LUX_PER_W_M2: f64 = 110.0;
+
 /// Optical depth of all air above `altitude_m` straight up, per wavelength.
 pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
     let (scattering, ozone) = zenith_depths(planet, altitude_m);
@@ -174,6 +177,14 @@ impl World {
             (self.couplings.dim)(&mut scene)?;
         }
         Ok(scene)
+    }
+
+    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
+    /// that is only drawn must not change a state.
+    pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
+        let frame = &self.frame;
+        let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
+        Ok((self.scene_named("position", origin, time_s)?.ground.total_lux / LUX_PER_W_M2).round())
     }
 
     fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
