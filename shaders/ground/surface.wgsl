@@ -285,11 +285,14 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     // Snow hides the water below it.
     var snow = ground.snow.xyz;
     if TERRAIN {
-        snow = mix(snow, here.snow.xzw, here.share);
-        // Between cells with and without snow the albedo is that of the snow.
-        snow.z = max(snow.z, select(0.0, 0.6, snow.x > 0.0));
+        let depth = mix(snow.x, here.snow.x, here.share);
+        // Where only one has snow, its properties count.
+        let known = select(select(here.share, 1.0, snow.x <= 0.0), 0.0, here.snow.x <= 0.0);
+        snow = vec3f(depth, mix(snow.yz, here.snow.zw, known));
     }
-    let lies = snow_share(snow.x, pattern, mix(1.0, level, facing.sure)) * look.snow * gets;
+    // Far off a pixel's side along the ground is known too badly for patches: there they mix.
+    let patches = mix(pattern, vec2f(0.0, 1.0), smoothstep(150.0, 800.0, range));
+    let lies = snow_share(snow.x, patches, mix(1.0, level, facing.sure)) * look.snow * gets;
     let soft = normalize(mix(facing.normal, up, select(0.35, 0.0, here.share > 0.5 || surface.normal.w > 0.0)));
     let glints = snow_glints(place, side, to_eye) * (1.0 - snow.y);
     let white = snow_light(snow, soft, up, ground_here.albedo, host_lamps(at, soft), glints);

@@ -14,12 +14,18 @@ struct TerrainPoint {
     // Classes of the four nodes about the point, and where it lies between them.
     classes: vec4f,
     part: vec2f,
-    // Depth of the snow in m, its density in kg/m^3, its wetness and albedo.
+    // Depth of the snow in m, whether there is any, its wetness and albedo.
     snow: vec4f,
 }
 
 fn no_terrain() -> TerrainPoint {
     return TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), vec4f(0.0), vec2f(0.0), vec4f(0.0));
+}
+
+// Depth of the snow of a node; 1, wetness and albedo where there is any.
+fn snow_of(node: vec2i) -> vec4f {
+    let snow = textureLoad(terrain_surface, node, 0);
+    return vec4f(snow.x, vec3f(1.0, snow.zw) * select(0.0, 1.0, snow.x > 0.0));
 }
 
 // `at`: camera-relative east, north, up.
@@ -42,10 +48,12 @@ fn terrain_at(at: vec3f) -> TerrainPoint {
     if SNOW {
         // Below the terrain's own rows.
         let under = first + vec2i(0, i32(ground.terrain_last.y) + 1);
-        let south = mix(textureLoad(terrain_surface, under, 0), textureLoad(terrain_surface, under + vec2i(1, 0), 0), part.x);
         let above = under + vec2i(0, 1);
-        let north = mix(textureLoad(terrain_surface, above, 0), textureLoad(terrain_surface, above + vec2i(1, 0), 0), part.x);
+        let south = mix(snow_of(under), snow_of(under + vec2i(1, 0)), part.x);
+        let north = mix(snow_of(above), snow_of(above + vec2i(1, 0)), part.x);
         snow = mix(south, north, part.y);
+        // What has no snow has none of its properties.
+        snow = vec4f(snow.x, snow.yzw / max(snow.y, 1e-3));
     }
     // The grid's own axes, as seen from the camera.
     let east = normalize(ground.terrain_x.xyz);

@@ -7,9 +7,9 @@ use glam::DVec2;
 use super::{
     column::{Column, Forcing, UNITS},
     drift::Drift,
-    laws::cover_of,
     slides,
 };
+use crate::weather::snow_cover;
 
 /// The ground below a field of snow.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +153,7 @@ impl Field {
             self.books.fallen += gone.fallen;
             self.books.sublimated += gone.sublimated;
             ran_off += gone.ran_off;
-            covered += if column.depth > 0 { cover_of(column.depth_m()) } else { 0.0 };
+            covered += if column.depth > 0 { snow_cover(column.depth_m()) } else { 0.0 };
         }
         self.books.ran_off += ran_off;
         self.runoff_mm_h = ran_off as f64 / UNITS / land.len() as f64 * 3600.0 / step.seconds;

@@ -6,14 +6,14 @@ use super::{
     COARSE_STEP_S, STEP_S,
     column::{Column, Forcing},
     field::{Field, Step},
-    laws, query,
+    query,
     saved::SavedSnow,
     site::Site,
 };
 use crate::{
     error::{Error, Result, Status},
     surroundings::{Meltwater, TerrainHeights},
-    weather::Conditions,
+    weather::{Conditions, snow_cover},
     world::{HeldEffect, Within, World, parse_error},
 };
 
@@ -200,7 +200,7 @@ impl HeldSnow {
         let forcing = Forcing::new(&c, f, state.sunlight_w_m2, seconds);
         let ran_off = state.country.step(&forcing, 1.0).ran_off;
         state.melted = Meltwater {
-            covered: laws::cover_of(state.country.depth_m()),
+            covered: snow_cover(state.country.depth_m()),
             runoff_mm_h: ran_off as f64 / super::column::UNITS * 3600.0 / seconds,
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
@@ -317,6 +317,7 @@ impl HeldEffect for HeldSnow {
         }
         self.published = self.revision;
         snow.country = query::seen(&state.country);
+        snow.cover = snow_cover(state.country.depth_m());
         snow.cells.clear();
         if let Some(field) = &state.field {
             snow.cells.extend(field.columns.iter().map(|c| {

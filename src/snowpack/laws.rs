@@ -105,12 +105,6 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
-/// Share of level ground that snow of this depth covers, m: sparse first, then whole. Half of a ground whose roughness is 1 cm shows
-/// at 1.5 cm (a tangent hyperbolic as of Niu and Yang 2007).
-pub fn cover_of(depth_m: f64) -> f64 {
-    if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,9 +5,8 @@ use glam::DVec3;
 use super::{
     column::{Column, UNITS},
     held::HeldSnow,
-    laws,
 };
-use crate::{error::Result, surroundings::SnowHere, world::World};
+use crate::{error::Result, surroundings::SnowHere, weather::snow_cover, world::World};
 
 /// How a wheel holds on the ground, as far as snow decides it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -71,7 +70,7 @@ pub struct SnowBooks {
 
 impl SnowAt {
     fn of(here: SnowHere, mass_kg_m2: f64, surface: DVec3) -> Self {
-        let cover = laws::cover_of(here.depth_m);
+        let cover = snow_cover(here.depth_m);
         let friction = match here {
             _ if cover < 0.3 => SnowFriction::Bare,
             SnowHere { wetness, .. } if wetness > 0.5 => SnowFriction::Slush,

@@ -33,6 +33,8 @@ pub(crate) struct Meltwater {
 pub(crate) struct LyingSnow {
     /// On level, open ground.
     pub country: SnowHere,
+    /// Share of that ground that it covers.
+    pub cover: f64,
     /// Of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty without one.
     pub cells: Vec<[f32; 4]>,
     /// Incremented whenever `cells` change.

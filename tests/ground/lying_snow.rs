@@ -225,6 +225,23 @@ fn snow_whitens_ground_by_its_depth_but_no_water() {
 }
 
 #[test]
+fn an_overcast_sky_is_brighter_over_snow() {
+    let host = Host::new();
+    let lux = |depth_m: f64| {
+        let mut context = context(&host, LyingSnowModel::Reported);
+        let surface = Surface { snow_depth_m: depth_m, ..Surface::default() };
+        context.set_weather(&Weather { surface, ..Weather::preset("overcast").unwrap() }, 0.0, 0.0).unwrap();
+        context.scene_at(DVec3::ZERO, 0.0).unwrap().ground
+    };
+    let (bare, white) = (lux(0.0), lux(0.3));
+    let more = white.total_lux / bare.total_lux;
+    println!("an overcast sky gives {more:.2} times as much light over snow");
+    // Back and forth between albedos of 0.2 or 0.82 and the clouds' own: (1 - 0.2 a) / (1 - 0.82 a).
+    assert!((1.4..2.6).contains(&more), "{more}");
+    assert!(white.adaptation_cd_m2 > more * bare.adaptation_cd_m2);
+}
+
+#[test]
 fn the_terrains_snow_is_drawn_where_it_lies() {
     let mut host = Host::new();
     let mut context = context(&host, LyingSnowModel::Simulated);
