@@ -6134,7 +6134,10 @@ typedef struct wk_ground_texture {
      * the camera's position.
      */
     double uv_from_world[2][4];
-    /** The texture of what lies on the ground, of the same grid: 0 in this version, later that of the snow. */
+    /**
+     * The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of wk_lying_snow.
+     * 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+     */
     uint64_t snow_texture;
 } wk_ground_texture;
 

@@ -33,16 +33,18 @@ impl HeldGround {
         let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures, snow).cloned() else {
             return Err(Error::new(Status::Internal, "a terrain without textures"));
         };
+        let snow = textures.host_snow(device, snow.filter(|s| s.cells.len() as u32 == water.width() * water.height()));
         if std::mem::take(&mut textures.written) {
             let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
             let mut encoder = device.device.create_command_encoder(&label);
             let read = wgpu::TextureUses::RESOURCE;
-            let read = wgpu::TextureTransition { texture: &water, selector: None, state: read };
-            encoder.transition_resources(std::iter::empty(), std::iter::once(read));
+            let both = std::iter::once(&water).chain(&snow);
+            let both = both.map(|texture| wgpu::TextureTransition { texture, selector: None, state: read });
+            encoder.transition_resources(std::iter::empty(), both);
             device.submit(encoder);
         }
         device.check()?;
-        Ok(GroundTexture { texture: water, generation, revision, uv_from_world: rows })
+        Ok(GroundTexture { texture: water, snow, generation, revision, uv_from_world: rows })
     }
 
     /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.

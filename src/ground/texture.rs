@@ -26,6 +26,9 @@ pub struct GroundTexture {
     pub generation: u64,
     /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
     pub revision: u64,
+    /// The snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light. `None` without
+    /// a simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced with `texture`, filled likewise.
+    pub snow: Option<wgpu::Texture>,
     /// Rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v.
     pub uv_from_world: [DVec4; 2],
 }
@@ -52,6 +55,8 @@ pub(crate) struct Filled {
     pub revision: u64,
     classes: u64,
     snow: u64,
+    /// For the host, once it has asked for it: the texture, and what it holds.
+    host_snow: Option<(wgpu::Texture, u64)>,
 }
 
 /// Keeps the textures of a context's terrain; there are none before somebody asks.
@@ -94,6 +99,25 @@ impl TerrainTextures {
         self.filled = Some(filled);
     }
 
+    /// The snow as a texture for the host, up to date.
+    pub fn host_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<wgpu::Texture> {
+        let (filled, snow) = (self.filled.as_mut()?, snow?);
+        let [width, height] = [filled.water.width(), filled.water.height()];
+        let made = filled.host_snow.take();
+        let (texture, held) = made.unwrap_or_else(|| {
+            (terrain_texture(device, "terrain snow", wgpu::TextureFormat::Rgba16Float, [width, height]), 0)
+        });
+        if held != snow.revision {
+            self.texels.clear();
+            self.texels.extend(snow.cells.iter().map(|c| c.map(|v| half::f16::from_f32(v).to_bits())));
+            let whole = (wgpu::Origin3d::ZERO, texture.size());
+            write_at(device, &texture, whole, bytemuck::cast_slice(&self.texels), 8);
+            self.written = true;
+        }
+        filled.host_snow = Some((texture.clone(), snow.revision));
+        Some(texture)
+    }
+
     /// Uploads the snow on the terrain, if it has changed, into the rows below the surface's.
     pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&Filled> {
         let filled = self.filled.as_mut()?;
@@ -109,25 +133,32 @@ impl TerrainTextures {
 impl Filled {
     /// Textures of a grid, still empty.
     fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
-        use wgpu::{TextureFormat as F, TextureUsages as U};
+        use wgpu::TextureFormat as F;
         let [width, height] = grid.nodes;
-        let texture = |label, format, height| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        let water = texture("terrain water", F::Rgba16Float, height);
-        let surface = texture("terrain surface", F::Rgba32Float, 2 * height);
+        let water = terrain_texture(device, "terrain water", F::Rgba16Float, [width, height]);
+        let surface = terrain_texture(device, "terrain surface", F::Rgba32Float, [width, 2 * height]);
         let views = [&water, &surface].map(|t| t.create_view(&Default::default()));
-        Self { water, surface, views, generation, revision: u64::MAX, classes: u64::MAX, snow: 0 }
+        Self { water, surface, views, generation, revision: u64::MAX, classes: u64::MAX, snow: 0, host_snow: None }
     }
+}
+
+fn terrain_texture(
+    device: &Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
+        view_formats: &[],
+    })
 }
 
 /// Of each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of its class.

@@ -6,7 +6,7 @@ use super::{
     COARSE_STEP_S, STEP_S,
     column::{Column, Forcing},
     field::{Field, Step},
-    query,
+    laws, query,
     saved::SavedSnow,
     site::Site,
 };
@@ -318,6 +318,7 @@ impl HeldEffect for HeldSnow {
         self.published = self.revision;
         snow.country = query::seen(&state.country);
         snow.cover = snow_cover(state.country.depth_m());
+        snow.threshold_m_s = laws::threshold_m_s(state.country.is_wet(), state.country.density_kg_m3());
         snow.cells.clear();
         if let Some(field) = &state.field {
             snow.cells.extend(field.columns.iter().map(|c| {

@@ -3,7 +3,7 @@
 //! Each is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) take whole units of mass from them, so no
 //! mass is lost to rounding.
 
-use crate::weather::{Conditions, saturation_pressure_hpa};
+use crate::weather::{Conditions, lifting::drift_friction_velocity_m_s, saturation_pressure_hpa};
 
 /// Density of ice, kg/m^3.
 pub const ICE_KG_M3: f64 = 917.0;
@@ -91,17 +91,12 @@ pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// Friction velocity over drifting snow, m/s, under a wind at 10 m (Pomeroy and Gray 1990).
-pub fn friction_velocity_m_s(wind_m_s: f64) -> f64 {
-    0.02264 * libm::pow(wind_m_s, 1.295)
-}
-
 /// What hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t (u*^2 - u*t^2), for winds at 10 m.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
     }
-    let (u, t) = (friction_velocity_m_s(wind_m_s), friction_velocity_m_s(threshold_m_s));
+    let (u, t) = (drift_friction_velocity_m_s(wind_m_s), drift_friction_velocity_m_s(threshold_m_s));
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
@@ -156,7 +151,8 @@ mod tests {
         assert_eq!(saltation_kg_m_s(7.7, 7.7), 0.0);
         // Friction velocities of 0.27 to 0.69 m/s at the thresholds of the literature's range.
         assert!(
-            (0.27..0.69).contains(&friction_velocity_m_s(7.7)) && (0.27..0.69).contains(&friction_velocity_m_s(9.9))
+            (0.27..0.69).contains(&drift_friction_velocity_m_s(7.7))
+                && (0.27..0.69).contains(&drift_friction_velocity_m_s(9.9))
         );
         let q = saltation_kg_m_s(15.0, 7.7);
         assert!((0.01..0.03).contains(&q), "{q} kg/(m s)");

@@ -35,6 +35,8 @@ pub(crate) struct LyingSnow {
     pub country: SnowHere,
     /// Share of that ground that it covers.
     pub cover: f64,
+    /// Wind at 10 m above which it moves, m/s.
+    pub threshold_m_s: f64,
     /// Of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty without one.
     pub cells: Vec<[f32; 4]>,
     /// Incremented whenever `cells` change.

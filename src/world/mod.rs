@@ -45,7 +45,7 @@ use crate::{
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
-    weather::{Conditions, Timeline, timeline::MAX_TIME_S},
+    weather::{Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, Wind, WindGrid, WindOver, WindVolume},
 };
 
@@ -229,13 +229,17 @@ impl World {
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
     }
 
-    /// The weather at a time.
+    /// The weather at a time, with what its wind lifts of the snow that lies now.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
     pub fn weather_at(&self, time_s: f64) -> Result<Conditions> {
         self.over().check_time(time_s)?;
-        Ok(self.timeline.at(time_s))
+        let mut c = self.timeline.at(time_s);
+        if let Some(snow) = &self.snow {
+            lift_snow(&mut c, snow.threshold_m_s, snow.cover);
+        }
+        Ok(c)
     }
 
     /// The weather at a time with what falls at a place.

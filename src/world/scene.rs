@@ -141,13 +141,19 @@ impl World {
     /// the time is not known.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
         let conditions = self.weather_at(time_s)?;
-        self.scene_over(name, position, time_s, &self.land(&conditions))
+        let land = self.land(&conditions);
+        self.scene_over((name, position), time_s, conditions, &land)
     }
 
-    /// The same over this land.
-    fn scene_over(&self, name: &str, position: DVec3, time_s: f64, land: &LandSeen) -> Result<Scene> {
+    /// The same in this weather over this land.
+    fn scene_over(
+        &self,
+        (name, position): (&str, DVec3),
+        time_s: f64,
+        conditions: Conditions,
+        land: &LandSeen,
+    ) -> Result<Scene> {
         let local = self.frame.place_at(name, position)?;
-        let conditions = self.weather_at(time_s)?;
         let planet = planet_under(&self.set.planet, &conditions);
         let lights = self.lights_over(&local.place, (&conditions, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
@@ -197,8 +203,10 @@ impl World {
         let frame = &self.frame;
         let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
         // A state must not depend on how far another state has been shown.
-        let land = LandSeen::reported(&self.weather_at(time_s)?);
-        Ok((self.scene_over("position", origin, time_s, &land)?.ground.total_lux / LUX_PER_W_M2).round())
+        let conditions = self.timeline.at(time_s);
+        let land = LandSeen::reported(&conditions);
+        let scene = self.scene_over(("position", origin), time_s, conditions, &land)?;
+        Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
     fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {

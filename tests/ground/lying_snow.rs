@@ -225,6 +225,44 @@ fn snow_whitens_ground_by_its_depth_but_no_water() {
 }
 
 #[test]
+fn a_strong_wind_blows_loose_snow_into_the_air() {
+    let host = Host::new();
+    let mut context = context(&host, LyingSnowModel::Simulated);
+    let surface = Surface { snow_depth_m: 0.3, ..Surface::default() };
+    let windy = |speed| Weather { temperature_c: -8.0, surface, wind: Wind::of(speed, 270.0), ..Weather::default() };
+    let mut visibility_m = |speed: f64| {
+        context.set_weather(&windy(speed), context.time_s(), 0.0).unwrap();
+        context.update(context.time_s() + 60.0).unwrap();
+        context.conditions_at(DVec3::ZERO, context.time_s()).unwrap().visibility_m()
+    };
+    let (calm, storm) = (visibility_m(5.0), visibility_m(16.0));
+    assert!(calm > 5000.0 && storm < 1000.0, "{calm} {storm}");
+    assert!(visibility_m(5.0) > 5000.0, "it settles with the wind");
+}
+
+#[test]
+fn the_snow_is_a_texture_for_the_hosts_own_materials() {
+    let host = Host::new();
+    let mut context = context(&host, LyingSnowModel::Simulated);
+    context.set_ground_grid(Some(grid())).unwrap();
+    assert!(context.ground_texture().unwrap().snow.is_none(), "before there is a state");
+    let surface = Surface { snow_depth_m: 0.2, ..Surface::default() };
+    context.set_weather(&Weather { temperature_c: -5.0, surface, ..Weather::default() }, 0.0, 0.0).unwrap();
+    context.update(60.0).unwrap();
+    let snow = context.ground_texture().unwrap().snow.expect("a texture of the snow");
+    let texels = welkin::gpu::readback::rgba(&host.device, &snow).unwrap();
+    let (texel, at) = (texels[5 * NODES[0] as usize + 7], context.snow_at(at(-13.0, 5.0)).unwrap());
+    let wanted = [at.depth_m, at.density_kg_m3, at.wetness, at.albedo];
+    assert!((0..4).all(|i| (f64::from(texel[i]) - wanted[i]).abs() <= 1e-3 * wanted[i]), "{texel:?} {wanted:?}");
+    context
+        .take_snow(&SnowStrip { points: vec![self::at(-20.0, 5.0), self::at(0.0, 5.0)], width_m: 3.0 }, 0.0)
+        .unwrap();
+    let again = context.ground_texture().unwrap().snow.expect("a texture of the snow");
+    assert_eq!(again, snow);
+    assert_eq!(welkin::gpu::readback::rgba(&host.device, &again).unwrap()[5 * NODES[0] as usize + 7][0], 0.0);
+}
+
+#[test]
 fn an_overcast_sky_is_brighter_over_snow() {
     let host = Host::new();
     let lux = |depth_m: f64| {
