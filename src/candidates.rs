@@ -2,7 +2,8 @@
 //!
 //! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and bytes. The lab
 //! (`examples/lab`) draws every candidate, and older systems' beside them, measures its cost and its
-//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them; of what is [`Candidate::offered`], only those are worth a choice that no other beats in both.
+//! [`Difference`](crate::plan::Difference) from the f64 reference, and charts them. Only those are worth a choice that no other beats in
+//! both.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};
@@ -97,8 +98,6 @@ pub struct Candidate {
     pub method: Method,
     /// What it costs.
     pub work: Work,
-    /// Whether the library itself draws it, so that a plan may choose it. Others are compared with only.
-    pub offered: bool,
 }
 
 impl Candidate {
@@ -119,8 +118,8 @@ impl Candidate {
 pub fn candidates(effect: Effect) -> Vec<Candidate> {
     fn all<M>(effect: Effect, listed: Vec<Listed<M>>, method: impl Fn(M) -> Method) -> Vec<Candidate> {
         let one = |l: Listed<M>| {
-            let Listed { name, work, offered, .. } = l;
-            Candidate { effect, name, method: method(l.method), work, offered }
+            let Listed { name, work, .. } = l;
+            Candidate { effect, name, method: method(l.method), work }
         };
         listed.into_iter().map(one).collect()
     }

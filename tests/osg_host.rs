@@ -138,7 +138,9 @@ fn samples_of_textures_and_windows_make_edges_smooth() {
     ];
     for (i, (plain, sampled)) in ways.iter().enumerate() {
         let draw = |way: &str, name: &str| {
-            host.picture(&format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"))
+            // Before a sky without clouds, whose edges are steps too.
+            let metar = Some("METAR KTRI 121800Z 24012KT 10SM CLR 12/11 A2978");
+            host.picture_of(metar, &format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"))
         };
         let (one, four) = (draw(plain, "one"), draw(sampled, "four"));
         for part in [MEADOW, [0, 0, 200, 60]] {

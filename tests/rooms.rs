@@ -428,3 +428,31 @@ fn the_ways_through_the_code_lead_past_functions_that_stand_there() {
         assert!(stands, "{file} has no function {function}");
     }
 }
+
+/// The files of this repository that a text names with their folder, in the form `src/room/file.rs`.
+fn files_named_in(text: &str) -> BTreeSet<String> {
+    const FOLDERS: [&str; 9] =
+        ["src/", "shaders/", "docs/", "tests/", "examples/", "benches/", "include/", "scripts/", "packaging/"];
+    let is_path = |c: char| c.is_alphanumeric() || "_-./".contains(c);
+    let words = text.split(|c: char| !is_path(c)).map(|word| word.trim_end_matches('.'));
+    let named = words.filter(|word| FOLDERS.iter().any(|folder| word.starts_with(folder)));
+    named.filter(|word| Path::new(word).extension().is_some_and(|e| e != "so")).map(str::to_string).collect()
+}
+
+#[test]
+fn files_that_texts_name_stand_where_they_say() {
+    let some =
+        "as in `src/rain/gone.rs`, (docs/lab/README.md). A crate's own: ../src/lib.rs, other/src/x.rs, src/rain.";
+    assert!(files_named_in(some).into_iter().eq(["docs/lab/README.md", "src/rain/gone.rs"]));
+    let own = ["src", "shaders", "docs", "tests", "examples", "benches", "include"];
+    let kinds = ["rs", "wgsl", "md", "c", "h", "hpp", "toml"];
+    let below = own.iter().flat_map(|top| kinds.iter().flat_map(|kind| files(top, kind)));
+    let all = below.map(|(_, path)| path).chain(["README.md", "ARCHITECTURE.md"].map(|name| root().join(name)));
+    let texts = all.filter(|path| !path.ends_with("tests/rooms.rs"));
+    let missing = |path: &PathBuf| {
+        let named = files_named_in(&read(path)).into_iter().filter(|name| !root().join(name).exists());
+        named.map(|name| format!("{} names {name}", path.display())).collect::<Vec<_>>()
+    };
+    let missing: Vec<String> = texts.flat_map(|path| missing(&path)).collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}

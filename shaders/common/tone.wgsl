@@ -1,4 +1,4 @@
-// From luminance to the display: exposure, tone curve, sRGB encoding, dither. The twin of src/frame/tone.rs.
+// From luminance to the display: exposure, tone curve, sRGB encoding, dither. The twin of src/light/tone.rs.
 
 alias Luminance = vec3f; // cd/m^2, linear Rec. 709
 alias Display = vec3f;   // 1 = display white, linear Rec. 709

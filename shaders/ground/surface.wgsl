@@ -8,10 +8,6 @@
 //!include "surroundings/lights_binding.wgsl"
 //!include "surroundings/shelter.wgsl"
 
-// Whether anything keeps rain off, and whether there are lamps of the host's.
-override SHELTER: bool = false;
-override LAMPS: bool = false;
-
 // What a mirror on the ground sees in direction `d`: the sky through the fog that lies on it; the ground round about if it
 // faces down.
 fn mirrored_light(d: vec3f) -> vec3f {

@@ -1,7 +1,7 @@
 // The list of drops that a picture shows, of all in the shells round the camera: which they are stands in a bit each, in the
 // lattice's order, so the list's order is that order and depends on no thread's haste.
 //!include "rain/drops.wgsl"
-//!include "rain/state.wgsl"
+//!include "falling/state.wgsl"
 
 // Whether drops are stepped.
 override STEPPED: bool = false;
@@ -17,7 +17,7 @@ struct Block {
 
 @group(1) @binding(0) var<storage, read_write> blocks: array<Block>;
 @group(1) @binding(1) var<storage, read_write> streaks: array<Streak>;
-// Place of the camera in the cell of each shell, and the stepped drops, shell after shell.
+// Place of the camera in the cell of each shell, with where the shell's drops begin; and the stepped drops.
 @group(3) @binding(0) var<uniform> eyes: array<vec4u, SHELLS>;
 @group(3) @binding(1) var<storage, read> states: array<State>;
 
@@ -29,7 +29,7 @@ struct Moving {
 // Drops of each shell.
 fn shell_drops() -> u32 {
     if STEPPED {
-        return min(rain.per_shell, arrayLength(&states) / SHELLS);
+        return min(rain.per_shell, arrayLength(&states));
     }
     return rain.per_shell;
 }
@@ -41,7 +41,7 @@ fn shell_blocks() -> u32 {
 // Drop `index` of its shell.
 fn moving(in_shell: ClassInShell, index: u32) -> Moving {
     if STEPPED {
-        let state = states[in_shell.s * (arrayLength(&states) / SHELLS) + index];
+        let state = states[min(eyes[in_shell.s].w + index, arrayLength(&states) - 1u)];
         return Moving(drop_at(in_shell, index, state.place - eyes[in_shell.s].xyz), state.velocity);
     }
     let drop = drop_of(in_shell, index);

@@ -1,5 +1,5 @@
 // Drops without a state: where each is follows from (seed, id, time) alone, and one quad draws its streak.
-// The f64 twin and the derivation are in src/rain/lattice.rs and src/rain/reference.rs.
+// The f64 twin and the derivation are in src/rain/lattice.rs.
 //!include "common/depth.wgsl"
 //!include "surroundings/lights_binding.wgsl"
 //!include "common/hash.wgsl"

@@ -1,110 +1,24 @@
-// One frame of the drops that are stepped; the model is explained in src/rain/integrated.rs.
+// One frame of the drops that are stepped.
 //!include "rain/drops.wgsl"
-//!include "rain/state.wgsl"
-//!include "surroundings/wind.wgsl"
-
-struct StepUniform {
-    // Velocity of the air, m/s.
-    air: vec3f,
-    // Length of a step, s.
-    dt: f32,
-    wind: WindMap,
-    // What the camera has moved, m.
-    moved: vec3f,
-    steps: u32,
-    // Drops of each shell that have a state; 0: all start anew.
-    known: u32,
-    // Room for drops of each shell.
-    capacity: u32,
-    // Place of the camera in the cell of each shell, now and before, in 2^-32 of its side.
-    eye: array<vec4u, SHELLS>,
-    before: array<vec4u, SHELLS>,
-}
-
-@group(1) @binding(0) var<uniform> stepping: StepUniform;
-@group(1) @binding(1) var<storage, read_write> states: array<State>;
-@group(1) @binding(2) var wind_values: texture_3d<f32>;
-@group(1) @binding(3) var wind_sampler: sampler;
-
-// Whether there is a wind that varies in space.
-override WIND: bool = false;
-
-const GRAVITY: f32 = 9.80665;
-
-// Velocity of the air at `p`, camera-relative.
-fn air_at(p: vec3f) -> vec3f {
-    if !WIND {
-        return stepping.air;
-    }
-    let place = wind_place(stepping.wind, p);
-    let found = textureSampleLevel(wind_values, wind_sampler, place, 0.0);
-    return wind_at(stepping.wind, place, found, stepping.air);
-}
-
-// A part of a cell as a number of 2^-32, wrapped.
-fn wrapped(cells: vec3f) -> vec3u {
-    let part = clamp(cells - floor(cells + 0.5), vec3f(-0.5), vec3f(0.4999999));
-    return bitcast<vec3u>(vec3i(part * 4294967296.0));
-}
+//!include "falling/step.wgsl"
 
 @compute @workgroup_size(64)
 fn step_drops(@builtin(global_invocation_id) id: vec3u) {
     let index = id.x;
     let s = id.y;
-    if index >= min(rain.per_shell, stepping.capacity) {
+    if index >= stepping.counts[s] {
         return;
     }
-    let slot = s * stepping.capacity + index;
+    let slot = stepping.begins[s] + index;
     let k = class_of(index);
     let terminal = rain.classes[k].y * SPEED_UNIT;
-    let fall = vec3f(0.0, 0.0, terminal);
-    let side = rain.shell[s].x;
-    let eye = stepping.eye[s].xyz;
-    if index >= stepping.known {
-        // Where the lattice has it.
-        let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
-        let start = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
-        let away = start - vec3u(0u, 0u, u32(rain.classes[k].y) * rain.cell[s].w) - rain.cell[s].xyz;
-        let p = vec3f(bitcast<vec3i>(away)) * (side / 4294967296.0);
-        states[slot] = State(away + eye, s, air_at(p) - fall, 0.0);
+    if index < stepping.known[s] {
+        states[slot] = stepped(states[slot], s, index, terminal);
         return;
     }
-    var state = states[slot];
-    let away = vec3f(bitcast<vec3i>(state.place - stepping.before[s].xyz)) * (side / 4294967296.0) - stepping.moved;
-    var velocity = state.velocity;
-    var way = vec3f(0.0);
-    let at_rest = GRAVITY / terminal;
-    for (var i = 0u; i < stepping.steps; i++) {
-        let air = air_at(away + way);
-        let pull = clamp(length(velocity - air) / terminal, 0.25, 8.0);
-        let rate = at_rest * select(pull, 1.0, stepping.dt * at_rest > 0.5);
-        let settled = air - vec3f(0.0, 0.0, GRAVITY / rate);
-        let gone = 1.0 - exp(-rate * stepping.dt);
-        let difference = velocity - settled;
-        way += settled * stepping.dt + difference * (gone / rate);
-        velocity -= difference * gone;
-    }
-    state.place += wrapped(way / side);
-    // Who leaves through one axis comes in again there, as far in as it got, and gets the other places by chance: any where
-    // it may have left too, but among those that stay along an axis that comes before. So evenly spread drops stay so.
-    let course = (way - stepping.moved) / side;
-    let left = floor((away + way) / side + 0.5) != vec3f(0.0);
-    if any(left) {
-        let times = ((state.word >> 16u) + 1u) & 0xffffu;
-        let chance = random3(vec3u(rain.seed ^ 0x9e3779b9u, (s << 16u) | times, index));
-        let part = vec3f(chance >> vec3u(8u)) / 16777216.0;
-        let inside = eye + wrapped(mix(max(course, vec3f(0.0)) - 0.5, min(course, vec3f(0.0)) + 0.5, part));
-        if left.x {
-            state.place = vec3u(state.place.x, chance.yz);
-        } else if left.y {
-            state.place = vec3u(inside.x, state.place.y, chance.z);
-        } else {
-            state.place = vec3u(inside.xy, state.place.z);
-        }
-        let p = vec3f(bitcast<vec3i>(state.place - eye)) * (side / 4294967296.0);
-        velocity = air_at(p) - fall;
-        state.word = (times << 16u) | s;
-    }
-    state.velocity = velocity;
-    states[slot] = state;
+    // Where the lattice has it.
+    let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
+    let start = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
+    let away = start - vec3u(0u, 0u, u32(rain.classes[k].y) * rain.cell[s].w) - rain.cell[s].xyz;
+    states[slot] = begun(s, away, terminal);
 }

@@ -47,6 +47,8 @@ struct FlakesUniform {
     // Per shell: place of the camera in the cell of the air, in 2^-32 of its side, and how far a flake of one speed unit has
     // fallen, likewise.
     cell: array<vec4u, SHELLS>,
+    // Per shell: place of the camera in the world's cell, in 2^-32 of its side. Read of flakes that are stepped.
+    eye: array<vec4u, SHELLS>,
     // Per shell: side of the cell, m; distance from which it begins to take over from the smaller one, from which it hands on
     // itself, and at which it has taken over.
     shell: array<vec4f, SHELLS>,
@@ -93,35 +95,58 @@ fn scattered(units: i32, random: u32) -> i32 {
     return units + ((units * (i32(random & 255u) - 128)) >> 10u);
 }
 
-// Flake number `place` of all, the outermost shell's first.
-fn flake_of(instance: u32) -> Flake {
-    let place = flakes.count - 1u - instance;
-    let f = flakes.first;
-    let s = u32(place >= f.y) + u32(place >= f.z) + u32(place >= f.w);
-    let index = place - f[s];
+// What is a flake's own at any time.
+struct Own {
+    shell: u32,
+    size_class: u32,
+    random: vec3u,
+    // Fall speed in speed units.
+    speed: i32,
+}
+
+// Flake `index` of a shell.
+fn own_of(s: u32, index: u32) -> Own {
     var k = 0u;
     for (var step = CLASSES / 2u; step > 0u; step /= 2u) {
         k += select(0u, step, index >= flakes.upto[k + step - 1u][s]);
     }
     let before = select(0u, flakes.upto[max(k, 1u) - 1u][s], k > 0u);
-    let row = flakes.classes[k];
     let random = random3(vec3u(flakes.seed, SALT | (s << 8u) | k, index - before));
-    let speed = scattered(i32(row.y), random.x);
+    return Own(s, k, random, scattered(i32(flakes.classes[k].y), random.x));
+}
+
+// From the camera to where the lattice has it, without its helix, in 2^-32 of the cell's side.
+fn lattice_place(own: Own) -> vec3u {
+    let cell = flakes.cell[own.shell];
+    return own.random - vec3u(0u, 0u, bitcast<u32>(own.speed) * cell.w) - cell.xyz;
+}
+
+// Flake number `place` of all, the outermost shell's first.
+fn flake_of(instance: u32) -> Flake {
+    let place = flakes.count - 1u - instance;
+    let f = flakes.first;
+    let s = u32(place >= f.y) + u32(place >= f.z) + u32(place >= f.w);
+    let own = own_of(s, place - f[s]);
+    return flake_at(own, lattice_place(own), flakes.wind - vec3f(0.0, 0.0, f32(own.speed) * SPEED_UNIT));
+}
+
+// A flake so far from the camera, in 2^-32 of the cell's side, that goes with a velocity; both without its helix.
+fn flake_at(own: Own, away: vec3u, mean: vec3f) -> Flake {
+    let s = own.shell;
+    let row = flakes.classes[own.size_class];
+    let random = own.random;
     let turned = scattered(i32(row.w), random.y);
     let turns = select(turned, -turned, (random.z & 1u) != 0u);
-    let fallen = bitcast<u32>(speed) * flakes.cell[s].w;
-    let away = bitcast<vec3i>(random - vec3u(0u, 0u, fallen) - flakes.cell[s].xyz);
     let angle = f32((random.z << 16u) + bitcast<u32>(turns) * flakes.turn) * (TAU / 4294967296.0);
     let shell = flakes.shell[s];
-    let p = vec3f(away) * (shell.x / 4294967296.0);
+    let p = vec3f(bitcast<vec3i>(away)) * (shell.x / 4294967296.0);
     let d = length(p);
     let outer = 1.0 - smoothstep(shell.z, 0.5 * shell.x, d);
     let inner = select(smoothstep(shell.y, shell.w, d), smoothstep(0.5 * NEAREST, NEAREST, d), s == 0u);
     let around = vec3f(cos(angle), sin(angle), 0.0);
     let aside = vec3f(-around.y, around.x, 0.0) * (f32(turns) * (TURN_UNIT * TAU) * row.z);
-    let mean = flakes.wind - vec3f(0.0, 0.0, f32(speed) * SPEED_UNIT);
     let shape = (random.x & 0xffffu) | (random.y << 16u);
-    return Flake(p + around * row.z, row.x, mean + aside, inner * outer, mean, flakes.weight[k][s], angle, shape);
+    return Flake(p + around * row.z, row.x, mean + aside, inner * outer, mean, flakes.weight[own.size_class][s], angle, shape);
 }
 
 // What a flake scatters of a beam, 4 pi on the whole: all that its ice stops and does not bend by diffraction. The asymmetry of aggregates,
@@ -220,6 +245,19 @@ fn flake_corner(flake: Flake, corner: u32) -> FlakeVarying {
 @vertex
 fn flake_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> FlakeVarying {
     return flake_corner(flake_of(instance), corner);
+}
+
+// One that is stepped: number `index` of its shell, with the place and velocity of its state (falling/state.wgsl).
+@vertex
+fn stepped_vertex(
+    @builtin(vertex_index) corner: u32,
+    @builtin(instance_index) index: u32,
+    @location(0) place: vec3u,
+    @location(1) word: u32,
+    @location(2) velocity: vec3f,
+) -> FlakeVarying {
+    let s = word & 0xffffu;
+    return flake_corner(flake_at(own_of(s, index), place - flakes.eye[s].xyz, velocity), corner);
 }
 
 // Premultiplied.

@@ -1,5 +1,8 @@
-// What rain does not pass: boxes (the f64 twin is in src/rain/shelter.rs) and what the host has taken maps of.
+// What rain does not pass: boxes (the f64 twin is in src/surroundings/shelter.rs) and what the host has taken maps of.
 //!include "surroundings/occluders.wgsl"
+
+// Whether anything keeps rain off. Read by what is drawn in every pixel.
+override SHELTER: bool = false;
 
 const MAX_SHELTERS: u32 = 32u;
 const MAX_CUTS: u32 = 512u;

@@ -32,7 +32,8 @@ include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 /// How a view draws rain; what falls is the same.
 pub type wk_rain_model = u32;
 /// Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
-/// or the time does not allow it (WK_PART_RAIN).
+/// or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+/// wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
@@ -41,8 +42,7 @@ pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
 /// Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
-/// Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
-/// (wk_caps.tier 1).
+/// Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
 /// wk_rain.shutter_s of an eye, which adds up light over about this time by day. Streaks are long and faint.

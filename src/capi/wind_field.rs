@@ -3,7 +3,7 @@
 //! A context can solve for the wind in a box of air about a place: it goes round the terrain of
 //! wk_context_set_ground_grid and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
 //! leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
-//! lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
+//! lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -13,7 +13,7 @@ use crate::{
     chance::normal_quantile,
     error::Result,
     noise::{NoiseImage, NoiseKind, NoiseSettings},
-    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive},
+    weather::{CloudKind, CloudLayer, CloudSlab, Weather, derive, smoothstep},
 };
 
 /// Zenith angle up to which the sky counts, degrees.
@@ -111,11 +111,14 @@ pub fn threshold(slab: &CloudSlab) -> f64 {
         sum += weight * of_kind(row, slab.cover);
         weights += weight;
     }
-    (sum / weights).max(CLOSED)
+    let threshold = (sum / weights).max(CLOSED);
+    threshold + (CLOSED - threshold) * smoothstep(CLOSES, 1.0, slab.cover)
 }
 
 /// Threshold below all of the map: nothing is open.
 const CLOSED: f64 = -7.0;
+/// Cover from which thresholds go over to [`CLOSED`], so that nothing leaps where a layer closes.
+const CLOSES: f64 = 0.99;
 
 /// What tells the kinds apart.
 fn traits_of(slab: &CloudSlab) -> [f64; 4] {

@@ -92,7 +92,7 @@ impl<'a> CloudRays<'a> {
             scale: sources[layer.medium()].scattering.scale(),
         };
         Self {
-            layers: overhead.layers().iter().map(lit).collect(),
+            layers: overhead.all().iter().map(lit).collect(),
             place_m: overhead.place_m.extend(scene.place.altitude_m),
             radius_m,
             has_deck: overhead.has_deck,
@@ -152,8 +152,8 @@ impl<'a> CloudRays<'a> {
     pub fn seen(&self, d: DVec3, range_m: f64) -> CloudsSeen {
         let mut seen = March { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
         for (k, stretch) in self.stretches(d, range_m) {
-            if seen.transmittance > LEAST {
-                let share = self.layers[k].share;
+            let share = self.layers[k].share;
+            if seen.transmittance > LEAST && share > 0.0 {
                 let after = self.layer(&self.layers[k], d, stretch, seen);
                 seen.light = seen.light.lerp(after.light, share);
                 seen.transmittance += (after.transmittance - seen.transmittance) * share;
@@ -208,7 +208,8 @@ impl<'a> CloudRays<'a> {
             + DVec3::from_array(light.below) * s.ground
     }
 
-    /// Optical depth of the clouds over `offset` metres (east, north, up), of all that they scatter.
+    /// Optical depth of the clouds over `offset` metres (east, north, up), of all that they scatter. What a picture shows as a deck counts as
+    /// the cloud that it stands for.
     pub fn depth(&self, offset: DVec3) -> f64 {
         let range_m = offset.length();
         let d = offset / range_m;
@@ -219,7 +220,7 @@ impl<'a> CloudRays<'a> {
             let steps = ((last - first) / most).ceil().clamp(1.0, 16384.0);
             let step = (last - first) / steps;
             let at = |i: usize| of.field.extinction_per_m(self.at(d, first + (i as f64 + 0.5) * step));
-            of.share * step * (0..steps as usize).map(at).sum::<f64>()
+            step * (0..steps as usize).map(at).sum::<f64>()
         };
         self.stretches(d, range_m).into_iter().map(one).sum()
     }

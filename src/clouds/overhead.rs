@@ -36,6 +36,8 @@ pub(super) struct Layer {
 pub(super) struct Overhead {
     layers: [Layer; LAYERS],
     count: usize,
+    /// Of them, those of which something is drawn as a volume: the first ones, since only the uppermost are decks.
+    drawn: usize,
     /// Some of what is above the place is drawn as a deck.
     pub has_deck: bool,
     /// East and north of the world's origin, m.
@@ -69,8 +71,8 @@ fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
 }
 
 impl Overhead {
-    /// What a model draws at a scene's place, where the wind at 10 m has carried the air `drift_m` by `time_s`; `None` where that is no
-    /// volume.
+    /// What there is at a scene's place for a model, where the wind at 10 m has carried the air `drift_m` by `time_s`; `None` where the model
+    /// is no volume or there are no clouds.
     pub fn new(model: CloudModel, scene: &Scene, (drift_m, time_s): (DVec2, f64)) -> Option<Self> {
         let slabs = || scene.conditions.cloud_slabs().filter(|s| s.cover > 0.0).take(LAYERS);
         if model == CloudModel::Deck || slabs().next().is_none() {
@@ -89,18 +91,25 @@ impl Overhead {
             layers: [layer(&CloudSlab::NONE); LAYERS],
             has_deck: share < 1.0,
             count: 0,
+            drawn: 0,
             place_m: DVec2::from_array(scene.map_m),
             liquid_um: nearest_diameter(slabs()),
         };
-        for layer in slabs().map(layer).filter(|l| l.share > 0.0) {
+        for layer in slabs().map(layer) {
             overhead.layers[overhead.count] = layer;
             overhead.count += 1;
+            overhead.drawn += usize::from(layer.share > 0.0);
         }
-        (overhead.count > 0).then_some(overhead)
+        Some(overhead)
     }
 
-    /// Its layers, from below.
+    /// Its layers of which something is drawn as a volume, from below.
     pub fn layers(&self) -> &[Layer] {
+        &self.layers[..self.drawn]
+    }
+
+    /// All of them: what is drawn as a deck is cloud all the same.
+    pub fn all(&self) -> &[Layer] {
         &self.layers[..self.count]
     }
 

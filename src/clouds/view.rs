@@ -66,7 +66,8 @@ impl CloudsView {
     /// As [`Moment::carrying`].
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
         let drift_m = now.carrying()?.displacement_m().truncate();
-        self.overhead = Overhead::new(model, &now.scene, (drift_m, now.time_s));
+        let overhead = Overhead::new(model, &now.scene, (drift_m, now.time_s));
+        self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;
         }

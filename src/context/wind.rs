@@ -32,7 +32,7 @@ impl Context {
 
     /// Sets a wind that varies in space; `None` leaves the weather's, or the solved field's
     /// ([`Context::set_wind_field`]), in place of which it blows. It is in [`Context::wind_at`], in what lands on a surface or a
-    /// windscreen, and on drops of [`RainModel::Integrated`](crate::rain::RainModel::Integrated);
+    /// windscreen, and on what falls near a camera;
     /// [`Context::wind_displacement`], and what goes with it, know nothing of it.
     ///
     /// # Errors

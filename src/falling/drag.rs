@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::drops::GRAVITY_M_S2;
 
 /// One step: velocity (m/s) and way (m) after `dt_s` of what has `velocity_m_s` in air of `air_m_s`, and falls at
-/// `terminal_m_s` at rest. Vectors (east, north, up). `shaders/rain/step.wgsl` has the same.
+/// `terminal_m_s` at rest. Vectors (east, north, up). `shaders/falling/step.wgsl` has the same.
 pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let terminal = terminal_m_s.max(1e-3);
     let at_rest = GRAVITY_M_S2 / terminal;

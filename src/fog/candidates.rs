@@ -87,23 +87,17 @@ impl FogMethod {
 pub fn candidates() -> Vec<Listed<FogMethod>> {
     let froxels = |x, y, z| FogMethod::Froxels { cells: [x, y, z] };
     let named = [
-        ("exact", FogMethod::Exact, true),
-        ("exact-for-all", FogMethod::ExactForAll, true),
-        ("even", FogMethod::Even, true),
-        ("froxels-16", froxels(16, 9, 16), false),
-        ("froxels-32", froxels(32, 18, 32), false),
-        ("froxels-64", froxels(64, 36, 64), false),
-        ("linear", FogMethod::Curve(FogCurve::Linear), true),
-        ("exponential", FogMethod::Curve(FogCurve::Exponential), true),
-        ("exponential-squared", FogMethod::Curve(FogCurve::ExponentialSquared), true),
+        ("exact", FogMethod::Exact),
+        ("exact-for-all", FogMethod::ExactForAll),
+        ("even", FogMethod::Even),
+        ("froxels-16", froxels(16, 9, 16)),
+        ("froxels-32", froxels(32, 18, 32)),
+        ("froxels-64", froxels(64, 36, 64)),
+        ("linear", FogMethod::Curve(FogCurve::Linear)),
+        ("exponential", FogMethod::Curve(FogCurve::Exponential)),
+        ("exponential-squared", FogMethod::Curve(FogCurve::ExponentialSquared)),
     ];
-    let candidate = |(name, method, offered): (&'static str, FogMethod, bool)| Listed {
-        name,
-        method,
-        work: method.work(),
-        offered,
-    };
-    named.into_iter().map(candidate).collect()
+    named.map(|(name, method)| Listed { name, method, work: method.work() }).into()
 }
 
 #[cfg(test)]

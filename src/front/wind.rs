@@ -8,8 +8,8 @@ use crate::{
 
 impl Context {
     /// Sets a field of wind that goes round terrain and boxes, from simulation time `start_s` on; `None` ends it. While it is there the
-    /// wind of every place in it is the field's: in [`Context::wind_at`], in what lands on a surface or a windscreen, and on drops of
-    /// [`RainModel::Integrated`](crate::rain::RainModel::Integrated). A host's grid ([`Context::set_wind_grid`]) blows in its place.
+    /// wind of every place in it is the field's: in [`Context::wind_at`], in what lands on a surface or a windscreen, and on drops and
+    /// flakes near a camera. A host's grid ([`Context::set_wind_grid`]) blows in its place.
     ///
     /// Set it again with another place, and it moves by whole cells; with another size, mode or walls it begins anew. It is led by
     /// [`Context::update`], in steps on a grid that is anchored at time 0; how long these take: [`crate::flow`]. It begins with the steady

@@ -1,5 +1,5 @@
 //! Phase functions of droplets and other particles, and their moments. Twin of `fog_phase_after` in `shaders/fog/lookup.wgsl` and of
-//! `shaders/clouds/phase.wgsl`.
+//! `shaders/common/phase.wgsl`.
 
 use std::f64::consts::PI;
 

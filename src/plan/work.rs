@@ -9,8 +9,6 @@ pub struct Listed<M> {
     pub method: M,
     /// What it costs.
     pub work: Work,
-    /// Whether the library itself draws it. Others are compared with only.
-    pub offered: bool,
 }
 
 /// Amounts of work. A sample is one point of a march or one closed-form column: densities, exponentials, a sum.

@@ -1,8 +1,9 @@
 //! The ways to draw rain that are charted against each other, with what they cost.
 
-use super::{RainModel, RainSettings, STATE_BYTES};
+use super::{RainModel, RainSettings};
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
+use crate::stage::stepping::STATE_BYTES;
 
 /// Streaks and splashes of rain, at three rungs: single drops near the camera, cones in their place, or neither, so that all rain is
 /// extinction in the fog's layer. Importance: that of particles in the machinery trainer's thesis.
@@ -71,7 +72,7 @@ pub fn candidates() -> Vec<Listed<RainSettings>> {
         ("integrated-100k", integrated(100_000)),
         ("integrated-400k", integrated(400_000)),
     ];
-    named.map(|(name, method)| Listed { name, method, work: work(&method), offered: true }).into()
+    named.map(|(name, method)| Listed { name, method, work: work(&method) }).into()
 }
 
 #[cfg(test)]

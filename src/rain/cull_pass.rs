@@ -8,7 +8,6 @@ use super::{
     LocalUniform,
     lattice::SHELLS,
     passes::{COLUMNS_BYTES, FORMAT, STARTS},
-    step_pass::STATE_BYTES,
     uniforms::RainUniform,
 };
 use crate::{
@@ -18,6 +17,7 @@ use crate::{
         bind::{self, Slot},
         pass::{self, ComputeDesc, QuadsDesc},
     },
+    stage::stepping::{STATE_BYTES, source_layout},
 };
 
 /// Bytes of a `Streak` of `shaders/rain/drops.wgsl`.
@@ -89,12 +89,6 @@ fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 3] {
     ];
     let list = [(0, Slot::Storage(BLOCK_BYTES)), (1, Slot::Storage(STREAK_BYTES)), (2, Slot::Storage(FOUND_BYTES))];
     [make("cull frame", &frame), make("cull", &list), make("streaks", &list[..2])]
-}
-
-/// Layout of stepped drops: the camera's places in the shells' cells, and the states.
-pub(super) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let slots = [(0, Slot::Uniform(16 * SHELLS)), (1, Slot::StorageRead(STATE_BYTES))];
-    bind::layout(device, "stepped", wgpu::ShaderStages::COMPUTE, &slots)
 }
 
 impl CullPass {

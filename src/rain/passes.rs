@@ -8,8 +8,8 @@ use super::{
     cones::ConeUniform,
     crown_pass::CrownPass,
     cull_pass::{CullPass, Lattice},
+    integrated,
     splash::SplashUniform,
-    step_pass::{StepPass, Stepped},
     stone_pass::StonePass,
     uniforms::RainUniform,
 };
@@ -21,7 +21,10 @@ use crate::{
         is_kept,
         pass::{self, QuadsDesc},
     },
-    stage::FallingTexture,
+    stage::{
+        FallingTexture,
+        stepping::{StepPass, Stepped},
+    },
     surroundings::{self, SurroundingsBlock},
 };
 
@@ -189,8 +192,8 @@ impl RainLayer {
             return Ok(());
         }
         if let Some(stepped) = drawn.stepped {
-            let pass = self.stepped.get_or_insert_with(|| Box::new(StepPass::new(device)));
-            pass.step(device, encoder, &self.blocks, stepped)?;
+            let pass = self.stepped.get_or_insert_with(|| Box::new(integrated::pass(device)));
+            pass.step(device, encoder, integrated::own_block(&self.blocks), stepped)?;
         }
         let splashes = drawn.splashes * u32::from(depth.is_some());
         if CullPass::serves(device) {

@@ -1,9 +1,9 @@
 //! What a host may ask of the rain's picture.
 
-use super::STATE_BYTES;
 use crate::{
     error::{Error, Result, check_range},
     gpu::Device,
+    stage::stepping::StepPass,
 };
 
 /// With what a view draws rain; what falls is the same.
@@ -20,7 +20,7 @@ pub enum RainModel {
     /// Drops alone, to 4 m, each where (seed, number, time) puts it, without a state ([`super::lattice`]); cones beyond where
     /// lamps light the rain.
     Drops,
-    /// Drops that are stepped through a wind that varies in space ([`super::integrated`]). Needs compute shaders.
+    /// Drops that are stepped through a wind that varies in space (`stage::stepping`), to 4 m. Needs compute shaders.
     Integrated,
 }
 
@@ -93,7 +93,7 @@ impl RainSettings {
                 Error::unsupported("integrated needs compute shaders, which this device lacks").within("rain.model")
             );
         }
-        let room = device.device.limits().max_storage_buffer_binding_size / STATE_BYTES;
+        let room = StepPass::most(device);
         if u64::from(self.most_on(device)) + 4 > room {
             let what = format!("above {} with the integrated model on this device", room.saturating_sub(4));
             return Err(Error::unsupported(what).within("rain.most_drops"));

@@ -4,12 +4,13 @@ use glam::DVec3;
 
 use super::{
     AreaField, Classes, ConeUniform, DropLight, LayerDraw, Local, LocalUniform, MovingAir, RainLayer, RainModel,
-    RainSettings, RainUniform, Splashes, Stepped, StoneDraw, StreakCamera, Streaks,
+    RainSettings, RainUniform, Splashes, StoneDraw, StreakCamera, Streaks,
     area_pass::{AreaPass, Columns},
     candidates,
     cones::{BANDS_M, CONES},
     drops,
     ice_here::Ice,
+    integrated::{self, SteppedDrops},
     lattice::{HIDDEN_M, REACH_M, SHELLS, hidden_m},
     splash,
 };
@@ -21,6 +22,7 @@ use crate::{
     stage::{
         Composition, Drawing, DrawnEffect, FallingTexture, PutPart, RainReport, Recording, Report, Shot, Stages,
         Texture, rounding,
+        stepping::{self, Stepped},
     },
     weather::{Conditions, Falling},
     wind::Remembered,
@@ -43,6 +45,8 @@ pub(crate) struct RainView {
     ice: Ice,
     /// The wind when sets of cones were born.
     births: Remembered,
+    /// Whether drops were stepped in the last frame.
+    is_stepped: bool,
     /// What was drawn last, and in which frame.
     drawn: (u64, RainReport),
 }
@@ -105,6 +109,7 @@ impl RainView {
             areas: None,
             ice: Ice::default(),
             births: Remembered::default(),
+            is_stepped: false,
             drawn: (u64::MAX, RainReport::default()),
         }
     }
@@ -153,6 +158,15 @@ impl RainView {
     /// How many drops are drawn round the camera.
     fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
         self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
+    }
+
+    /// Whether drops are stepped: by choice, and near a wind that varies in space where no model was asked for.
+    fn steps(&self, now: &Moment<'_>, device: &Device, is_pure: bool) -> bool {
+        match self.settings.model {
+            RainModel::Integrated => true,
+            RainModel::Automatic => stepping::is_due(now, device, REACH_M, self.is_stepped, is_pure),
+            RainModel::Drops | RainModel::Cones | RainModel::Veil => false,
+        }
     }
 
     /// Shells of the lattice that are drawn.
@@ -373,14 +387,11 @@ impl RainView {
             let all = ConeUniform::new(block.seed, &there, &camera, &air, &carried);
             all.behind((hidden_m(self.shells()), near), share * self.settings.contrast_gain)
         });
-        let stepped = (self.settings.model == RainModel::Integrated).then(|| Stepped {
-            classes: &classes,
-            shot: &camera,
-            air: &air,
+        self.is_stepped = self.steps(now, device, frame.is_pure());
+        let of_lattice = SteppedDrops { seed: now.seed, classes: &classes, shells: block.shells as usize, most };
+        let stepped = (self.is_stepped && block.shells > 0).then(|| Stepped {
             anew: frame.is_pure(),
-            carried: &carried,
-            wind: now.wind_texture(device),
-            most,
+            ..integrated::stepped(&of_lattice, (&camera, &air), &carried, now.wind_texture(device))
         });
         let drawn = LayerDraw {
             rain: &block,

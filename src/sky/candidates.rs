@@ -41,7 +41,7 @@ pub(crate) fn sky_work(lamps: u32) -> StepWork {
 /// All candidates, each model from coarse to fine.
 pub fn candidates() -> Vec<Listed<SkySettings>> {
     let mut out = Vec::new();
-    let mut add = |name, method| out.push(Listed { name, method, work: work(&method), offered: true });
+    let mut add = |name, method| out.push(Listed { name, method, work: work(&method) });
     use SkyModel::{BruteForce, Directional, IsotropicTables, Table3d};
     add("directional-eighth", coarsest(Directional));
     add("directional-quarter", coarse(Directional));

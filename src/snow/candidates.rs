@@ -47,8 +47,7 @@ pub fn candidates() -> Vec<Listed<SnowSettings>> {
         ("flakes-1m", flakes(1_000_000)),
         ("flakes-4m", flakes(4_000_000)),
     ];
-    let candidate =
-        |(name, method): (&'static str, SnowSettings)| Listed { name, method, work: work(&method), offered: true };
+    let candidate = |(name, method): (&'static str, SnowSettings)| Listed { name, method, work: work(&method) };
     named.into_iter().map(candidate).collect()
 }
 

@@ -40,7 +40,7 @@ pub const NEAREST_M: f64 = 0.3;
 /// Variance of what drawn flakes hide over that of all flakes, up to which a shell is drawn.
 const MOST_NOISE: f64 = 3.0;
 /// What sets flakes apart from drops in the numbers that places are made of: `SALT` of `shaders/snow/flakes.wgsl`.
-const SALT: u32 = 0x5e0_0000;
+pub(super) const SALT: u32 = 0x5e0_0000;
 
 /// Side of a shell's cell, m.
 pub fn side_m(shell: usize) -> f64 {
@@ -149,6 +149,11 @@ impl Flakes {
             }
             return;
         }
+    }
+
+    /// Flakes of each shell.
+    pub fn counts(&self) -> [u32; SHELLS] {
+        std::array::from_fn(|s| if s < self.shells { self.upto[CLASSES - 1][s] } else { 0 })
     }
 
     /// Distance beyond which none is drawn, m.

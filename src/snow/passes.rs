@@ -1,6 +1,8 @@
-//! Flakes on the GPU: their block, and their one draw into the layer before the picture.
+//! Flakes on the GPU: their block, their step where they are stepped, and their draw into the layer before the picture.
 
-use super::uniforms::FlakesUniform;
+use std::sync::Arc;
+
+use super::{stepped, uniforms::FlakesUniform};
 use crate::{
     error::Result,
     gpu::{
@@ -9,13 +11,18 @@ use crate::{
         is_kept,
         pass::{self, QuadsDesc},
     },
-    stage::LAYER_FORMAT,
+    stage::{
+        LAYER_FORMAT,
+        stepping::{STATE_BYTES, StepPass, Stepped},
+    },
     surroundings::{self, SurroundingsBlock},
 };
 
 /// What a frame draws with and into.
 pub(super) struct FlakeDraw<'a> {
     pub block: &'a FlakesUniform,
+    /// By what they are stepped, if they are.
+    pub stepped: Option<&'a Stepped<'a>>,
     pub surroundings: &'a SurroundingsBlock,
     /// Whether occluder maps are among them.
     pub maps: bool,
@@ -32,8 +39,9 @@ pub(super) struct SnowPass {
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
     surroundings: wgpu::BindGroupLayout,
-    /// By whether depth has several samples, is there at all, and whether there are occluder maps.
-    pipelines: [Option<wgpu::RenderPipeline>; 8],
+    /// By whether depth has several samples, is there at all, whether there are occluder maps, and whether flakes are stepped.
+    pipelines: [Option<wgpu::RenderPipeline>; 16],
+    step: Option<Box<StepPass>>,
     none: wgpu::TextureView,
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
     /// Whether it counts how often pixels are drawn, in place of the flakes' light.
@@ -51,7 +59,8 @@ impl SnowPass {
             block: bind::block(own, "snow", size_of::<FlakesUniform>()),
             layouts: [layout(false), layout(true)],
             surroundings: surroundings::layout(own),
-            pipelines: [const { None }; 8],
+            pipelines: [const { None }; 16],
+            step: None,
             none: bind::nothing(own, wgpu::TextureFormat::Rgba8Unorm),
             bound: None,
             counts,
@@ -65,21 +74,34 @@ impl SnowPass {
 
     /// Bytes of GPU memory that it holds.
     pub fn bytes(&self) -> u64 {
-        self.block.size()
+        self.block.size() + self.step.as_ref().map_or(0, |step| step.bytes())
     }
 
     /// Draws all flakes.
     ///
     /// # Errors
     /// A missing shader file.
-    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, drawn: &FlakeDraw<'_>) -> Result<()> {
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        drawn: &FlakeDraw<'_>,
+    ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(drawn.block));
         let several = drawn.depth.is_some_and(Layer::is_multisampled);
         self.bind(device, drawn.depth, several);
-        let kind = [several, drawn.depth.is_some(), drawn.maps];
+        let kind = [several, drawn.depth.is_some(), drawn.maps, drawn.stepped.is_some()];
         let place = kind.into_iter().fold(0, |k, bit| 2 * k + usize::from(bit));
         if self.pipelines[place].is_none() {
             self.pipelines[place] = Some(self.pipeline(device, kind)?);
+        }
+        match drawn.stepped {
+            Some(by) => {
+                let step = self.step.get_or_insert_with(|| Box::new(stepped::pass(device)));
+                let own = wgpu::BufferBinding { buffer: &self.block, offset: 0, size: None };
+                step.step(device, encoder, own, by)?;
+            }
+            None => self.step = None,
         }
         let (Some(pipeline), Some((_, group))) = (&self.pipelines[place], &self.bound) else { return Ok(()) };
         let load = if drawn.over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
@@ -96,7 +118,14 @@ impl SnowPass {
         pass.set_bind_group(0, group, &[]);
         pass.set_bind_group(2, drawn.surroundings.bind_group(), &[]);
         pass.set_pipeline(pipeline);
-        pass.draw(0..4, 0..drawn.block.count);
+        match &self.step {
+            // The farthest first.
+            Some(step) => step.shells().rev().for_each(|(states, count)| {
+                pass.set_vertex_buffer(0, states);
+                pass.draw(0..4, 0..count);
+            }),
+            None => pass.draw(0..4, 0..drawn.block.count),
+        }
         Ok(())
     }
 
@@ -117,17 +146,26 @@ impl SnowPass {
         self.bound = Some((depth.map(Layer::kept), group));
     }
 
-    fn pipeline(&self, device: &Device, [several, has_depth, maps]: [bool; 3]) -> Result<wgpu::RenderPipeline> {
+    fn pipeline(
+        &self,
+        device: &Device,
+        [several, has_depth, maps, stepped]: [bool; 4],
+    ) -> Result<wgpu::RenderPipeline> {
         let module = device.shader(if several { "snow/flakes_view.wgsl:multi" } else { "snow/flakes_view.wgsl" })?;
         let yes = |b: bool| f64::from(u8::from(b));
+        let state = [Some(wgpu::VertexBufferLayout {
+            array_stride: STATE_BYTES,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &wgpu::vertex_attr_array![0 => Uint32x3, 1 => Uint32, 2 => Float32x3],
+        })];
         pass::quads(
             device,
             &QuadsDesc {
                 label: "snow",
-                vertex: (&module, "flake_vertex", &[("MAPS", yes(maps))]),
+                vertex: (&module, if stepped { "stepped_vertex" } else { "flake_vertex" }, &[("MAPS", yes(maps))]),
                 fragment: (&module, "flake_fragment", &[("HAS_DEPTH", yes(has_depth))]),
                 layouts: &[Some(&self.layouts[usize::from(several)]), None, Some(&self.surroundings)],
-                buffers: &[],
+                buffers: if stepped { &state } else { &[] },
                 format: LAYER_FORMAT,
                 counts: self.counts,
             },

@@ -33,6 +33,7 @@ pub(crate) struct FlakesUniform {
     pub turn: u32,
     pub pad: [u32; 2],
     pub cell: [[u32; 4]; SHELLS],
+    pub eye: [[u32; 4]; SHELLS],
     pub shell: [[f32; 4]; SHELLS],
     pub classes: [[f32; 4]; CLASSES],
     pub upto: [[u32; SHELLS]; CLASSES],
@@ -54,6 +55,8 @@ impl FlakesUniform {
     pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];
+        let eyes: [[u32; 3]; SHELLS] =
+            std::array::from_fn(|s| shot.position_m.to_array().map(|x| fraction(x, side_m(s))));
         let mut first = [flakes.drawn; 4];
         first[0] = 0;
         for shell in 1..flakes.shells {
@@ -80,10 +83,10 @@ impl FlakesUniform {
             pad: [0; 2],
             cell: std::array::from_fn(|s| {
                 let m = Moment::new(s, air.displacement_m, air.time_s);
-                let eye = shot.position_m.to_array().map(|x| fraction(x, side_m(s)));
-                let [x, y, z] = [0, 1, 2].map(|i| eye[i].wrapping_sub(m.air[i]));
+                let [x, y, z] = [0, 1, 2].map(|i| eyes[s][i].wrapping_sub(m.air[i]));
                 [x, y, z, m.fall]
             }),
+            eye: eyes.map(|[x, y, z]| [x, y, z, 0]),
             shell: std::array::from_fn(|s| {
                 let side = side_m(s);
                 let inner = if s > 0 { 0.25 * side } else { 0.0 };
@@ -126,6 +129,7 @@ mod tests {
                 count,
                 turn,
                 cell,
+                eye,
                 shell,
                 classes,
                 upto,

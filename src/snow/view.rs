@@ -6,6 +6,7 @@ use super::{
     lattice::Flakes,
     passes::{FlakeDraw, SnowPass},
     settings::SnowModel,
+    stepped,
     uniforms::{FlakesUniform, MovingAir},
 };
 use crate::{
@@ -16,8 +17,10 @@ use crate::{
     stage::{
         Composition, Drawing, DrawnEffect, FallingTexture, PutPart, Recording, Report, Shot, SnowReport, Stages,
         StreakCamera, Texture,
+        stepping::{self, StepPass, Stepped},
     },
     weather::Falling,
+    wind::Remembered,
 };
 
 /// Steps in which snow sets in below its cloud, so that a climbing camera does not count flakes anew in each frame.
@@ -48,6 +51,10 @@ pub(crate) struct SnowView {
     /// Share of the flakes that the plan draws, and whether something else lies in the layer in this frame.
     share: f32,
     over: bool,
+    /// Whether flakes were stepped in the last frame.
+    is_stepped: bool,
+    /// The wind then.
+    last_wind: Remembered,
     drawn: (u64, SnowReport),
 }
 
@@ -62,6 +69,8 @@ impl SnowView {
             counts: false,
             share: 1.0,
             over: false,
+            is_stepped: false,
+            last_wind: Remembered::default(),
             drawn: (u64::MAX, SnowReport::default()),
         }
     }
@@ -185,8 +194,17 @@ impl DrawnEffect for SnowView {
             self.pass = None;
         }
         let pass = self.pass.get_or_insert_with(|| Box::new(SnowPass::new(to.device, self.counts)));
+        let is_pure = shot.frame.is_pure();
+        self.is_stepped = u64::from(flakes.drawn) <= StepPass::most(to.device)
+            && stepping::is_due(now, to.device, flakes.reach_m(), self.is_stepped, is_pure);
+        let carried = |from| wind.since(from, &self.last_wind);
+        let stepped = self.is_stepped.then(|| Stepped {
+            anew: is_pure,
+            ..stepped::stepped((now.seed, &flakes), (&camera, &air), &carried, now.wind_texture(to.device))
+        });
         let drawn = FlakeDraw {
             block: &block,
+            stepped: stepped.as_ref(),
             surroundings: with.surroundings,
             maps: now.has_maps(),
             target: &target,

@@ -10,6 +10,7 @@ mod diagnostic;
 mod effect;
 mod opaque;
 mod recording;
+pub(crate) mod stepping;
 mod streak;
 mod target;
 mod uniform;

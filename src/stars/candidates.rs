@@ -64,13 +64,7 @@ pub fn candidates() -> Vec<Listed<StarMethod>> {
         ("glow-alone", StarMethod::Glow),
         ("even-night", StarMethod::Even),
     ];
-    let candidate = |(name, method): (&'static str, StarMethod)| Listed {
-        name,
-        method,
-        work: method.work(),
-        offered: method != StarMethod::All,
-    };
-    named.into_iter().map(candidate).collect()
+    named.map(|(name, method)| Listed { name, method, work: method.work() }).into()
 }
 
 #[cfg(test)]

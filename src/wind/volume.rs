@@ -84,6 +84,13 @@ impl WindVolume {
         (self.to_enu * (position - self.origin)) / self.cell_m
     }
 
+    /// How far a place of the host's world is from the box that the nodes fill, m; 0 inside.
+    pub fn distance_m(&self, position: DVec3) -> f64 {
+        let last = DVec3::from(self.nodes.map(|n| f64::from(n.max(1) - 1)));
+        let cells = self.cells_at(position);
+        ((cells - cells.clamp(DVec3::ZERO, last)) * self.cell_m).length()
+    }
+
     /// Velocity times share and share so many cells from the origin; none outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec4> {
         let value = |i: usize| DVec4::from(self.values[i].map(f64::from));

@@ -206,7 +206,7 @@ unsafe fn set_default_surface_class(context: *mut wk_context) {
 }
 
 unsafe fn set_cloud_model(context: *mut wk_context) {
-    ok(unsafe { wk_context_set_cloud_model(context, WK_CLOUD_MODEL_VOLUME) });
+    ok(unsafe { wk_context_set_cloud_model(context, WK_CLOUD_MODEL_DECK) });
 }
 
 unsafe fn set_time(context: *mut wk_context) {

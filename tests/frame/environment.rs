@@ -4,6 +4,7 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use glam::DVec3;
 use welkin::{
+    clouds::CloudModel,
     context::{Context, GivenDirection},
     frame::{Environment, Exposure, Frame, FrameFlags, Stages},
     gpu::{Device, DeviceOptions},
@@ -90,6 +91,8 @@ fn picture(host: &mut Host, id: u64, face: usize, height_m: f64, flags: FrameFla
 
 fn square(device: Arc<Device>) -> Host {
     let mut host = Host::on(device, FORMAT);
+    // The cube map's coarser clouds have a test of their own (tests/clouds/elsewhere.rs).
+    host.context.set_cloud_model(CloudModel::Deck);
     host.color = crate::textures::texture(&host.device, (SIZE, SIZE), FORMAT, 1);
     host
 }

@@ -21,6 +21,26 @@ fn keeps(picture: &[f64], everything: &[f64], tolerance: f64) -> bool {
     d.p95 <= tolerance && d.worst <= WORST * tolerance
 }
 
+/// Clouds of a volume take some frames: at their edges a few pixels differ from the picture that is marched at once.
+#[test]
+fn planned_pictures_with_clouds_as_a_volume_are_sufficient() {
+    let mut bench = Bench::new();
+    bench.draw_volumes();
+    let mut volumes = 0;
+    for (seed, weather) in (0..8).zip(["broken", "scattered", "showers", "high_cloud"].into_iter().cycle()) {
+        let shot = PlanScene { weather, ..PlanScene::seeded(3 * seed + 1) };
+        bench.set(&shot);
+        let everything = bench.everything(&shot);
+        let (planned, plan) = bench.planned(&shot, SETTLED);
+        let d = difference(&planned, &everything, 1.0).unwrap();
+        let clouds = plan.parts.iter().find(|p| p.part.name == "clouds").unwrap();
+        println!("{seed} {weather}: tolerance {} error {:.4} {:?}", shot.tolerance, d.p95, clouds.reason);
+        assert!(d.p95 <= shot.tolerance, "{}: {d:?} {plan:?}", shot.name);
+        volumes += u32::from(clouds.reason == Reason::Needed);
+    }
+    assert!(volumes > 2, "{volumes}");
+}
+
 #[test]
 fn planned_pictures_are_sufficient_and_minimal() {
     let mut bench = Bench::new();

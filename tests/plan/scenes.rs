@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use welkin::{
+    clouds::CloudModel,
     context::{Context, ContextDesc, GivenDirection},
     frame::{Exposure, Frame, FrameFlags, Shared, Stages, View},
     gpu::{Device, DeviceOptions, readback},
@@ -112,13 +113,20 @@ impl Bench {
     pub fn new() -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
-        let context =
+        let mut context =
             Context::new(device.clone(), shared, ContextDesc { sky: coarse_sky(), ..Default::default() }).unwrap();
+        // What the planner says of a volume is held by a test of its own here, and by tests/clouds/plan.rs.
+        context.set_cloud_model(CloudModel::Deck);
         let (view, plain) = (View::new(&context).unwrap(), View::new(&context).unwrap());
         let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
         let depth = texture(&device, SIZE, wgpu::TextureFormat::R32Float, 1);
         let host = (Vec::new(), Vec::new());
         Self { device, context, view, plain, color, depth, time_s: 0.0, frame_id: 0, white: 1.0, host }
+    }
+
+    /// Draws clouds as a volume from now on.
+    pub fn draw_volumes(&mut self) {
+        self.context.set_cloud_model(CloudModel::Volume);
     }
 
     /// Weather, light and the host's picture of a scene; the tables are brought to it whole.

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 use welkin::{
+    clouds::CloudModel,
     context::{Context, GivenDirection},
     weather::*,
 };
@@ -214,6 +215,8 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
 /// Where and how light is looked at: sun and moon are put somewhere, and the eye so far above the station.
 fn lit(host: &Host, n: usize) -> (Context, f64) {
     let mut context = host.context();
+    // Clouds of a volume drift through a line of sight, faster than weather may change.
+    context.set_cloud_model(CloudModel::Deck);
     let elevation_deg = [50.0, 12.0, 2.0, -7.0][n % 4];
     context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg })).unwrap();
     context.set_moon(Some(GivenDirection { azimuth_deg: 250.0, elevation_deg: 30.0 })).unwrap();
@@ -238,6 +241,22 @@ fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool, changes: f6
     jumping
         .map(|(what, s)| format!("number {} of {what} by {} of what it may at {} s", s.number, s.change, s.at_s))
         .collect()
+}
+
+/// A layer that the picture shows as a deck once it is closed, and as a volume before, hides as much on either side of that moment.
+#[test]
+fn a_layer_that_closes_hides_no_more_at_once() {
+    let host = Host::new();
+    let mut context = host.context();
+    let still = |name| Weather { wind: Wind::default(), ..Weather::preset(name).unwrap() };
+    context.set_weather(&still("high_cloud"), 0.0, 0.0).unwrap();
+    context.set_weather(&still("heavy_rain"), START_S, LENGTH_S).unwrap();
+    let base_m = context.conditions_at(DVec3::ZERO, 1e5).unwrap().cloud_slabs().next().unwrap().base_m;
+    let through = |t| context.between(DVec3::Z * 2.0, DVec3::new(5.0, 3.0, base_m + 12.0), t).unwrap().transmittance[1];
+    let [before, at, after] = [-1e-3, 0.0, 1e-3].map(|s| through(START_S + LENGTH_S + s));
+    println!("{before} before, {at} at, {after} after");
+    assert!(at > 0.0 && at < 0.7 * (-0.5f64).exp(), "{at}: there is cloud before it");
+    assert!((before / at - 1.0).abs() < 1e-3 && (after / at - 1.0).abs() < 1e-3);
 }
 
 fn is_long() -> bool {

@@ -1,5 +1,7 @@
 //! Stepped drops against their reference in f64, against the lattice, and in conditions that make explicit steps burst.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec2};
 
 use super::*;
@@ -8,8 +10,7 @@ use crate::{
     rain::{
         DropLight,
         drops::GRAVITY_M_S2,
-        integrated::step,
-        lattice::{self, random3, side_m},
+        lattice::{self, SHELLS, random3, side_m},
     },
     scene::{Camera, DepthMapping, ViewRays},
     surroundings::WindTexture,
@@ -56,7 +57,7 @@ impl Bench {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let pass = StepPass::new(&device);
+        let pass = pass(&device);
         Self { device, blocks, pass, wind: WindTexture::default(), classes: classes(rate_mm_h, most), most }
     }
 
@@ -78,38 +79,19 @@ impl Bench {
         let dark = DropLight { above: DVec3::ZERO, below: DVec3::ZERO, sun: DVec3::ZERO, to_sun: DVec3::Z };
         let block = RainUniform::new(SEED, &self.classes, &dark, &shot, &air);
         self.device.queue.write_buffer(&self.blocks, 0, bytemuck::bytes_of(&block));
-        let stepped = Stepped {
-            classes: &self.classes,
-            shot: &shot,
-            air: &air,
-            anew: false,
-            carried: &|from| wind * (time_s - from),
-            wind: (self.wind.view(&self.device, grid), grid.map(|g| WindMap::new(g, position_m))),
-            most: self.most,
-        };
+        let carried = |from| wind * (time_s - from);
+        let blown = (self.wind.view(&self.device, grid), grid.map(|g| WindMap::new(g, position_m)));
+        let drops = SteppedDrops { seed: SEED, classes: &self.classes, shells: SHELLS, most: self.most };
+        let stepped = stepped(&drops, (&shot, &air), &carried, blown);
         let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        self.pass.step(&self.device, &mut encoder, &self.blocks, &stepped).unwrap();
+        self.pass.step(&self.device, &mut encoder, own_block(&self.blocks), &stepped).unwrap();
         self.device.submit_and_wait(encoder).unwrap();
     }
 
     fn read(&self, position_m: DVec3) -> Vec<Read> {
-        let (capacity, states) = self.pass.states.as_ref().unwrap();
-        let copy = self.device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: states.size(),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(states, 0, &copy, 0, states.size());
-        self.device.submit(encoder);
-        copy.slice(..).map_async(wgpu::MapMode::Read, |r| r.unwrap());
-        self.device.wait().unwrap();
-        let bytes = copy.slice(..).get_mapped_range().unwrap().to_vec();
-        let words: &[[u32; 8]] = bytemuck::cast_slice(&bytes);
         let mut list = Vec::new();
-        for s in 0..SHELLS {
-            let shell = &words[s * *capacity as usize..][..self.classes.per_shell as usize];
+        for (s, shell) in self.pass.read(&self.device).into_iter().enumerate() {
+            assert_eq!(shell.len(), self.classes.per_shell as usize);
             for (i, w) in shell.iter().enumerate() {
                 assert_eq!(w[3] & 0xffff, s as u32);
                 let eye = position_m.to_array().map(|x| lattice::fraction(x, side_m(s)));

@@ -1,4 +1,4 @@
-// A drop that is stepped (rain/step.wgsl).
+// A drop or flake that is stepped (falling/step.wgsl).
 
 struct State {
     // Place in the cell, in 2^-32 of its side.

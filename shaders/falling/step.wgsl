@@ -1,0 +1,104 @@
+// One frame of what falls and is stepped; the model is explained in src/stage/stepping.rs.
+//!include "common/hash.wgsl"
+//!include "falling/state.wgsl"
+//!include "surroundings/wind.wgsl"
+
+// Shells of the lattice.
+const STEPPED_SHELLS: u32 = 4u;
+
+struct StepUniform {
+    // Velocity of the air, m/s.
+    air: vec3f,
+    // Length of a step, s.
+    dt: f32,
+    wind: WindMap,
+    // What the camera has moved, m.
+    moved: vec3f,
+    steps: u32,
+    // Of each shell: things that fall in it, how many of them have a state, where their states begin, and the side of its cell, m.
+    counts: vec4u,
+    known: vec4u,
+    begins: vec4u,
+    sides: vec4f,
+    // Place of the camera in the cell of each shell, now (with where the shell's states begin) and before, in 2^-32 of its side.
+    eye: array<vec4u, STEPPED_SHELLS>,
+    before: array<vec4u, STEPPED_SHELLS>,
+    // What the places of those that come in are drawn by.
+    seed: u32,
+}
+
+@group(1) @binding(0) var<uniform> stepping: StepUniform;
+@group(1) @binding(1) var<storage, read_write> states: array<State>;
+@group(1) @binding(2) var wind_values: texture_3d<f32>;
+@group(1) @binding(3) var wind_sampler: sampler;
+
+// Whether there is a wind that varies in space.
+override WIND: bool = false;
+
+const GRAVITY: f32 = 9.80665;
+
+// Velocity of the air at `p`, camera-relative.
+fn air_at(p: vec3f) -> vec3f {
+    if !WIND {
+        return stepping.air;
+    }
+    let place = wind_place(stepping.wind, p);
+    let found = textureSampleLevel(wind_values, wind_sampler, place, 0.0);
+    return wind_at(stepping.wind, place, found, stepping.air);
+}
+
+// A part of a cell as a number of 2^-32, wrapped.
+fn wrapped(cells: vec3f) -> vec3u {
+    let part = clamp(cells - floor(cells + 0.5), vec3f(-0.5), vec3f(0.4999999));
+    return bitcast<vec3u>(vec3i(part * 4294967296.0));
+}
+
+// One that begins: `away` from the camera where the lattice has it, in 2^-32 of the side; it falls at `terminal` m/s at rest.
+fn begun(s: u32, away: vec3u, terminal: f32) -> State {
+    let p = vec3f(bitcast<vec3i>(away)) * (stepping.sides[s] / 4294967296.0);
+    return State(away + stepping.eye[s].xyz, s, air_at(p) - vec3f(0.0, 0.0, terminal), 0.0);
+}
+
+// Number `index` of shell `s`, which falls at `terminal` m/s at rest, after the frame's steps.
+fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
+    var state = from_state;
+    let side = stepping.sides[s];
+    let eye = stepping.eye[s].xyz;
+    let away = vec3f(bitcast<vec3i>(state.place - stepping.before[s].xyz)) * (side / 4294967296.0) - stepping.moved;
+    var velocity = state.velocity;
+    var way = vec3f(0.0);
+    let at_rest = GRAVITY / terminal;
+    for (var i = 0u; i < stepping.steps; i++) {
+        let air = air_at(away + way);
+        let pull = clamp(length(velocity - air) / terminal, 0.25, 8.0);
+        let rate = at_rest * select(pull, 1.0, stepping.dt * at_rest > 0.5);
+        let settled = air - vec3f(0.0, 0.0, GRAVITY / rate);
+        let gone = 1.0 - exp(-rate * stepping.dt);
+        let difference = velocity - settled;
+        way += settled * stepping.dt + difference * (gone / rate);
+        velocity -= difference * gone;
+    }
+    state.place += wrapped(way / side);
+    // Who leaves through one axis comes in again there, as far in as it got, and gets the other places by chance: any where
+    // it may have left too, but among those that stay along an axis that comes before. So evenly spread drops stay so.
+    let course = (way - stepping.moved) / side;
+    let left = floor((away + way) / side + 0.5) != vec3f(0.0);
+    if any(left) {
+        let times = ((state.word >> 16u) + 1u) & 0xffffu;
+        let chance = random3(vec3u(stepping.seed, (s << 16u) | times, index));
+        let part = vec3f(chance >> vec3u(8u)) / 16777216.0;
+        let inside = eye + wrapped(mix(max(course, vec3f(0.0)) - 0.5, min(course, vec3f(0.0)) + 0.5, part));
+        if left.x {
+            state.place = vec3u(state.place.x, chance.yz);
+        } else if left.y {
+            state.place = vec3u(inside.x, state.place.y, chance.z);
+        } else {
+            state.place = vec3u(inside.xy, state.place.z);
+        }
+        let p = vec3f(bitcast<vec3i>(state.place - eye)) * (side / 4294967296.0);
+        velocity = air_at(p) - vec3f(0.0, 0.0, terminal);
+        state.word = (times << 16u) | s;
+    }
+    state.velocity = velocity;
+    return state;
+}

@@ -1,0 +1,47 @@
+//! Flakes that are stepped through a wind that varies in space: their lattice as [`crate::stage::stepping`] wants it, which has the model.
+//! Their helix is none of the step; it is drawn about the place where a flake is.
+
+use glam::DVec3;
+
+use super::{
+    lattice::{Flakes, SALT, side_m},
+    uniforms::{FlakesUniform, MovingAir},
+};
+use crate::{
+    falling::lattice::short_seed,
+    gpu::Device,
+    stage::{
+        StreakCamera,
+        stepping::{StepPass, Stepped},
+    },
+    surroundings::{WindMap, WindView},
+};
+
+/// What steps flakes.
+pub(super) fn pass(device: &Device) -> StepPass {
+    StepPass::new(device, ("snow/step.wgsl", "step_flakes"), 128, size_of::<FlakesUniform>())
+}
+
+/// What they are stepped by.
+pub(super) fn stepped<'a>(
+    (seed, flakes): (u64, &Flakes),
+    (camera, air): (&StreakCamera<'_>, &MovingAir),
+    carried: &'a dyn Fn(f64) -> DVec3,
+    wind: (WindView, Option<WindMap>),
+) -> Stepped<'a> {
+    Stepped {
+        seed: short_seed(seed) ^ SALT,
+        counts: flakes.counts(),
+        sides_m: std::array::from_fn(side_m),
+        least_room: 0,
+        position_m: camera.position_m,
+        time_s: air.time_s,
+        air_m_s: air.velocity_m_s,
+        carried,
+        anew: false,
+        wind,
+    }
+}
+
+#[cfg(test)]
+mod tests;

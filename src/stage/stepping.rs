@@ -1,0 +1,417 @@
+//! What falls and is stepped: for a wind that varies in space, such as that round a building.
+//!
+//! Drops and flakes are those of their lattice, as many in the same shells, but each has a place and a velocity of its own, in a buffer
+//! of the view. In an even wind each starts where the lattice has it and stays there until it leaves the cell round the camera.
+//!
+//! A step goes by drag that is linear while it lasts, solved exactly ([`crate::falling::drag::step`]), so that no length of it is unstable.
+//! The rate is that of drag by the square at the step's first moment, so short steps converge to it; where a step is long against it, the
+//! rate at rest, which ends at the right fall.
+//!
+//! What leaves its cell, or is left behind by the camera, comes in again on the opposite side at a place by chance (hash of its number and
+//! how often it has been there) at the speed that it has there at rest. As many leave as come in: neither dropped frames nor a camera at
+//! 300 m/s make gaps or bursts. After a jump of time, or of the camera where the host says so, all start anew.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::{
+    error::Result,
+    falling::lattice::fraction,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        pass::{self, ComputeDesc},
+    },
+    moment::Moment,
+    surroundings::{WindMap, WindView},
+};
+
+/// Shells of the lattices of what falls.
+pub(crate) const SHELLS: usize = 4;
+/// Bytes of one state: place and word, velocity.
+pub(crate) const STATE_BYTES: u64 = 32;
+/// Longest time that is stepped over, s; what is longer starts anew.
+const MOST_S: f64 = 10.0;
+/// Longest time of one of the steps that a frame is divided into, s, as long as there are no more than [`MOST_STEPS`].
+const STEP_S: f64 = 1.0 / 60.0;
+/// Most steps of a frame.
+const MOST_STEPS: f64 = 8.0;
+/// Where the camera's places begin in the block, by themselves.
+const EYES: usize = 512;
+/// By how much more than asked for a buffer has room that has to grow.
+const GROWTH: f64 = 1.5;
+
+/// `StepUniform` of `shaders/falling/step.wgsl`, which explains the fields.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct StepUniform {
+    air: [f32; 3],
+    dt: f32,
+    wind: WindMap,
+    moved: [f32; 3],
+    steps: u32,
+    counts: [u32; SHELLS],
+    known: [u32; SHELLS],
+    begins: [u32; SHELLS],
+    sides: [f32; SHELLS],
+    eye: [[u32; 4]; SHELLS],
+    before: [[u32; 4]; SHELLS],
+    seed: u32,
+    pad: [u32; 3],
+}
+
+/// What a frame steps by.
+pub(crate) struct Stepped<'a> {
+    /// What the places of those that come in are drawn by.
+    pub seed: u32,
+    /// How many there are in each shell, and the side of its cell, m.
+    pub counts: [u32; SHELLS],
+    pub sides_m: [f64; SHELLS],
+    /// Room that each shell has at least: more may come soon.
+    pub least_room: u32,
+    /// Of the camera: east, north, up of a point fixed to the world.
+    pub position_m: DVec3,
+    pub time_s: f64,
+    /// Of the air now, and its displacement since an earlier time.
+    pub air_m_s: DVec3,
+    pub carried: &'a dyn Fn(f64) -> DVec3,
+    /// Nothing of earlier frames may show.
+    pub anew: bool,
+    /// The texture of the wind that varies in space, and where the camera is in it if there is one.
+    pub wind: (WindView, Option<WindMap>),
+}
+
+/// Whether what falls up to `reach_m` from the camera is stepped: where the wind varies in space there, and then, so that nothing jumps, as
+/// long as the picture has a history. `was`: in the frame before.
+pub(crate) fn is_due(now: &Moment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
+    let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
+    device.caps().tier > 0 && ((was && !is_pure) || varies())
+}
+
+/// What the last step left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Left {
+    time_s: f64,
+    position_m: DVec3,
+    counts: [u32; SHELLS],
+}
+
+impl StepUniform {
+    /// From what was `left` to now; none where there is nothing to step.
+    fn new(to: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
+        let v = |d: DVec3| d.as_vec3().to_array();
+        let left = left.filter(|l| (0.0..=MOST_S).contains(&(to.time_s - l.time_s)));
+        let dt = left.map_or(0.0, |l| to.time_s - l.time_s);
+        let moved = left.map_or(DVec3::ZERO, |l| to.position_m - l.position_m);
+        let known = left.map_or([0; SHELLS], |l| l.counts);
+        let counts = rooms.within(to.counts);
+        let all_known = counts.iter().zip(known).all(|(count, known)| known >= *count);
+        if left.is_some() && dt == 0.0 && moved == DVec3::ZERO && all_known {
+            return None;
+        }
+        let steps = (dt / STEP_S).ceil().clamp(1.0, MOST_STEPS);
+        let blows = match left {
+            Some(l) if dt > 0.0 => (to.carried)(l.time_s) / dt,
+            _ => to.air_m_s,
+        };
+        let begins = rooms.begins();
+        let places = |p: DVec3| {
+            std::array::from_fn(|s| {
+                let [x, y, z] = p.to_array().map(|x| fraction(x, to.sides_m[s]));
+                [x, y, z, begins[s]]
+            })
+        };
+        Some(Self {
+            air: v(blows),
+            dt: (dt / steps) as f32,
+            wind: to.wind.1.unwrap_or_default(),
+            moved: v(moved),
+            steps: if dt > 0.0 { steps as u32 } else { 0 },
+            counts,
+            known,
+            begins,
+            sides: to.sides_m.map(|side| side as f32),
+            eye: places(to.position_m),
+            before: places(to.position_m - moved),
+            seed: to.seed,
+            pad: [0; 3],
+        })
+    }
+}
+
+/// How many states there is room for in each shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rooms([u32; SHELLS]);
+
+impl Rooms {
+    /// Where each shell's states begin.
+    fn begins(&self) -> [u32; SHELLS] {
+        std::array::from_fn(|s| self.0[..s].iter().sum())
+    }
+
+    fn all(&self) -> u64 {
+        self.0.iter().map(|n| u64::from(*n)).sum()
+    }
+
+    fn within(&self, counts: [u32; SHELLS]) -> [u32; SHELLS] {
+        std::array::from_fn(|s| counts[s].min(self.0[s]))
+    }
+
+    /// These, or larger ones where `counts` do not fit; of all shells no more than `most`.
+    fn for_counts(&self, counts: [u32; SHELLS], least: u32, most: u64) -> Self {
+        if self.0.iter().zip(counts).all(|(room, count)| *room >= count.max(least)) {
+            return *self;
+        }
+        let is_first = self.all() == 0;
+        let grown = |s: usize| match counts[s].max(least) {
+            wanted if is_first || wanted <= self.0[s] => wanted.max(self.0[s]),
+            wanted => (f64::from(wanted) * GROWTH) as u32,
+        };
+        let rooms = Self(std::array::from_fn(grown));
+        if rooms.all() <= most {
+            return rooms;
+        }
+        // Without growth, and at last an even share of what there is.
+        let bare = Self(std::array::from_fn(|s| counts[s].max(least)));
+        if bare.all() <= most { bare } else { Self([(most / SHELLS as u64) as u32; SHELLS]) }
+    }
+}
+
+/// States on the GPU and the pass that steps them.
+pub(crate) struct StepPass {
+    /// Shader and entry point, and threads of one of its groups.
+    shader: (&'static str, &'static str),
+    group: u32,
+    block: wgpu::Buffer,
+    states: Option<(Rooms, wgpu::Buffer)>,
+    left: Option<Left>,
+    /// The texture of the wind that is bound; one texel where there is none.
+    wind: Option<WindView>,
+    sampler: wgpu::Sampler,
+    /// Of the effect's own block, of the step, and of what draws the states.
+    layouts: [wgpu::BindGroupLayout; 3],
+    /// Without and with a wind that varies in space.
+    steps: [Option<wgpu::ComputePipeline>; 2],
+    groups: Option<[wgpu::BindGroup; 3]>,
+}
+
+/// Layout of stepped things for what lists them: the camera's places in the shells' cells with where their states begin, and the states.
+pub(crate) fn source_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let slots = [(0, Slot::Uniform(16 * SHELLS)), (1, Slot::StorageRead(STATE_BYTES))];
+    bind::layout(device, "stepped", wgpu::ShaderStages::COMPUTE, &slots)
+}
+
+impl StepPass {
+    /// Most states that a device has room for.
+    pub fn most(device: &Device) -> u64 {
+        device.device.limits().max_storage_buffer_binding_size / STATE_BYTES
+    }
+
+    /// By an entry point of a shader with groups of so many threads, which reads an own block of so many bytes.
+    pub fn new(device: &Device, shader: (&'static str, &'static str), group: u32, own_bytes: usize) -> Self {
+        let own = &device.device;
+        let make = |label, slots: &[(u32, Slot)]| bind::layout(own, label, wgpu::ShaderStages::COMPUTE, slots);
+        let step = [
+            (0, Slot::Uniform(size_of::<StepUniform>())),
+            (1, Slot::Storage(STATE_BYTES)),
+            (2, Slot::FilteredVolume),
+            (3, Slot::Sampler),
+        ];
+        Self {
+            shader,
+            group,
+            block: bind::block(own, "step", EYES + 16 * SHELLS),
+            states: None,
+            left: None,
+            wind: None,
+            sampler: own.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("wind"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            layouts: [make("step frame", &[(0, Slot::Uniform(own_bytes))]), make("step", &step), source_layout(own)],
+            steps: [None, None],
+            groups: None,
+        }
+    }
+
+    /// Bytes of GPU memory held.
+    pub fn bytes(&self) -> u64 {
+        self.states.as_ref().map_or(0, |(_, b)| b.size())
+    }
+
+    /// Makes room for the states, takes up the wind, and records the step. The effect's own block is up.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn step(
+        &mut self,
+        device: &Arc<Device>,
+        encoder: &mut wgpu::CommandEncoder,
+        own: wgpu::BufferBinding<'_>,
+        to: &Stepped<'_>,
+    ) -> Result<()> {
+        self.make_room(device, encoder, to);
+        let (view, map) = &to.wind;
+        if self.wind.as_ref().is_none_or(|bound| bound.generation != view.generation) {
+            (self.wind, self.groups) = (Some(view.clone()), None);
+        }
+        self.bind(device, own);
+        let Some((rooms, _)) = &self.states else { return Ok(()) };
+        let left = self.left.filter(|_| !to.anew);
+        let counts = rooms.within(to.counts);
+        self.left = Some(Left { time_s: to.time_s, position_m: to.position_m, counts });
+        let Some(block) = StepUniform::new(to, left, rooms) else { return Ok(()) };
+        let mut bytes = [0; EYES + 16 * SHELLS];
+        bytes[..size_of::<StepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
+        bytes[EYES..].copy_from_slice(bytemuck::bytes_of(&block.eye));
+        device.queue.write_buffer(&self.block, 0, &bytes);
+        let slot = &mut self.steps[usize::from(map.is_some())];
+        if slot.is_none() {
+            let desc = ComputeDesc {
+                shader: self.shader.0,
+                entry: self.shader.1,
+                layouts: &[Some(&self.layouts[0]), Some(&self.layouts[1])],
+                constants: &[("WIND", f64::from(u8::from(map.is_some())))],
+            };
+            *slot = Some(pass::compute(device, &desc)?);
+        }
+        let longest = counts.into_iter().max().unwrap_or(0);
+        if let (Some(pipeline), Some(groups)) = (slot, &self.groups) {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &groups[0], &[]);
+            pass.set_bind_group(1, &groups[1], &[]);
+            pass.dispatch_workgroups(longest.div_ceil(self.group).max(1), SHELLS as u32, 1);
+        }
+        Ok(())
+    }
+
+    /// Makes room for more states, with those that there are.
+    fn make_room(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, to: &Stepped<'_>) {
+        let before = self.states.as_ref().map_or(Rooms::default(), |(rooms, _)| *rooms);
+        let rooms = before.for_counts(to.counts, to.least_room, Self::most(device));
+        if self.states.is_some() && rooms == before {
+            return;
+        }
+        let buffer = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("stepped"),
+            size: STATE_BYTES * rooms.all().max(1),
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::VERTEX
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        if let (Some((_, old)), Some(left)) = (&self.states, &mut self.left) {
+            left.counts = rooms.within(left.counts);
+            for (s, (from, to)) in before.begins().into_iter().zip(rooms.begins()).enumerate() {
+                let [from, to, kept] = [from, to, left.counts[s]].map(|n| STATE_BYTES * u64::from(n));
+                if kept > 0 {
+                    encoder.copy_buffer_to_buffer(old, from, &buffer, to, kept);
+                }
+            }
+        }
+        (self.states, self.groups) = (Some((rooms, buffer)), None);
+    }
+
+    /// The states as [`source_layout`] binds them, once there are any.
+    pub fn states(&self) -> Option<&wgpu::BindGroup> {
+        self.groups.as_ref().map(|[.., states]| states)
+    }
+
+    /// Of each shell its states as a vertex buffer, and how many of them the last step left.
+    pub fn shells(&self) -> impl DoubleEndedIterator<Item = (wgpu::BufferSlice<'_>, u32)> {
+        let counts = self.left.map_or([0; SHELLS], |left| left.counts);
+        self.states.iter().flat_map(move |(rooms, buffer)| {
+            let begins = rooms.begins();
+            (0..SHELLS).filter(move |s| counts[*s] > 0).map(move |s| {
+                let begin = STATE_BYTES * u64::from(begins[s]);
+                (buffer.slice(begin..begin + STATE_BYTES * u64::from(counts[s])), counts[s])
+            })
+        })
+    }
+
+    /// The states of each shell, as words.
+    #[cfg(test)]
+    pub fn read(&self, device: &Device) -> [Vec<[u32; 8]>; SHELLS] {
+        let (rooms, states) = self.states.as_ref().expect("there are states");
+        let copy = device.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: states.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(states, 0, &copy, 0, states.size());
+        device.submit(encoder);
+        copy.slice(..).map_async(wgpu::MapMode::Read, |r| r.expect("mapped"));
+        device.wait().expect("the device answers");
+        let bytes = copy.slice(..).get_mapped_range().expect("mapped").to_vec();
+        let words: &[[u32; 8]] = bytemuck::cast_slice(&bytes);
+        let counts = self.left.map_or([0; SHELLS], |left| left.counts);
+        std::array::from_fn(|s| words[rooms.begins()[s] as usize..][..counts[s] as usize].to_vec())
+    }
+
+    fn bind(&mut self, device: &Device, own: wgpu::BufferBinding<'_>) {
+        let (None, Some((_, states)), Some(wind)) = (&self.groups, &self.states, &self.wind) else { return };
+        let part = |offset: usize, size: usize| {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.block,
+                offset: offset as u64,
+                size: wgpu::BufferSize::new(size as u64),
+            })
+        };
+        let group = |layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+            device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("step"), layout, entries })
+        };
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        self.groups = Some([
+            group(&self.layouts[0], &[entry(0, wgpu::BindingResource::Buffer(own))]),
+            group(
+                &self.layouts[1],
+                &[
+                    entry(0, part(0, size_of::<StepUniform>())),
+                    entry(1, states.as_entire_binding()),
+                    entry(2, wgpu::BindingResource::TextureView(&wind.view)),
+                    entry(3, wgpu::BindingResource::Sampler(&self.sampler)),
+                ],
+            ),
+            group(&self.layouts[2], &[entry(0, part(EYES, 16 * SHELLS)), entry(1, states.as_entire_binding())]),
+        ]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_are_those_of_the_shader() {
+        for file in ["rain/step.wgsl", "snow/step.wgsl"] {
+            shader::assert_layout!(
+                file,
+                "StepUniform",
+                StepUniform,
+                [air, dt, wind, moved, steps, counts, known, begins, sides, eye, before, seed]
+            );
+        }
+    }
+
+    #[test]
+    fn shells_keep_their_room_and_get_more_where_they_need_it() {
+        let first = Rooms::default().for_counts([10, 0, 30, 7], 0, 1000);
+        assert_eq!(first, Rooms([10, 0, 30, 7]));
+        assert_eq!(first.begins(), [0, 10, 10, 40]);
+        assert_eq!(first.for_counts([10, 0, 20, 0], 0, 1000), first, "what is there is kept");
+        assert_eq!(first.for_counts([12, 0, 20, 0], 0, 1000), Rooms([18, 0, 30, 7]));
+        assert_eq!(Rooms::default().for_counts([1, 1, 1, 1], 50, 1000), Rooms([50; 4]));
+        // Without growth where that is too much, and at last an even share.
+        assert_eq!(first.for_counts([40, 0, 5, 0], 0, 50), Rooms([40, 0, 5, 0]));
+        assert_eq!(first.for_counts([400, 0, 5, 0], 0, 48), Rooms([12; 4]));
+        assert_eq!(Rooms([12; 4]).within([400, 0, 5, 0]), [12, 0, 5, 0]);
+    }
+}
