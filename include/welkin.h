@@ -287,6 +287,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SNOW 70
 /** wk_clouds */
 #define WK_STRUCT_TYPE_CLOUDS 71
+/** wk_snow_strip */
+#define WK_STRUCT_TYPE_SNOW_STRIP 80
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
 /** wk_cloud_shadows */
@@ -4406,7 +4408,8 @@ typedef uint32_t wk_rain_model;
 
 /**
  * Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
- * or the time does not allow it (WK_PART_RAIN).
+ * or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+ * wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
@@ -4418,10 +4421,7 @@ typedef uint32_t wk_rain_model;
 #define WK_RAIN_MODEL_CONES 2
 /** Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
-/**
- * Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
- * (wk_caps.tier 1).
- */
+/** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
 /** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
@@ -4776,9 +4776,8 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on rain of
- * WK_RAIN_MODEL_INTEGRATED, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's
- * wind.
+ * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and flakes near a camera, in
+ * place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -4857,7 +4856,7 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
  * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
  * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
- * lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
+ * lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
  * ====================================================================================================
  */
 
@@ -6011,6 +6010,19 @@ typedef uint32_t wk_ground_model;
  */
 #define WK_GROUND_SIMULATED 1
 
+/** Source of the lying snow. */
+typedef uint32_t wk_lying_snow_model;
+
+/** The weather of the moment: as deep as it reports (wk_conditions.snow_depth_m), everywhere. */
+#define WK_LYING_SNOW_REPORTED 0
+/**
+ * A state that begins as deep as the weather reports. Snowfall fills it; it settles, drifts, slides, melts and
+ * refreezes in steps of 60 s, on level, open ground and on each cell of the host's terrain
+ * (wk_context_set_ground_grid). An update that moves time by more than a day is fast-forward
+ * (wk_context_accumulate); of one of more than 30 days the last 30 count.
+ */
+#define WK_LYING_SNOW_SIMULATED 1
+
 /** Simulated state of a context. An extension: put it into wk_context_desc.next. */
 typedef struct wk_simulation_desc {
     /** sizeof(wk_simulation_desc) of your header. */
@@ -6023,6 +6035,10 @@ typedef struct wk_simulation_desc {
     wk_ground_model ground_model;
     /** Must be 0. */
     uint32_t reserved0;
+    /** Default WK_LYING_SNOW_REPORTED. */
+    wk_lying_snow_model lying_snow_model;
+    /** Must be 0. */
+    uint32_t reserved1;
 } wk_simulation_desc;
 
 /** Every field of `wk_simulation_desc` at its default. */
@@ -6031,7 +6047,9 @@ typedef struct wk_simulation_desc {
     /* struct_type */ WK_STRUCT_TYPE_SIMULATION_DESC, \
     /* next */ NULL, \
     /* ground_model */ WK_GROUND_REPORTED, \
-    /* reserved0 */ 0 \
+    /* reserved0 */ 0, \
+    /* lying_snow_model */ WK_LYING_SNOW_REPORTED, \
+    /* reserved1 */ 0 \
 }
 
 /**
@@ -6226,7 +6244,10 @@ typedef struct wk_ground_texture {
      * the camera's position.
      */
     double uv_from_world[2][4];
-    /** The texture of what lies on the ground, of the same grid: 0 in this version, later that of the snow. */
+    /**
+     * The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of wk_lying_snow.
+     * 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
+     */
     uint64_t snow_texture;
 } wk_ground_texture;
 
@@ -6272,6 +6293,141 @@ WK_API wk_status wk_get_ground_snippet(wk_shading_language language, const char 
 WK_API
 wk_status wk_ground_texture_init(wk_ground_texture *out,
                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Lying snow
+ *
+ * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
+ * patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
+ * state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
+ * each cell of the host's terrain (wk_context_set_ground_grid), and wk_context_save keeps it. Standing boxes
+ * (wk_context_set_shelters) keep it off and cast drifts.
+ * ====================================================================================================
+ */
+
+/** How a wheel holds on the ground, as far as snow decides it. */
+typedef uint32_t wk_snow_friction;
+
+/** No snow, or too little to matter. */
+#define WK_SNOW_FRICTION_BARE 0
+/** Loose, dry snow. */
+#define WK_SNOW_FRICTION_LOOSE 1
+/** Snow above 350 kg/m^3: pressed, or packed by wind. */
+#define WK_SNOW_FRICTION_PACKED 2
+/** Slush: more than half of the water that it can hold. */
+#define WK_SNOW_FRICTION_SLUSH 3
+/** Above 650 kg/m^3: frozen hard. */
+#define WK_SNOW_FRICTION_ICE 4
+
+/** Snow at a place; plain values of a list. */
+typedef struct wk_lying_snow {
+    /** Depth, m. */
+    double depth_m;
+    /** Ice and water, kg/m^2: millimetres of water. */
+    double mass_kg_m2;
+    /** kg/m^3; 0 without snow. */
+    double density_kg_m3;
+    /** Held water over what the snow can hold, 0 to 1. */
+    double wetness;
+    /** Albedo of visible light; 0 without snow. */
+    double albedo;
+    /** Share of the ground that it covers. */
+    double cover;
+    /**
+     * The place above or below the one asked for on the snow's surface, in the host's world: the terrain's height
+     * raised by the snow. Off the host's terrain the place itself.
+     */
+    double surface_m[3];
+    /** How a wheel holds. */
+    wk_snow_friction friction;
+    /** 0. */
+    uint32_t reserved0;
+} wk_lying_snow;
+
+/** A strip of ground: a path with a width. Two points and a width make a rectangle. */
+typedef struct wk_snow_strip {
+    /** sizeof(wk_snow_strip) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SNOW_STRIP. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * The path's points in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path's
+     * ends are cut straight, its bends are round. Read during the call.
+     */
+    const double (*points_m)[3];
+    /** Number of points. Range 2 to 1024. */
+    uint32_t point_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** From side to side, m. Range [0.01, 1000], default 1. */
+    double width_m;
+} wk_snow_strip;
+
+/** Every field of `wk_snow_strip` at its default. */
+#define WK_SNOW_STRIP_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_snow_strip), \
+    /* struct_type */ WK_STRUCT_TYPE_SNOW_STRIP, \
+    /* next */ NULL, \
+    /* points_m */ NULL, \
+    /* point_count */ 0, \
+    /* reserved0 */ 0, \
+    /* width_m */ 1.0 \
+}
+
+/**
+ * Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
+ * the host's terrain and up to 3 m above it, the answer is that between its cells, elsewhere that of level, open
+ * ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more, and
+ * sizeof(wk_lying_snow) of your header.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
+ */
+WK_API
+wk_status wk_context_get_lying_snow(const wk_context *context,
+                                    const double (*positions_m)[3],
+                                    uint32_t count,
+                                    uint32_t position_size,
+                                    wk_lying_snow *snow,
+                                    uint32_t snow_size);
+
+/**
+ * Takes the snow of a strip of the host's terrain away, but for the lowest `left_m` (range [0, 100]): a plough, a
+ * shovel. `out_mass_kg` gets what was taken and may be NULL.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
+ * WK_LYING_SNOW_SIMULATED, and while steps of an update remain.
+ */
+WK_API
+wk_status wk_context_take_snow(wk_context *context,
+                               const wk_snow_strip *strip,
+                               double left_m,
+                               double *out_mass_kg);
+
+/**
+ * Presses the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+ * Thread: exclusive.
+ * Errors: as wk_context_take_snow.
+ */
+WK_API wk_status wk_context_press_snow(wk_context *context, const wk_snow_strip *strip);
+
+/**
+ * Moves time on by `hours`, in (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
+ * begin after a night's snowfall. The laws are those of ordinary steps; the state differs from theirs by up to some
+ * percent and remembers that it was laid so (wk_context_state_hash). All else is led as by wk_context_update, to the
+ * end: with the largest terrain this may take some seconds.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
+ */
+WK_API wk_status wk_context_accumulate(wk_context *context, double hours);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SNOW_STRIP_INIT`. `struct_size` is `sizeof(wk_snow_strip)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

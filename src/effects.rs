@@ -36,6 +36,7 @@ use crate::{
     scene::WorldFrame,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
+    snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
     stage::{Diagnostic, DrawnEffect, FallingTexture, Frame, Shot, Stages},
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
@@ -60,6 +61,8 @@ pub struct ContextDesc {
     pub sky: SkySettings,
     /// Where the wetness of the ground comes from. Default the weather of the moment.
     pub ground: GroundModel,
+    /// Where the lying snow comes from. Default the weather of the moment.
+    pub lying_snow: LyingSnowModel,
     /// A directory for the sky's finished tables, made if it is not there: the next start with the same planet, settings
     /// and weather reads them. What goes wrong with its files is logged, never an error. Default none.
     pub cache_dir: Option<PathBuf>,
@@ -76,6 +79,7 @@ impl Default for ContextDesc {
             utc_at_zero: Utc(1_782_036_000.0),
             sky: SkySettings::default(),
             ground: GroundModel::default(),
+            lying_snow: LyingSnowModel::default(),
             cache_dir: None,
         }
     }
@@ -89,6 +93,8 @@ pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
     /// Before the others, which may ask for the wind.
     pub flow: HeldFlow,
+    /// Before the ground, which takes its meltwater.
+    pub snowpack: HeldSnow,
     pub fog: HeldFog,
     pub ground: HeldGround,
     pub stars: HeldStars,
@@ -99,6 +105,7 @@ pub(crate) struct Held {
 /// The same as it was loaded.
 pub(crate) struct LoadedHeld {
     flow: HeldFlow,
+    snowpack: LoadedSnow,
     fog: HeldFog,
     ground: LoadedGround,
     stars: HeldStars,
@@ -117,6 +124,7 @@ impl Held {
         Ok(Self {
             sky: Arc::new(Mutex::new(sky)),
             flow: HeldFlow::default(),
+            snowpack: HeldSnow::new(desc.lying_snow),
             fog: HeldFog::default(),
             ground: HeldGround::new(desc.ground, desc.seed),
             stars: HeldStars::default(),
@@ -126,13 +134,21 @@ impl Held {
     }
 
     /// Those that are led, saved and loaded.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 6] {
-        [&mut self.flow, &mut self.fog, &mut self.ground, &mut self.stars, &mut self.clouds, &mut self.lightning]
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 7] {
+        [
+            &mut self.flow,
+            &mut self.snowpack,
+            &mut self.fog,
+            &mut self.ground,
+            &mut self.stars,
+            &mut self.clouds,
+            &mut self.lightning,
+        ]
     }
 
     /// The same to look at.
-    pub fn all(&self) -> [&dyn HeldEffect; 6] {
-        [&self.flow, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
+    pub fn all(&self) -> [&dyn HeldEffect; 7] {
+        [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
     }
 
     /// Takes what is theirs out of a saved state.
@@ -142,6 +158,7 @@ impl Held {
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
         // Each takes out what is its own, even where another's is wrong.
         let flow = HeldFlow::read(world, state);
+        let snowpack = self.snowpack.read(state);
         let fog = HeldFog::read(state);
         let ground = self.ground.read(world, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
@@ -149,6 +166,7 @@ impl Held {
         let lightning = self.lightning.read(state);
         Ok(LoadedHeld {
             flow: flow?,
+            snowpack: snowpack?,
             fog: fog?,
             ground: ground?,
             stars: stars?,
@@ -163,6 +181,7 @@ impl Held {
         world.set.undimmed = self.fog.law.is_some();
         self.ground.take_up(&mut other.ground);
         world.set.terrain = self.ground.heights();
+        self.snowpack.take_up(world, &mut other.snowpack);
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
         std::mem::swap(&mut self.lightning, &mut other.lightning);

@@ -36,6 +36,7 @@ pub mod rain;
 pub mod scene;
 pub mod sky;
 pub mod snow;
+pub mod snowpack;
 mod stage;
 pub mod stars;
 mod surroundings;

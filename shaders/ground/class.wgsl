@@ -12,7 +12,7 @@ fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
         mix(a.most_albedo, b.most_albedo, share),
         mix(a.hollows, b.hollows, share),
         mix(a.level, b.level, share),
-        0.0,
+        mix(a.snow, b.snow, share),
     );
 }
 

@@ -4,6 +4,7 @@
 //!include "ground/optics.wgsl"
 //!include "ground/hollows.wgsl"
 //!include "ground/class.wgsl"
+//!include "ground/snow.wgsl"
 //!include "surroundings/lights_binding.wgsl"
 //!include "surroundings/shelter.wgsl"
 
@@ -219,7 +220,8 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
         gets = rained_on(off_surface(at, facing.normal, range), here.share < 0.5 || ground.glaze > 0.0);
     }
     // Hollows are those of paved ground; elsewhere a film lies as it does in the mean.
-    let waves = select(0u, HOLLOW_WAVES, look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0));
+    let wanted = look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0);
+    let waves = select(0u, HOLLOW_WAVES, wanted || SNOW);
     let pattern = hollow_depth(place, across, along * (side / cosine), waves);
     let hollow = vec2f(pattern.x * look.hollows, mix(1.0, pattern.y, look.hollows));
     var pool = covered_share(hollow, ground.level, PUDDLE_EDGE) * smoothstep(0.98, 0.997, level) * look.hollows;
@@ -272,5 +274,23 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     let lamps = (thin.lamp + mirrored_lamps(film, at, to_eye)) * (cover * (1.0 - pool))
         + (deep.lamp + mirrored_lamps(water, at, to_eye)) * pool;
     let through = mix(wet, below * ((1.0 - deep.share) / (1.0 - WATER_OUTSIDE)), pool);
-    return Veil(min(sky * (thin_share + deep_share) + lamps, vec3f(ground.most)), through);
+    let veil = Veil(min(sky * (thin_share + deep_share) + lamps, vec3f(ground.most)), through);
+    if !SNOW {
+        return veil;
+    }
+    // Snow hides the water below it.
+    var snow = ground.snow.xyz;
+    if TERRAIN && ground.snow.w > 0.0 {
+        let depth = mix(snow.x, here.snow.x, here.share);
+        // Where only one has snow, its properties count.
+        let known = select(select(here.share, 1.0, snow.x <= 0.0), 0.0, here.snow.x <= 0.0);
+        snow = vec3f(depth, mix(snow.yz, here.snow.zw, known));
+    }
+    // Far off a pixel's side along the ground is known too badly for patches: there they mix.
+    let patches = mix(pattern, vec2f(0.0, 1.0), smoothstep(150.0, 800.0, range));
+    let lies = snow_share(snow.x, patches, mix(1.0, level, facing.sure)) * look.snow * gets;
+    let soft = normalize(mix(facing.normal, up, select(0.35, 0.0, here.share > 0.5 || surface.normal.w > 0.0)));
+    let glints = snow_glints(place, side, to_eye) * (1.0 - snow.y);
+    let white = snow_light(snow, soft, up, ground_here.albedo, host_lamps(at, soft), glints);
+    return Veil(mix(veil.light, min(white, vec3f(ground.most)), lies), veil.transmittance * (1.0 - lies));
 }

@@ -2,8 +2,9 @@
 //!include "ground/binding.wgsl"
 //!include "snippets/welkin_ground.wgsl"
 
-// Whether the host has given its terrain.
+// Whether the host has given its terrain, and whether snow lies anywhere.
 override TERRAIN: bool = false;
+override SNOW: bool = false;
 
 struct TerrainPoint {
     // 1 on the terrain, 0 beyond it and on what stands above it.
@@ -13,10 +14,18 @@ struct TerrainPoint {
     // Classes of the four nodes about the point, and where it lies between them.
     classes: vec4f,
     part: vec2f,
+    // Depth of the snow in m, whether there is any, its wetness and albedo.
+    snow: vec4f,
 }
 
 fn no_terrain() -> TerrainPoint {
-    return TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), vec4f(0.0), vec2f(0.0));
+    return TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), vec4f(0.0), vec2f(0.0), vec4f(0.0));
+}
+
+// Depth of the snow of a node; 1, wetness and albedo where there is any.
+fn snow_of(node: vec2i) -> vec4f {
+    let snow = textureLoad(terrain_surface, node, 0);
+    return vec4f(snow.x, vec3f(1.0, snow.zw) * select(0.0, 1.0, snow.x > 0.0));
 }
 
 // `at`: camera-relative east, north, up.
@@ -35,9 +44,20 @@ fn terrain_at(at: vec3f) -> TerrainPoint {
     let off = abs(dot(ground.terrain_z, p) - lies.z);
     let on = 1.0 - smoothstep(ground.terrain_near, 2.0 * ground.terrain_near, off);
     let share = smoothstep(0.0, ground.terrain_rim, min(inside.x, inside.y)) * on;
+    var snow = vec4f(0.0);
+    if SNOW {
+        // Below the terrain's own rows.
+        let under = first + vec2i(0, i32(ground.terrain_last.y) + 1);
+        let above = under + vec2i(0, 1);
+        let south = mix(snow_of(under), snow_of(under + vec2i(1, 0)), part.x);
+        let north = mix(snow_of(above), snow_of(above + vec2i(1, 0)), part.x);
+        snow = mix(south, north, part.y);
+        // What has no snow has none of its properties.
+        snow = vec4f(snow.x, snow.yzw / max(snow.y, 1e-3));
+    }
     // The grid's own axes, as seen from the camera.
     let east = normalize(ground.terrain_x.xyz);
     let north = normalize(ground.terrain_y.xyz);
     let normal = normalize(ground.terrain_z.xyz - east * lies.x - north * lies.y);
-    return TerrainPoint(share, welkin_ground_at(terrain_cells, cells), normal, vec4f(a.w, b.w, c.w, d.w), part);
+    return TerrainPoint(share, welkin_ground_at(terrain_cells, cells), normal, vec4f(a.w, b.w, c.w, d.w), part, snow);
 }

@@ -20,7 +20,8 @@ struct SurfaceLook {
     hollows: f32,
     // How sure it is that it lies level, where nothing else says how it lies.
     level: f32,
-    pad: f32,
+    // Share of it on which snow lies.
+    snow: f32,
 }
 
 struct GroundUniform {
@@ -90,6 +91,8 @@ struct GroundUniform {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
+    // On level, open ground: depth in m, wetness and albedo of the snow. Not 0 in the last: the terrain's cells have snow of their own.
+    snow: vec4f,
     // Of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,
     // Wave vector of the hollows in turns per metre, phase at the camera in turns, amplitude.

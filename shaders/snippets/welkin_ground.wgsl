@@ -56,3 +56,35 @@ fn welkin_film(water: WelkinGround) -> vec2f {
     let slope = mix(mix(0.3, 0.15, water.film), 0.0, water.pool);
     return vec2f(mix(water.film, 1.0, water.pool), 1.4142136 * slope);
 }
+
+struct WelkinSnow {
+    // Share of level ground under snow: cover what faces up with it.
+    cover: f32,
+    // Depth, m.
+    depth: f32,
+    // 1 as wet as it can be.
+    wetness: f32,
+    // Of visible light.
+    albedo: f32,
+}
+
+// Of one node: depth in m, and where there is snow 1, its wetness and its albedo.
+fn welkin_snow_node(texel: vec4f) -> vec4f {
+    return vec4f(texel.x, vec3f(1.0, texel.zw) * step(1e-7, texel.x));
+}
+
+// The snow on the same grid: of wk_ground_texture.snow_texture. 2.5 cm cover 0.76 of level ground; wet snow is darker by 0.15.
+fn welkin_snow(ground: texture_2d<f32>, uv: vec2f) -> WelkinSnow {
+    let place = uv * vec2f(textureDimensions(ground)) - 0.5;
+    let last = vec2f(textureDimensions(ground)) - 1.0;
+    let low = clamp(floor(place), vec2f(0.0), last - 1.0);
+    let part = clamp(place - low, vec2f(0.0), vec2f(1.0));
+    let first = vec2i(low);
+    let a = welkin_snow_node(textureLoad(ground, first, 0));
+    let b = welkin_snow_node(textureLoad(ground, first + vec2i(1, 0), 0));
+    let c = welkin_snow_node(textureLoad(ground, first + vec2i(0, 1), 0));
+    let d = welkin_snow_node(textureLoad(ground, first + vec2i(1, 1), 0));
+    let lies = mix(mix(a, b, part.x), mix(c, d, part.x), part.y);
+    let mean = lies.zw / max(lies.y, 0.001);
+    return WelkinSnow(tanh(min(lies.x / 0.025, 10.0)), lies.x, mean.x, mean.y * (1.0 - 0.15 * mean.x));
+}

@@ -235,10 +235,10 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
     sky.check().map_err(|e| e.within("wk_sky_settings"))?;
     // SAFETY: the caller's promise.
     let simulation = unsafe { layout::extension::<wk_simulation_desc>(desc.next)? }.unwrap_or(wk_simulation_desc::INIT);
-    let ground = simulation.ground();
+    let (ground, lying_snow) = (simulation.ground(), simulation.lying_snow());
     // SAFETY: the caller's promise.
     let cache_dir = unsafe { input::optional_text("desc.cache_dir", desc.cache_dir)? }.map(PathBuf::from);
-    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, ground, cache_dir })
+    Ok(ContextDesc { world, planet, seed: desc.seed, exposure, tone, utc_at_zero, sky, ground, lying_snow, cache_dir })
 }
 
 /// Makes a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for

@@ -25,6 +25,7 @@ use crate::{
     error::Status,
     ground::SurfaceClass,
     ground::{GroundAt, GroundModel},
+    snowpack::LyingSnowModel,
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
@@ -39,6 +40,16 @@ pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// simulated over its last day, which begins as wet as the weather has the ground then. See wk_context_update for leaps
 /// that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
+
+/// Source of the lying snow.
+pub type wk_lying_snow_model = u32;
+/// The weather of the moment: as deep as it reports (wk_conditions.snow_depth_m), everywhere.
+pub const WK_LYING_SNOW_REPORTED: wk_lying_snow_model = 0;
+/// A state that begins as deep as the weather reports. Snowfall fills it; it settles, drifts, slides, melts and
+/// refreezes in steps of 60 s, on level, open ground and on each cell of the host's terrain
+/// (wk_context_set_ground_grid). An update that moves time by more than a day is fast-forward
+/// (wk_context_accumulate); of one of more than 30 days the last 30 count.
+pub const WK_LYING_SNOW_SIMULATED: wk_lying_snow_model = 1;
 
 /// What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid or the
 /// tiles of the wk_terrain, then the context's default.
@@ -73,6 +84,10 @@ pub struct wk_simulation_desc {
     pub ground_model: wk_ground_model,
     /// Must be 0.
     pub reserved0: u32,
+    /// Default WK_LYING_SNOW_REPORTED.
+    pub lying_snow_model: wk_lying_snow_model,
+    /// Must be 0.
+    pub reserved1: u32,
 }
 
 impl wk_simulation_desc {
@@ -82,7 +97,18 @@ impl wk_simulation_desc {
         next: null(),
         ground_model: WK_GROUND_REPORTED,
         reserved0: 0,
+        lying_snow_model: WK_LYING_SNOW_REPORTED,
+        reserved1: 0,
     };
+
+    /// As the Rust side takes it.
+    pub(super) fn lying_snow(&self) -> LyingSnowModel {
+        if self.lying_snow_model == WK_LYING_SNOW_SIMULATED {
+            LyingSnowModel::Simulated
+        } else {
+            LyingSnowModel::Reported
+        }
+    }
 
     /// As the Rust side takes it.
     pub(super) fn ground(&self) -> GroundModel {

@@ -53,7 +53,8 @@ pub struct wk_ground_texture {
     /// 0) is the south-western corner of the first texel. Single precision is enough once the fourth column includes
     /// the camera's position.
     pub uv_from_world: [[f64; 4]; 2],
-    /// The texture of what lies on the ground, of the same grid: 0 in this version, later that of the snow.
+    /// The snow on the same grid, an object like `texture`: depth_m, density_kg_m3, wetness and albedo of wk_lying_snow.
+    /// 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation time.
     pub snow_texture: u64,
 }
 
@@ -93,6 +94,7 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
         object.cell.check_not_lost()?;
         object.cell.drain();
         let ground = object.write().ground_texture()?;
+        let snow = ground.snow.as_ref().map(|texture| host::native_texture(&object.cell, texture)).transpose()?;
         place.set(&wk_ground_texture {
             texture: host::native_texture(&object.cell, &ground.texture)?,
             generation: ground.generation,
@@ -100,6 +102,7 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
             width: ground.texture.width(),
             height: ground.texture.height(),
             uv_from_world: ground.uv_from_world.map(|row| row.to_array()),
+            snow_texture: snow.unwrap_or(0),
             ..wk_ground_texture::INIT
         });
         Ok(Status::Ok)

@@ -83,6 +83,8 @@ pub mod ground_grid;
 
 pub mod ground_texture;
 
+pub mod snowpack;
+
 pub mod terrain;
 
 mod boundary;

@@ -167,6 +167,8 @@ pub const WK_STRUCT_TYPE_FLASH_LIGHT: wk_struct_type = 67;
 pub const WK_STRUCT_TYPE_SNOW: wk_struct_type = 70;
 /// wk_clouds
 pub const WK_STRUCT_TYPE_CLOUDS: wk_struct_type = 71;
+/// wk_snow_strip
+pub const WK_STRUCT_TYPE_SNOW_STRIP: wk_struct_type = 80;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 /// wk_cloud_shadows

@@ -55,6 +55,11 @@ impl Context {
         self.lead(within)
     }
 
+    /// Whether an update has left steps for another call.
+    pub(crate) fn is_behind(&self) -> bool {
+        self.behind.is_some()
+    }
+
     /// Leads all state after the present, as far as the time reaches.
     fn lead(&mut self, within: Within) -> Result<Status> {
         let led = self.lead_steps(within)?;

@@ -72,7 +72,7 @@ impl Context {
     /// [`crate::Status::WrongOrder`] without a terrain, [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn ground_texture(&mut self) -> Result<GroundTexture> {
         let device = self.device().clone();
-        self.held.ground.texture(&device)
+        self.held.ground.texture(&device, self.world.snow.as_deref())
     }
 
     /// Hollows of the ground, in which water stands.

@@ -7,6 +7,7 @@ mod ground;
 mod lightning;
 mod rain;
 mod sky;
+mod snowpack;
 mod stars;
 mod terrain;
 mod view;

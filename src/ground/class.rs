@@ -32,14 +32,14 @@ impl SurfaceClass {
             most_albedo,
             hollows: 0.0,
             level: 0.0,
-            pad: 0.0,
+            snow: 1.0,
         };
         match self {
             Self::Unspecified | Self::Soil => look(1.0, 0.1, 0.5, 10.0, 0.45),
             Self::Rock => look(1.0, 0.3, 0.4, 10.0, 0.6),
             Self::Paved => SurfaceLook { hollows: 1.0, level: 1.0, ..look(1.0, 1.0, 0.0, 1.0, 0.9) },
             Self::Vegetation => look(0.15, 0.0, 0.6, 50.0, 0.4),
-            Self::Water => look(0.0, 0.0, 0.0, 0.0, 0.9),
+            Self::Water => SurfaceLook { snow: 0.0, ..look(0.0, 0.0, 0.0, 0.0, 0.9) },
             Self::Building => look(1.0, 0.7, 0.1, 1.0, 0.9),
         }
     }
@@ -63,7 +63,8 @@ pub(crate) struct SurfaceLook {
     pub hollows: f32,
     /// How sure it is that it lies level, where nothing else says how it lies.
     pub level: f32,
-    pub pad: f32,
+    /// Share of it on which snow lies.
+    pub snow: f32,
 }
 
 #[cfg(test)]

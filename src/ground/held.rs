@@ -20,10 +20,9 @@ use super::{
 use crate::{
     error::{Error, Result, Status},
     moment::Moment,
-    scene::WorldKind,
-    surroundings::TerrainHeights,
+    surroundings::{SnowHere, TerrainHeights},
     terrain::Terrain,
-    weather::{SurfaceCover, cover_under_rain},
+    weather::{Conditions, SurfaceCover, cover_under_rain},
     world::{HeldEffect, Within, World, parse_error},
 };
 
@@ -59,8 +58,6 @@ pub struct GroundAt {
 
 /// Sunlight for evaporation is looked up this often, s: a multiple of the step.
 const SUN_EVERY_S: f64 = 300.0;
-/// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
-const LUX_PER_W_M2: f64 = 110.0;
 /// An update that moves time by more than this begins the state anew, this long before its end, s.
 const LONGEST_S: f64 = 86_400.0;
 
@@ -87,7 +84,7 @@ impl GroundState {
 
     /// A state that begins at `time_s` as the weather reports the ground.
     fn first(world: &World, time_s: f64) -> Result<Self> {
-        let sunlight_w_m2 = sunlight_w_m2(world, time_s)?;
+        let sunlight_w_m2 = world.sunlight_w_m2(time_s)?;
         let mut state = Self { time_s, film_mm: 0.0, soaked_mm: 0.0, hollows_mm: 0.0, sunlight_w_m2 };
         state.set(GroundWater::of_cover(&world.timeline.at(time_s).surface));
         Ok(state)
@@ -250,7 +247,7 @@ impl HeldGround {
             (GroundModel::Reported, _) => None,
             (GroundModel::Simulated, Some(state)) if !self.is_behind(world) && world.time_s > state.time_s => {
                 let c = world.timeline.at(0.5 * (state.time_s + world.time_s));
-                Some(state.water().after(&Forcing::of(&c, state.sunlight_w_m2), world.time_s - state.time_s))
+                Some(state.water().after(&forcing(world, &c, &state), world.time_s - state.time_s))
             }
             (GroundModel::Simulated, Some(state)) => Some(state.water()),
             (GroundModel::Simulated, None) => Some(GroundWater::of_cover(&world.timeline.at(world.time_s).surface)),
@@ -292,6 +289,9 @@ impl HeldGround {
             },
             has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry())
                 || self.tiled.as_ref().is_some_and(|tiled| tiled.is_wet()),
+            snow: snow_about(world, now),
+            terrain_has_snow: self.host.is_some() && world.snow.is_some(),
+            has_snowy_terrain: self.host.is_some() && world.snow.as_ref().is_some_and(|snow| snow.has_cells),
             surface_class: self.surface_class,
         }
     }
@@ -426,11 +426,11 @@ impl HeldEffect for HeldGround {
                 return Ok(Status::Pending);
             }
             if state.time_s.rem_euclid(SUN_EVERY_S) == 0.0 {
-                state.sunlight_w_m2 = sunlight_w_m2(world, state.time_s)?;
+                state.sunlight_w_m2 = world.sunlight_w_m2(state.time_s)?;
             }
             let (before, from_s, seconds) = (state.water(), state.time_s, end_s - state.time_s);
             let c = world.timeline.at(0.5 * (from_s + end_s));
-            let forcing = Forcing::of(&c, state.sunlight_w_m2);
+            let forcing = forcing(world, &c, &state);
             let step = GroundStep { from_s, seconds, conditions: &c, forcing: &forcing, water: &before };
             if !self.step_tiles(world, &step, within)? {
                 return Ok(Status::Pending);
@@ -480,10 +480,19 @@ impl HeldEffect for HeldGround {
     }
 }
 
-/// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
-/// that is only drawn must not change a state.
-fn sunlight_w_m2(world: &World, time_s: f64) -> Result<f64> {
-    let frame = &world.frame;
-    let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
-    Ok((world.scene_named("position", origin, time_s)?.ground.total_lux / LUX_PER_W_M2).round())
+/// What acts on the ground from the state's time on, in the weather `c`.
+fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
+    let forcing = Forcing::of(c, state.sunlight_w_m2);
+    let snow = world.snow.as_ref().and_then(|snow| snow.meltwater(state.time_s));
+    snow.map_or(forcing, |water| forcing.under_snow(c, water))
+}
+
+/// Snow on level, open ground: as it is led through time, else as deep as the weather reports it, some days old.
+fn snow_about(world: &World, now: &Moment<'_>) -> SnowHere {
+    if let Some(snow) = &world.snow {
+        return snow.country;
+    }
+    let (depth_m, thaws) = (now.scene.conditions.surface.snow_depth_m, now.scene.conditions.air.temperature_c > 0.0);
+    let wetness = if thaws { 0.7 } else { 0.0 };
+    SnowHere { depth_m, density_kg_m3: 250.0, wetness, albedo: 0.82 }
 }

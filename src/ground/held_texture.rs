@@ -10,6 +10,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status},
     gpu::Device,
+    surroundings::LyingSnow,
 };
 
 impl HeldGround {
@@ -19,7 +20,7 @@ impl HeldGround {
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain, [`Status::DeviceLost`], or a GPU fault.
-    pub fn texture(&mut self, device: &Arc<Device>) -> Result<GroundTexture> {
+    pub fn texture(&mut self, device: &Arc<Device>, snow: Option<&LyingSnow>) -> Result<GroundTexture> {
         let Some((grid, to_enu)) = self.drawn_terrain() else {
             return Err(Error::new(
                 Status::WrongOrder,
@@ -29,36 +30,49 @@ impl HeldGround {
         let rows = uv_from_world(grid, to_enu);
         let _entered = device.enter()?;
         let mut textures = self.locked();
-        let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures).cloned() else {
+        let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures, snow).cloned() else {
             return Err(Error::new(Status::Internal, "a terrain without textures"));
         };
+        let snow = textures.host_snow(device, snow.filter(|s| s.cells.len() as u32 == water.width() * water.height()));
         if std::mem::take(&mut textures.written) {
             let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
             let mut encoder = device.device.create_command_encoder(&label);
             let read = wgpu::TextureUses::RESOURCE;
-            let read = wgpu::TextureTransition { texture: &water, selector: None, state: read };
-            encoder.transition_resources(std::iter::empty(), std::iter::once(read));
+            let both = std::iter::once(&water).chain(&snow);
+            let both = both.map(|texture| wgpu::TextureTransition { texture, selector: None, state: read });
+            encoder.transition_resources(std::iter::empty(), both);
             device.submit(encoder);
         }
         device.check()?;
-        Ok(GroundTexture { texture: water, generation, revision, uv_from_world: rows })
+        Ok(GroundTexture { texture: water, snow, generation, revision, uv_from_world: rows })
     }
 
     /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.
-    pub fn views(&self, device: &Arc<Device>, wanted: bool) -> [Option<wgpu::TextureView>; 2] {
+    pub fn views(
+        &self,
+        device: &Arc<Device>,
+        wanted: bool,
+        snow: Option<&LyingSnow>,
+    ) -> [Option<wgpu::TextureView>; 2] {
         let mut textures = self.locked();
-        let filled = if wanted { self.fill(device, &mut textures) } else { textures.filled() };
+        let filled = if wanted { self.fill(device, &mut textures, snow) } else { textures.filled() };
         filled.map_or([None, None], |f| f.views.clone().map(Some))
     }
 
     /// Within the host's context.
-    fn fill<'a>(&self, device: &Arc<Device>, textures: &'a mut TerrainTextures) -> Option<&'a Filled> {
+    fn fill<'a>(
+        &self,
+        device: &Arc<Device>,
+        textures: &'a mut TerrainTextures,
+        snow: Option<&LyingSnow>,
+    ) -> Option<&'a Filled> {
         let Some(held) = &self.host else {
             *textures = TerrainTextures::default();
             return None;
         };
         let numbers = [self.generation, self.revision, self.classes_revision];
-        Some(textures.upload(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers))
+        textures.upload(device, (&held.terrain, &held.water, |cell| held.ice(cell)), numbers);
+        textures.upload_snow(device, snow.filter(|s| s.cells.len() == held.terrain.grid.len()))
     }
 
     fn locked(&self) -> MutexGuard<'_, TerrainTextures> {

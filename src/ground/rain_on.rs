@@ -227,7 +227,7 @@ impl RainOn {
         // What melts falls everywhere alike.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
-        let fallen_mm = |liquid: f64| (liquid * liquid_stays + melting) * hours;
+        let fallen_mm = |liquid: f64| ((liquid * liquid_stays + melting) * hours).max(0.0);
         if overs.even() {
             self.even_mm = Some(fallen_mm(self.liquid(grid, overs, own, 0)));
         } else {

@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec4};
 
 use super::{GroundGrid, terrain::Terrain, terrain::TerrainWater};
-use crate::gpu::Device;
+use crate::{gpu::Device, surroundings::LyingSnow};
 
 /// WGSL text of the functions that say how the water looks; see [`GroundTexture`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_ground.wgsl");
@@ -26,6 +26,9 @@ pub struct GroundTexture {
     pub generation: u64,
     /// [`Context::ground_revision`](crate::context::Context::ground_revision) of what it holds.
     pub revision: u64,
+    /// The snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light. `None` without
+    /// a simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced with `texture`, filled likewise.
+    pub snow: Option<wgpu::Texture>,
     /// Rows that, times (x, y, z, 1) of a place in the host's world, m, give its u and v.
     pub uv_from_world: [DVec4; 2],
 }
@@ -43,6 +46,7 @@ pub(crate) fn uv_from_world(grid: &GroundGrid, to_enu: DMat3) -> [DVec4; 2] {
 #[derive(Clone, Debug)]
 pub(crate) struct Filled {
     pub water: wgpu::Texture,
+    /// And below its rows as many of snow.
     surface: wgpu::Texture,
     /// For drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
@@ -50,6 +54,9 @@ pub(crate) struct Filled {
     pub generation: u64,
     pub revision: u64,
     classes: u64,
+    snow: u64,
+    /// For the host, once it has asked for it: the texture, and what it holds.
+    host_snow: Option<(wgpu::Texture, u64)>,
 }
 
 /// Keeps the textures of a context's terrain; there are none before somebody asks.
@@ -74,44 +81,84 @@ impl TerrainTextures {
         device: &Device,
         (terrain, water, ice): (&Terrain, &TerrainWater, impl Fn(usize) -> f32),
         [generation, revision, classes]: [u64; 3],
-    ) -> &Filled {
+    ) {
         let filled = self.filled.take().filter(|f| f.generation == generation);
         let mut filled = filled.unwrap_or_else(|| Filled::new(device, &terrain.grid, generation));
         if filled.classes != classes {
             surface_texels(&terrain.grid, &mut self.surface);
-            write(device, &filled.surface, bytemuck::cast_slice(&self.surface), 16);
+            let whole = (wgpu::Origin3d::ZERO, filled.water.size());
+            write_at(device, &filled.surface, whole, bytemuck::cast_slice(&self.surface), 16);
             filled.classes = classes;
         }
         if filled.revision != revision {
             water.texels(ice, &mut self.texels);
-            write(device, &filled.water, bytemuck::cast_slice(&self.texels), 8);
+            let whole = (wgpu::Origin3d::ZERO, filled.water.size());
+            write_at(device, &filled.water, whole, bytemuck::cast_slice(&self.texels), 8);
             (filled.revision, self.written) = (revision, true);
         }
-        self.filled.insert(filled)
+        self.filled = Some(filled);
+    }
+
+    /// The snow as a texture for the host, up to date.
+    pub fn host_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<wgpu::Texture> {
+        let (filled, snow) = (self.filled.as_mut()?, snow?);
+        let [width, height] = [filled.water.width(), filled.water.height()];
+        let made = filled.host_snow.take();
+        let (texture, held) = made.unwrap_or_else(|| {
+            (terrain_texture(device, "terrain snow", wgpu::TextureFormat::Rgba16Float, [width, height]), 0)
+        });
+        if held != snow.revision {
+            self.texels.clear();
+            self.texels.extend(snow.cells.iter().map(|c| c.map(|v| half::f16::from_f32(v).to_bits())));
+            let whole = (wgpu::Origin3d::ZERO, texture.size());
+            write_at(device, &texture, whole, bytemuck::cast_slice(&self.texels), 8);
+            self.written = true;
+        }
+        filled.host_snow = Some((texture.clone(), snow.revision));
+        Some(texture)
+    }
+
+    /// Uploads the snow on the terrain, if it has changed, into the rows below the surface's.
+    pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&Filled> {
+        let filled = self.filled.as_mut()?;
+        if let Some(snow) = snow.filter(|s| s.revision != filled.snow) {
+            let place = wgpu::Origin3d { x: 0, y: filled.water.height(), z: 0 };
+            write_at(device, &filled.surface, (place, filled.water.size()), bytemuck::cast_slice(&snow.cells), 16);
+            filled.snow = snow.revision;
+        }
+        Some(filled)
     }
 }
 
 impl Filled {
     /// Textures of a grid, still empty.
     fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
-        use wgpu::{TextureFormat as F, TextureUsages as U};
+        use wgpu::TextureFormat as F;
         let [width, height] = grid.nodes;
-        let texture = |label, format| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        let (water, surface) = (texture("terrain water", F::Rgba16Float), texture("terrain surface", F::Rgba32Float));
+        let water = terrain_texture(device, "terrain water", F::Rgba16Float, [width, height]);
+        let surface = terrain_texture(device, "terrain surface", F::Rgba32Float, [width, 2 * height]);
         let views = [&water, &surface].map(|t| t.create_view(&Default::default()));
-        Self { water, surface, views, generation, revision: u64::MAX, classes: u64::MAX }
+        Self { water, surface, views, generation, revision: u64::MAX, classes: u64::MAX, snow: 0, host_snow: None }
     }
+}
+
+fn terrain_texture(
+    device: &Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    [width, height]: [u32; 2],
+) -> wgpu::Texture {
+    use wgpu::TextureUsages as U;
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
+        view_formats: &[],
+    })
 }
 
 /// Of each node, by rows: slopes to the east and the north, height over the grid's origin in metres, number of its class.
@@ -123,10 +170,16 @@ fn surface_texels(grid: &GroundGrid, texels: &mut Vec<[f32; 4]>) {
     }));
 }
 
-fn write(device: &Device, texture: &wgpu::Texture, bytes: &[u8], texel: u32) {
-    let rows =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * texture.width()), rows_per_image: None };
-    device.queue.write_texture(texture.as_image_copy(), bytes, rows, texture.size());
+fn write_at(
+    device: &Device,
+    texture: &wgpu::Texture,
+    (origin, size): (wgpu::Origin3d, wgpu::Extent3d),
+    bytes: &[u8],
+    texel: u32,
+) {
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * size.width), rows_per_image: None };
+    let to = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+    device.queue.write_texture(to, bytes, rows, size);
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use crate::{
         sizes::{DropSizes, SMALLEST_MM, Weight},
     },
     moment::Scene,
+    surroundings::SnowHere,
     weather::{Falling, SurfaceCover},
 };
 
@@ -77,6 +78,7 @@ pub(crate) struct GroundUniform {
     pub normal_x: [f32; 4],
     pub normal_y: [f32; 4],
     pub normal_z: [f32; 4],
+    pub snow: [f32; 4],
     pub looks: [SurfaceLook; CLASSES],
     pub waves: [[f32; 4]; WAVES],
 }
@@ -85,6 +87,10 @@ pub(crate) struct GroundUniform {
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
     pub cover: &'a SurfaceCover,
+    /// On level, open ground.
+    pub snow: SnowHere,
+    /// Whether the terrain's cells have snow of their own; else it lies on them as on level, open ground.
+    pub terrain_has_snow: bool,
     /// What falls on it.
     pub falling: Falling,
     /// Share of level ground under clear ice.
@@ -232,6 +238,10 @@ impl WetScene<'_> {
             normal_x: normals[0],
             normal_y: normals[1],
             normal_z: normals[2],
+            snow: {
+                let own = f64::from(u8::from(self.terrain_has_snow));
+                [self.snow.depth_m, self.snow.wetness, self.snow.albedo, own].map(|v| v as f32)
+            },
             looks: self.looks(),
             waves: self.hollows.seen_from(at),
         }
@@ -314,6 +324,7 @@ mod tests {
                 normal_x,
                 normal_y,
                 normal_z,
+                snow,
                 looks
             ]
         );

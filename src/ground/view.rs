@@ -14,6 +14,7 @@ use crate::{
     moment::Moment,
     scene::WorldKind,
     stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
+    surroundings::SnowHere,
     weather::SurfaceCover,
     world::World,
 };
@@ -30,6 +31,11 @@ pub(crate) struct GroundSeen<'a> {
     pub terrain: Option<DrawnTerrain>,
     /// Whether there is water on it.
     pub has_wet_terrain: bool,
+    /// Snow on level, open ground, and whether any lies on the terrain.
+    pub snow: SnowHere,
+    pub has_snowy_terrain: bool,
+    /// Whether the terrain's cells have snow of their own.
+    pub terrain_has_snow: bool,
     /// Of ground of which nothing else is said.
     pub surface_class: SurfaceClass,
 }
@@ -40,6 +46,7 @@ pub(crate) struct GroundView {
     /// Of the frame, where there is any water on surfaces.
     block: Option<GroundUniform>,
     has_terrain: bool,
+    has_snow: bool,
     /// Water and surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
     window: TerrainWindow,
@@ -50,7 +57,7 @@ impl GroundView {
     pub fn new(device: &Device) -> Self {
         let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
         let (window, drops) = (TerrainWindow::default(), DropsKept::default());
-        Self { buffer, block: None, has_terrain: false, views: [None, None], window, drops }
+        Self { buffer, block: None, has_terrain: false, has_snow: false, views: [None, None], window, drops }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -68,8 +75,9 @@ impl GroundView {
         let glaze = glaze(now);
         let wet = held.has_wet_terrain || held.cover.wetness > 0.0 || held.cover.puddles > 0.0 || glaze > 0.0;
         self.has_terrain = held.terrain.is_some();
+        self.has_snow = held.snow.depth_m > 0.0 || held.has_snowy_terrain;
         self.block = None;
-        if let (true, Some(color), Some(_)) = (wet, frame.color, frame.depth) {
+        if let (true, Some(color), Some(_)) = (wet || self.has_snow, frame.color, frame.depth) {
             self.block = Some(wet_scene(now, (frame, color), held, glaze, fog_depth)?.uniform(&mut self.drops));
         }
         Ok(self.block.is_some())
@@ -86,7 +94,7 @@ impl GroundView {
         self.views = match held.shown_tiles(world, now.here.surface.ice) {
             Some(shown) if wanted => self.window.views(device, now.eye, &shown),
             Some(_) => [None, None],
-            None => held.views(device, wanted),
+            None => held.views(device, wanted, world.snow.as_deref()),
         };
     }
 }
@@ -100,6 +108,8 @@ impl DrawnEffect for GroundView {
         let drawn = self.block.as_ref().filter(|_| to.stages.has(Stages::SURFACE));
         let terrain = yes(drawn.is_some() && self.has_terrain);
         to.constant("TERRAIN", terrain, terrain);
+        let snow = yes(drawn.is_some() && self.has_snow);
+        to.constant("SNOW", snow, snow);
         to.looks_round |= drawn.is_some();
         if let Some(block) = drawn {
             shot.device.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(block));
@@ -141,6 +151,8 @@ fn wet_scene<'a>(
     Ok(WetScene {
         scene: &now.scene,
         cover: &held.cover,
+        snow: held.snow,
+        terrain_has_snow: held.terrain_has_snow,
         falling: now.here.precipitation,
         glaze,
         hollows: held.hollows,

@@ -8,7 +8,10 @@
 //! and what runs off stands in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
-use crate::weather::{Conditions, SurfaceCover, saturation_pressure_hpa};
+use crate::{
+    surroundings::Meltwater,
+    weather::{Conditions, SurfaceCover, saturation_pressure_hpa},
+};
 
 /// Length of a step, s.
 pub const STEP_S: f64 = 10.0;
@@ -62,6 +65,15 @@ impl Forcing {
         let melting = if c.air.temperature_c > 0.0 { f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h } else { 0.0 };
         let liquid_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing) + melting;
         Self { liquid_mm_h, evaporation_mm_h: evaporation_mm_h(c, sunlight_w_m2) }
+    }
+}
+
+impl Forcing {
+    /// The same where snow lies whose melting is led through time: it takes the rain that falls on it and gives what runs off.
+    pub(crate) fn under_snow(self, c: &Conditions, snow: Meltwater) -> Self {
+        let f = &c.precipitation;
+        let rain_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing);
+        Self { liquid_mm_h: rain_mm_h * (1.0 - snow.covered) + snow.runoff_mm_h, ..self }
     }
 }
 

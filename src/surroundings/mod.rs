@@ -5,6 +5,7 @@ mod around;
 mod occluder;
 mod occluder_maps;
 pub mod shelter;
+mod snow;
 mod terrain;
 mod wind;
 
@@ -14,5 +15,6 @@ pub use shelter::{MAX_PLANES, MAX_SHELTERS, Planes, Shelter};
 pub(crate) use around::{HostSurroundings, SurroundingsBlock, layout};
 pub(crate) use occluder_maps::OccluderMaps;
 pub(crate) use shelter::met_at;
+pub(crate) use snow::{LyingSnow, Meltwater, SnowHere};
 pub(crate) use terrain::TerrainHeights;
 pub(crate) use wind::{WindMap, WindTexture, WindView};

@@ -1,6 +1,9 @@
 //! What the wind lifts comes in gusts: how unevenly, by the law of grains that hop along the ground.
 
-use super::{conditions::WindProfile, smoothstep};
+use super::{
+    conditions::{Conditions, GroundLayer, WindProfile},
+    smoothstep,
+};
 
 /// Wind at 10 m that first moves dry sand or snow, m/s: a friction velocity of 0.25 to 0.3 m/s over smooth ground (Bagnold 1941;
 /// for dry snow 7.7 m/s, Li and Pomeroy 1997).
@@ -36,6 +39,51 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
     ((second - first * first).max(0.0).sqrt() / first).min(1.0) * smoothstep(CALM[0], CALM[1], first)
 }
 
+/// Radius of blown snow, m: 60 to 100 um (Pomeroy and Male 1992).
+const BLOWN_RADIUS_M: f64 = 7e-5;
+/// Depth of low drifting snow and of high blowing snow, m, and how far the wind is above the threshold from one to the other, m/s.
+const BLOWN_TOP_M: [f64; 2] = [1.5, 50.0];
+const BLOWN_RISE_M_S: f64 = 5.0;
+
+/// Friction velocity over drifting snow, m/s, under a wind at 10 m (Pomeroy and Gray 1990).
+pub fn drift_friction_velocity_m_s(wind_m_s: f64) -> f64 {
+    0.02264 * libm::pow(wind_m_s, 1.295)
+}
+
+/// Snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 - z^-0.544)) (Pomeroy and Male 1992).
+pub fn blown_kg_m3(wind_m_s: f64, height_m: f64) -> f64 {
+    let u = drift_friction_velocity_m_s(wind_m_s);
+    0.8 * libm::exp(-1.55 * (4.784 * libm::pow(u, -0.544) - libm::pow(height_m, -0.544)))
+}
+
+/// Adds the layer of snow that the wind lifts where loose snow covers the share `covered` of the ground and moves above this threshold,
+/// unless the weather has a layer at the ground. Spheres that hide twice their area: 3 eta / (2 rho r).
+pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
+    let wind = c.wind.speed_m_s();
+    if c.fog.extinction_per_m > 0.0 || wind <= threshold_m_s || covered <= 0.0 {
+        return;
+    }
+    let high = smoothstep(0.0, BLOWN_RISE_M_S, wind - threshold_m_s);
+    let top_m = BLOWN_TOP_M[0] + (BLOWN_TOP_M[1] - BLOWN_TOP_M[0]) * high;
+    let begun = 1.0 - (threshold_m_s / wind) * (threshold_m_s / wind);
+    let mass = blown_kg_m3(wind, (0.5 * top_m).min(2.0));
+    let extinction_per_m = 1.5 * mass / (917.0 * BLOWN_RADIUS_M) * begun * covered;
+    c.fog = GroundLayer {
+        extinction_per_m,
+        angstrom_exponent: 0.0,
+        single_scattering_albedo: 1.0,
+        asymmetry: 0.89,
+        base_m: 0.0,
+        top_m,
+        softness_m: top_m,
+        coverage: 1.0,
+        patch_size_m: 12.0 + 108.0 * high,
+        lifted: unevenness(&c.wind),
+    };
+    // Drifting snow stays below the eye, and a station's visibility looks over it.
+    c.extinction_per_m += extinction_per_m * high;
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{Weather, Wind, derive};
@@ -69,5 +117,31 @@ mod tests {
         let strong = of(40.0, 0.1);
         assert!((strong / 0.3 - 1.0).abs() < 0.08, "{strong}");
         assert!(of(12.0, 0.15) > of(20.0, 0.15) && of(20.0, 0.25) > of(20.0, 0.15));
+    }
+
+    #[test]
+    fn loose_snow_drifts_low_and_blows_high_with_the_wind() {
+        let blown = |wind: f64| {
+            let mut c = derive(&Weather { wind: Wind::of(wind, 200.0), ..Weather::default() }).unwrap();
+            lift_snow(&mut c, 7.7, 1.0);
+            c
+        };
+        assert_eq!(blown(7.6).fog, derive(&Weather::default()).unwrap().fog);
+        let (low, high, storm) = (blown(8.5), blown(15.0), blown(22.0));
+        assert!((1.5..8.0).contains(&low.fog.top_m) && low.visibility_m() > 5000.0, "{:?}", low.fog);
+        println!(
+            "visibility in blowing snow: {:.0} m at 15 m/s, {:.0} m at 22 m/s",
+            high.visibility_m(),
+            storm.visibility_m()
+        );
+        // Below 1 km it is a blizzard's; in a storm one sees some tens of metres.
+        assert!((150.0..1000.0).contains(&high.visibility_m()), "{}", high.visibility_m());
+        assert!((5.0..150.0).contains(&storm.visibility_m()) && storm.fog.top_m == 50.0, "{}", storm.visibility_m());
+        let mut last = 0.0;
+        for i in 0..400 {
+            let now = blown(7.0 + 0.02 * f64::from(i)).fog.extinction_per_m;
+            assert!(now >= last && now - last < 0.004, "{now} after {last}");
+            last = now;
+        }
     }
 }

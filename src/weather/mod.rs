@@ -38,5 +38,7 @@ pub use model::{
 };
 pub use particles::{humidity_growth, unlimited_visibility_m};
 pub(crate) use surface::cover_under_rain;
-pub use surface::{fully_developed_wave_height_m, sea_roughness_length_m, wave_height_of_state_m, wetness_from_rain};
+pub use surface::{
+    fully_developed_wave_height_m, sea_roughness_length_m, snow_cover, wave_height_of_state_m, wetness_from_rain,
+};
 pub use timeline::Timeline;

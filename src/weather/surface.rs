@@ -37,6 +37,12 @@ pub fn wave_height_of_state_m(state: u8) -> f64 {
     }
 }
 
+/// Share of level ground that snow of this depth covers, m: sparse first, then whole (a hyperbolic tangent as of Niu and Yang 2007, over
+/// 2.5 times a roughness of 1 cm).
+pub fn snow_cover(depth_m: f64) -> f64 {
+    if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
+}
+
 /// Wind profile: turbulence from the log law's sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984), or from a reported gust.
 pub(super) fn wind_profile(w: &Weather) -> WindProfile {
     let roughness = w.surface.roughness_length_m.unwrap_or(GRASS_ROUGHNESS_M);

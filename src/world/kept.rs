@@ -31,6 +31,8 @@ struct SceneInputs {
     undimmed: bool,
     planet: Planet,
     night: NightSettings,
+    /// Share, albedo and threshold of the snow that is led through time.
+    snow: Option<[f64; 3]>,
 }
 
 impl World {
@@ -46,6 +48,7 @@ impl World {
             undimmed: self.set.undimmed,
             planet: self.set.planet,
             night: self.night,
+            snow: self.snow.as_ref().map(|snow| [snow.cover, snow.country.albedo, snow.threshold_m_s]),
         }
     }
 

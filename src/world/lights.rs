@@ -16,7 +16,7 @@ use crate::{
         spectral::{Conversion, sun_rec709},
     },
     scene::Place,
-    weather::{CloudLight, Conditions},
+    weather::{CloudLight, Conditions, snow_cover},
 };
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
@@ -46,6 +46,37 @@ const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
 /// Reflectance of the land under the clouds, with which light goes back and forth.
 const LAND_ALBEDO: f64 = 0.2;
+/// The same of snow of which only the depth is known.
+const SNOW_ALBEDO: f64 = 0.82;
+
+/// What light from above meets on land of which snow covers this share.
+pub(super) struct LandSeen {
+    /// Share that snow covers.
+    pub snow: f64,
+    /// Share of the light that goes up again.
+    pub albedo: f64,
+}
+
+impl LandSeen {
+    fn new(snow: f64, snow_albedo: f64) -> Self {
+        Self { snow, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow }
+    }
+
+    /// As the weather reports the snow.
+    pub fn reported(c: &Conditions) -> Self {
+        Self::new(snow_cover(c.surface.snow_depth_m), SNOW_ALBEDO)
+    }
+}
+
+impl World {
+    /// The land under a weather: as its snow is led through time, else as it is reported.
+    pub(super) fn land(&self, c: &Conditions) -> LandSeen {
+        match &self.snow {
+            Some(snow) => LandSeen::new(snow.cover, snow.country.albedo),
+            None => LandSeen::reported(c),
+        }
+    }
+}
 
 /// A time at which universal time is out of the almanac's years.
 fn out_of_almanac(time_s: f64) -> Error {
@@ -57,27 +88,32 @@ pub(super) type UnderClouds = (Light, CloudLight);
 
 impl World {
     /// Sun and moon over `place` at simulation time `time_s`.
-    pub(super) fn lights_over(&self, place: &Place, c: &Conditions, time_s: f64) -> Result<[UnderClouds; 2]> {
+    pub(super) fn lights_over(
+        &self,
+        place: &Place,
+        (c, albedo): (&Conditions, f64),
+        time_s: f64,
+    ) -> Result<[UnderClouds; 2]> {
         let utc = self.utc_at(time_s);
         let sky = self.ephemeris.at(utc).map_err(|_| out_of_almanac(time_s))?;
         let turned = Turned::new(&sky, utc, place);
         let pressure = c.air.pressure_hpa * (-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m).exp();
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
-        let sun = self.sun_over(&turned.sun(), c, place.altitude_m, see);
-        let moon = self.moon_over(moon::lit(&turned), &sun.0, c, place.altitude_m, see);
+        let sun = self.sun_over(&turned.sun(), (c, albedo), place.altitude_m, see);
+        let moon = self.moon_over(moon::lit(&turned), &sun.0, (c, albedo), place.altitude_m, see);
         Ok([sun, moon])
     }
 
     fn sun_over(
         &self,
         almanac: &SunPosition,
-        c: &Conditions,
+        (c, albedo): (&Conditions, f64),
         altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
         let to_sun = self.set.given_sun.map_or(almanac.direction, |g| g.unit());
         let (apparent, flattening) = see(to_sun);
-        let clouds = c.cloud_light_at(to_sun.z, LAND_ALBEDO, altitude_m);
+        let clouds = c.cloud_light_at(to_sun.z, albedo, altitude_m);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
         let sun = Light {
             direction: to_sun,
@@ -98,7 +134,7 @@ impl World {
         &self,
         mut at: MoonPosition,
         sun: &Light,
-        c: &Conditions,
+        (c, albedo): (&Conditions, f64),
         altitude_m: f64,
         see: impl Fn(DVec3) -> (DVec3, f64),
     ) -> UnderClouds {
@@ -118,7 +154,7 @@ impl World {
         let spectrum = MOON_TINT.map(|t| t * at.illuminance_lux / SUN_LUX);
         let dark = sun.direction.z < MOON_MATTERS_BELOW_DEG.to_radians().sin();
         let above = apparent.z > -0.02;
-        let clouds = c.cloud_light_at(at.direction.z, LAND_ALBEDO, altitude_m);
+        let clouds = c.cloud_light_at(at.direction.z, albedo, altitude_m);
         let moon = Light {
             direction: at.direction,
             apparent,

@@ -46,9 +46,9 @@ use crate::{
     moment::{Moment, Region, Scene, WeatherOver},
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
-    surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
+    surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
     terrain::Terrain,
-    weather::{Conditions, Timeline, timeline::MAX_TIME_S},
+    weather::{Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
 
@@ -148,6 +148,8 @@ pub(crate) struct World {
     /// The wind round terrain and boxes, where something has solved for it.
     pub solved_wind: Option<Box<WindVolume>>,
     wind_texture: WindTexture,
+    /// The lying snow, where it is led through time.
+    pub snow: Option<Box<LyingSnow>>,
     pub time_s: f64,
     ephemeris: Ephemeris,
     couplings: Couplings,
@@ -211,6 +213,7 @@ impl World {
             host_wind: None,
             solved_wind: None,
             wind_texture: WindTexture::default(),
+            snow: None,
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             couplings,
@@ -236,13 +239,17 @@ impl World {
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
     }
 
-    /// The weather at a time.
+    /// The weather at a time, with what its wind lifts of the snow that lies now.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
     pub fn weather_at(&self, time_s: f64) -> Result<Conditions> {
         self.over().check_time(time_s)?;
-        Ok(self.timeline.at(time_s))
+        let mut c = self.timeline.at(time_s);
+        if let Some(snow) = &self.snow {
+            lift_snow(&mut c, snow.threshold_m_s, snow.cover);
+        }
+        Ok(c)
     }
 
     /// The weather at a time with what falls at a place.

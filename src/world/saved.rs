@@ -123,6 +123,7 @@ impl World {
             couplings: _,
             // The effect that the host tells it to saves it.
             night: _,
+            snow: _,
             surroundings_revision: _,
         } = self;
         let mut table = toml::Table::new();

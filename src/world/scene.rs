@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::{
     World,
     air::planet_under,
-    lights::{UnderClouds, color_of},
+    lights::{LandSeen, UnderClouds, color_of},
 };
 use crate::{
     error::Result,
@@ -49,6 +49,12 @@ fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
         [0, 1, 2].map(|i| planet.rayleigh.scattering_per_m[i] * gas + planet.mie.extinction_per_m[i] * haze);
     (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
 }
+
+/// Albedo of the grey ground that is adapted to, and of snow as photographers expose it: 1.3 stops above grey.
+const GROUND_KEY: f64 = 0.18;
+const SNOW_KEY: f64 = 0.33;
+/// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
+const LUX_PER_W_M2: f64 = 110.0;
 
 /// Optical depth of all air above `altitude_m` straight up, per wavelength.
 pub(crate) fn zenith_depth(planet: &Planet, altitude_m: f64) -> [f64; 3] {
@@ -117,7 +123,7 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     let elevation = sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
     let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
     let dusk = 1.0 - smoothstep(-5.0, 1.0, elevation);
-    let ground = 0.18 * total / PI + (0.35 + low * (2.0 + 4.0 * dusk)) * sky / PI;
+    let ground = GROUND_KEY * total / PI + (0.35 + low * (2.0 + 4.0 * dusk)) * sky / PI;
     ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
@@ -134,10 +140,22 @@ impl World {
     /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the planet, or
     /// the time is not known.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
-        let local = self.frame.place_at(name, position)?;
         let conditions = self.weather_at(time_s)?;
+        let land = self.land(&conditions);
+        self.scene_over((name, position), time_s, conditions, &land)
+    }
+
+    /// The same in this weather over this land.
+    fn scene_over(
+        &self,
+        (name, position): (&str, DVec3),
+        time_s: f64,
+        conditions: Conditions,
+        land: &LandSeen,
+    ) -> Result<Scene> {
+        let local = self.frame.place_at(name, position)?;
         let planet = planet_under(&self.set.planet, &conditions);
-        let lights = self.lights_over(&local.place, &conditions, time_s)?;
+        let lights = self.lights_over(&local.place, (&conditions, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
         let above_fog = self.ground_light((&planet, &local.place), &conditions, &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
@@ -173,7 +191,22 @@ impl World {
         if !self.set.undimmed {
             (self.couplings.dim)(&mut scene)?;
         }
+        for light in [&mut scene.ground, &mut scene.above_fog] {
+            light.adaptation_cd_m2 += land.snow * (SNOW_KEY - GROUND_KEY) * light.total_lux / PI;
+        }
         Ok(scene)
+    }
+
+    /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
+    /// that is only drawn must not change a state.
+    pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
+        let frame = &self.frame;
+        let origin = if frame.kind == WorldKind::Ecef { frame.origin.to_ecef() } else { DVec3::ZERO };
+        // A state must not depend on how far another state has been shown.
+        let conditions = self.timeline.at(time_s);
+        let land = LandSeen::reported(&conditions);
+        let scene = self.scene_over(("position", origin), time_s, conditions, &land)?;
+        Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
     fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {

@@ -7,8 +7,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
     frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
-    radiance::*, rain::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*,
-    veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    radiance::*, rain::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -73,6 +73,14 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_load", "context", false, |h| unsafe { wk_context_load(h.cast(), null(), 0) }),
         case("wk_context_state_hash", "context", false, |h| unsafe { wk_context_state_hash(h.cast(), null_mut()) }),
         case("wk_context_set_lights", "context", false, |h| unsafe { wk_context_set_lights(h.cast(), null(), 0, 0) }),
+        case("wk_context_get_lying_snow", "context", false, |h| unsafe {
+            wk_context_get_lying_snow(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_take_snow", "context", false, |h| unsafe {
+            wk_context_take_snow(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_press_snow", "context", false, |h| unsafe { wk_context_press_snow(h.cast(), null()) }),
+        case("wk_context_accumulate", "context", false, |h| unsafe { wk_context_accumulate(h.cast(), 1.0) }),
         case("wk_context_get_ground", "context", false, |h| unsafe {
             wk_context_get_ground(h.cast(), null(), null_mut())
         }),

@@ -9,8 +9,9 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
     frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*,
-    query::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    query::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*,
+    windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -155,6 +156,7 @@ fn cases(world: &World) -> Vec<Case> {
             unsafe { wk_context_destroy(out) };
             status
         }),
+        case("wk_snow_strip", "strip", false, move |p| unsafe { wk_context_press_snow(context, p.cast()) }),
         case("wk_ground", "out_ground", false, move |p| unsafe { wk_context_get_ground(context, &ORIGIN, p.cast()) }),
         case("wk_conditions", "out_conditions", false, move |p| unsafe {
             wk_context_get_conditions(context, &ORIGIN, 0.0, p.cast())
@@ -216,6 +218,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_light",
     "wk_ground_cell",
     "wk_terrain_point",
+    "wk_lying_snow",
     "wk_segment",
     "wk_between",
     "wk_sky_radiance",

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
     frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
-    radiance::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    radiance::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -116,10 +116,18 @@ impl World {
         let mut size = Struct::plain("wk_texture_desc");
         size.set("width", 16_u32);
         size.set("height", 8_u32);
+        // A context in which all has a state: calls that need one would seldom find it by chance.
+        let (mut simulated, mut simulation) = (Struct::plain("wk_context_desc"), Struct::plain("wk_simulation_desc"));
+        simulation.set("lying_snow_model", WK_LYING_SNOW_SIMULATED);
+        simulated.set_struct("next", simulation);
+        let mut grid = Struct::plain("wk_ground_grid");
+        grid.set("height_count", 4_u32);
+        grid.set_numbers("heights_m", vec![0.0_f32; 4]);
         // SAFETY: pointers to live locals.
         unsafe {
             assert_eq!(wk_device_create(desc.ptr().cast(), &mut device), WK_OK);
-            assert_eq!(wk_context_create(device, null(), &mut context), WK_OK);
+            assert_eq!(wk_context_create(device, simulated.ptr().cast(), &mut context), WK_OK);
+            assert_eq!(wk_context_set_ground_grid(context, grid.ptr().cast()), WK_OK);
             assert_eq!(wk_view_create(context, null(), &mut view), WK_OK);
             assert_eq!(wk_texture_create(device, size.ptr().cast(), &mut texture), WK_OK);
         }
@@ -700,6 +708,28 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_get_ground", |d, w| {
         let (context, at) = (handle(d, &w.contexts), position(d));
         get("wk_ground", |p| unsafe { wk_context_get_ground(context, &at, p.cast()) })
+    }),
+    ("wk_context_get_lying_snow", |d, w| {
+        let (context, at, mut snow) = (handle(d, &w.contexts), position(d), [unsafe { std::mem::zeroed() }; 1]);
+        let size = size_of_element::<wk_lying_snow>(d);
+        unsafe { wk_context_get_lying_snow(context, &at, 1, 24, snow.as_mut_ptr(), size) }.into()
+    }),
+    ("wk_context_take_snow", |d, w| {
+        let (mut strip, path) = (Struct::random(d, "wk_snow_strip", 10), [position(d), position(d)]);
+        strip.set("points_m", path.as_ptr());
+        strip.set("point_count", 2u32);
+        let mut mass = 0.0;
+        unsafe { wk_context_take_snow(handle(d, &w.contexts), strip.ptr().cast(), d.unit(), &mut mass) }.into()
+    }),
+    ("wk_context_press_snow", |d, w| {
+        let (mut strip, path) = (Struct::random(d, "wk_snow_strip", 10), [position(d), position(d)]);
+        strip.set("points_m", path.as_ptr());
+        strip.set("point_count", 2u32);
+        unsafe { wk_context_press_snow(handle(d, &w.contexts), strip.ptr().cast()) }.into()
+    }),
+    ("wk_context_accumulate", |d, w| {
+        let hours = if d.one_in(4) { d.float() } else { 1e-3 * d.unit() };
+        unsafe { wk_context_accumulate(handle(d, &w.contexts), hours) }.into()
     }),
     ("wk_context_get_ground_cells", |d, w| {
         let mut cells = vec![unsafe { std::mem::zeroed::<wk_ground_cell>() }; 256];

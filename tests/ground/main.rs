@@ -7,6 +7,7 @@ mod drawn;
 mod hills;
 mod host;
 mod leaps;
+mod lying_snow;
 mod mirrors;
 mod rings;
 mod state;

@@ -1,0 +1,218 @@
+//! Lying snow
+//!
+//! The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
+//! patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
+//! state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
+//! each cell of the host's terrain (wk_context_set_ground_grid), and wk_context_save keeps it. Standing boxes
+//! (wk_context_set_shelters) keep it off and cast drifts.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    MAX_BATCH,
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    input::{self, Named},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Result, Status},
+    snowpack::{MAX_STRIP_POINTS, SnowAt, SnowStrip},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_snowpack.rs"));
+
+/// How a wheel holds on the ground, as far as snow decides it.
+pub type wk_snow_friction = u32;
+/// No snow, or too little to matter.
+pub const WK_SNOW_FRICTION_BARE: wk_snow_friction = 0;
+/// Loose, dry snow.
+pub const WK_SNOW_FRICTION_LOOSE: wk_snow_friction = 1;
+/// Snow above 350 kg/m^3: pressed, or packed by wind.
+pub const WK_SNOW_FRICTION_PACKED: wk_snow_friction = 2;
+/// Slush: more than half of the water that it can hold.
+pub const WK_SNOW_FRICTION_SLUSH: wk_snow_friction = 3;
+/// Above 650 kg/m^3: frozen hard.
+pub const WK_SNOW_FRICTION_ICE: wk_snow_friction = 4;
+
+/// Snow at a place; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_lying_snow {
+    /// Depth, m.
+    pub depth_m: f64,
+    /// Ice and water, kg/m^2: millimetres of water.
+    pub mass_kg_m2: f64,
+    /// kg/m^3; 0 without snow.
+    pub density_kg_m3: f64,
+    /// Held water over what the snow can hold, 0 to 1.
+    pub wetness: f64,
+    /// Albedo of visible light; 0 without snow.
+    pub albedo: f64,
+    /// Share of the ground that it covers.
+    pub cover: f64,
+    /// The place above or below the one asked for on the snow's surface, in the host's world: the terrain's height
+    /// raised by the snow. Off the host's terrain the place itself.
+    pub surface_m: [f64; 3],
+    /// How a wheel holds.
+    pub friction: wk_snow_friction,
+    /// 0.
+    pub reserved0: u32,
+}
+
+impl wk_lying_snow {
+    fn of(s: &SnowAt) -> Self {
+        Self {
+            depth_m: s.depth_m,
+            mass_kg_m2: s.mass_kg_m2,
+            density_kg_m3: s.density_kg_m3,
+            wetness: s.wetness,
+            albedo: s.albedo,
+            cover: s.cover,
+            surface_m: s.surface.to_array(),
+            friction: s.friction as u32,
+            reserved0: 0,
+        }
+    }
+}
+
+/// A strip of ground: a path with a width. Two points and a width make a rectangle.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_snow_strip {
+    /// sizeof(wk_snow_strip) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_SNOW_STRIP.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The path's points in the host's world, m, within 1e12 m of the origin; their heights do not matter. The path's
+    /// ends are cut straight, its bends are round. Read during the call.
+    pub points_m: *const [f64; 3],
+    /// Number of points. Range 2 to 1024.
+    pub point_count: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+    /// From side to side, m. Range [0.01, 1000], default 1.
+    pub width_m: f64,
+}
+
+impl wk_snow_strip {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_SNOW_STRIP,
+        next: null(),
+        points_m: null(),
+        point_count: 0,
+        reserved0: 0,
+        width_m: 1.0,
+    };
+}
+
+/// # Safety
+/// `strip` is NULL or a struct of its size, whose list is NULL or as long as it says.
+unsafe fn strip_of(strip: *const wk_snow_strip) -> Result<SnowStrip> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { layout::read(&"strip", strip)? };
+    // SAFETY: the caller's promise about its pointers.
+    let points = unsafe {
+        layout::check_chain(&"strip", c.next, &[])?;
+        let count = Named("strip.point_count", c.point_count as usize);
+        input::slice("strip.points_m", c.points_m, count, MAX_STRIP_POINTS)?
+    };
+    let made = SnowStrip { points: points.iter().map(|p| DVec3::from_array(*p)).collect(), width_m: c.width_m };
+    made.validate()
+        .map_err(|e| e.renamed("strip.points.len", "strip.point_count").renamed("strip.points", "strip.points_m"))?;
+    Ok(made)
+}
+
+/// Gets the snow at places of the host's world, at most wk_caps.max_batch of them, as of wk_context_get_state_time. On
+/// the host's terrain and up to 3 m above it, the answer is that between its cells, elsewhere that of level, open
+/// ground. `position_size` and `snow_size` are the bytes from one element to the next: 24 or more, and
+/// sizeof(wk_lying_snow) of your header.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_lying_snow(
+    context: *const wk_context,
+    positions_m: *const [f64; 3],
+    count: u32,
+    position_size: u32,
+    snow: *mut wk_lying_snow,
+    snow_size: u32,
+) -> wk_status {
+    guard("wk_context_get_lying_snow", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
+        let room = input::Room::new("snow", "snow_size", snow, count, snow_size)?;
+        let context = object.read();
+        for i in 0..count as usize {
+            let name = format!("positions_m[{i}]");
+            // SAFETY: the caller's promise about the list.
+            let at = unsafe { position(&name, places.at(i))? };
+            let found = context.snow_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", &name))?;
+            // SAFETY: the caller's promise about the room, which has as many elements.
+            unsafe { room.write(i, &wk_lying_snow::of(&found)) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Takes the snow of a strip of the host's terrain away, but for the lowest `left_m` (range [0, 100]): a plough, a
+/// shovel. `out_mass_kg` gets what was taken and may be NULL.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
+/// WK_LYING_SNOW_SIMULATED, and while steps of an update remain.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_take_snow(
+    context: *mut wk_context,
+    strip: *const wk_snow_strip,
+    left_m: f64,
+    out_mass_kg: *mut f64,
+) -> wk_status {
+    guard("wk_context_take_snow", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let out = layout::optional_out(&"out_mass_kg", out_mass_kg)?;
+        // SAFETY: the caller's promise about `strip`.
+        let strip = unsafe { strip_of(strip)? };
+        let mass_kg = object.write().take_snow(&strip, left_m)?;
+        if let Some(out) = out {
+            // SAFETY: checked, and the caller's promise that it points to a double.
+            unsafe { out.write(mass_kg) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Presses the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+/// Thread: exclusive.
+/// Errors: as wk_context_take_snow.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_press_snow(context: *mut wk_context, strip: *const wk_snow_strip) -> wk_status {
+    guard("wk_context_press_snow", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `strip`.
+        let strip = unsafe { strip_of(strip)? };
+        object.write().press_snow(&strip)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Moves time on by `hours`, in (0, 720], and lays the snow of that time by steps of ten minutes, so that a lesson may
+/// begin after a night's snowfall. The laws are those of ordinary steps; the state differs from theirs by up to some
+/// percent and remembers that it was laid so (wk_context_state_hash). All else is led as by wk_context_update, to the
+/// end: with the largest terrain this may take some seconds.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_accumulate(context: *mut wk_context, hours: f64) -> wk_status {
+    guard("wk_context_accumulate", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        object.write().accumulate(hours)?;
+        Ok(Status::Ok)
+    })
+}

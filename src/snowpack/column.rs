@@ -1,0 +1,267 @@
+//! One column of lying snow, in whole units of mass and depth: what it was given and what it gave add up to the last bit.
+
+use super::laws;
+use crate::weather::{Conditions, Falling};
+
+/// Units of mass in a kg/m^2, and of depth in a metre.
+pub(super) const UNITS: f64 = 16_777_216.0;
+/// Units of an albedo of 1.
+const ALBEDO_UNITS: f64 = 1_073_741_824.0;
+/// Steps of density for which settling is tabulated, kg/m^3.
+const DENSITY_STEP: f64 = 4.0;
+const DENSITIES: usize = 232;
+
+/// Snow over a square metre. A column without ice has no snow and is all 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Column {
+    /// Ice and held water, in units of mass.
+    pub ice: i64,
+    pub water: i64,
+    /// In units of depth.
+    pub depth: i64,
+    /// Of visible light.
+    pub albedo: i64,
+}
+
+/// What moves from one column to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Part {
+    pub ice: i64,
+    pub water: i64,
+    pub depth: i64,
+}
+
+impl Part {
+    pub fn mass(&self) -> i64 {
+        self.ice + self.water
+    }
+}
+
+/// What a step took and gave, in units of mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Exchange {
+    pub fallen: i64,
+    pub ran_off: i64,
+    pub sublimated: i64,
+}
+
+/// What acts on columns during a step: the same for all of a field but for what is kept off.
+#[derive(Clone, Debug)]
+pub(super) struct Forcing {
+    /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that they go.
+    ice: i64,
+    depth: i64,
+    renewed: f64,
+    rain: i64,
+    /// Units that may melt in the dark, and more for an albedo of 0.
+    melt: f64,
+    melt_by_sun: f64,
+    refreezing: i64,
+    sublimation: i64,
+    albedo_kept: f64,
+    /// Per step of density: settling by grains of dry snow, and per unit of the mass above.
+    settling: Box<[[f64; 2]]>,
+}
+
+fn units(amount: f64) -> i64 {
+    (amount * UNITS).round() as i64
+}
+
+/// `part` of `whole` of a number, rounded down: exact enough for depths, which no books are kept of.
+fn share(number: i64, part: i64, whole: i64) -> i64 {
+    (number as f64 * (part as f64 / whole as f64)) as i64
+}
+
+impl Forcing {
+    /// Of a weather in which `falling` falls, under sunlight in W/m^2.
+    pub fn new(c: &Conditions, falling: &Falling, sunlight_w_m2: f64, seconds: f64) -> Self {
+        let hours = seconds / 3600.0;
+        let (t, wind) = (c.air.temperature_c, c.wind.speed_m_s());
+        let pellets = (falling.ice_pellets_mm_h + falling.hail_mm_h) * hours;
+        let snow = falling.snow_mm_h * hours;
+        let depth = snow / laws::new_density_kg_m3(t, wind) + pellets / laws::PELLETS_KG_M3;
+        let rain = falling.rain_mm_h + falling.drizzle_mm_h;
+        let (melt, by_sun) = laws::melt_mm_h(c, rain);
+        let settling = (0..DENSITIES).map(|i| {
+            let density = DENSITY_STEP * (i as f64 + 0.5);
+            let grains = laws::metamorphism_per_s(t, density, false) * seconds;
+            [grains, 0.5 * seconds / laws::viscosity(t, density) / UNITS]
+        });
+        Self {
+            ice: units(snow + pellets),
+            depth: units(depth),
+            renewed: 1.0 - libm::exp(-(snow + pellets) / laws::RENEWING_KG_M2),
+            rain: units(rain * hours),
+            melt: melt * hours * UNITS,
+            melt_by_sun: by_sun * sunlight_w_m2 * hours * UNITS,
+            refreezing: units(laws::refreezing_mm_h(t) * hours),
+            sublimation: units(laws::sublimation_mm_h(c) * hours),
+            albedo_kept: laws::albedo_kept(t > 0.0, seconds),
+            settling: settling.collect(),
+        }
+    }
+}
+
+impl Column {
+    /// New snow of this depth, m, and density, kg/m^3.
+    pub fn of(depth_m: f64, density_kg_m3: f64) -> Self {
+        let depth = units(depth_m.max(0.0));
+        let ice = units(depth_m.max(0.0) * density_kg_m3);
+        let albedo = (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64;
+        if ice == 0 { Self::default() } else { Self { ice, water: 0, depth, albedo } }
+    }
+
+    pub fn mass(&self) -> i64 {
+        self.ice + self.water
+    }
+
+    pub fn mass_kg_m2(&self) -> f64 {
+        self.mass() as f64 / UNITS
+    }
+
+    pub fn depth_m(&self) -> f64 {
+        self.depth as f64 / UNITS
+    }
+
+    /// kg/m^3; 0 without snow.
+    pub fn density_kg_m3(&self) -> f64 {
+        if self.depth > 0 { self.mass() as f64 / self.depth as f64 } else { 0.0 }
+    }
+
+    /// Held water over what the snow can hold.
+    pub fn wetness(&self) -> f64 {
+        if self.ice > 0 { (self.water as f64 / (laws::HELD_SHARE * self.ice as f64)).min(1.0) } else { 0.0 }
+    }
+
+    pub fn is_wet(&self) -> bool {
+        self.water as f64 > laws::WET_SHARE * self.ice as f64
+    }
+
+    /// 0 without snow.
+    pub fn albedo(&self) -> f64 {
+        self.albedo as f64 / ALBEDO_UNITS
+    }
+
+    /// Leads the column through a step in which `open` of what falls gets to it.
+    pub fn step(&mut self, f: &Forcing, open: f64) -> Exchange {
+        let mut gone = Exchange::default();
+        let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
+        if self.ice == 0 && ice == 0 {
+            return gone;
+        }
+        let rain = if open == 1.0 { f.rain } else { (f.rain as f64 * open) as i64 };
+        gone.fallen = ice + rain;
+        self.settle(f);
+        if ice > 0 {
+            self.land(ice, if open == 1.0 { f.depth } else { (f.depth as f64 * open) as i64 }, f.renewed * open);
+        }
+        self.water += rain;
+        gone.sublimated = self.lose(f.sublimation);
+        self.thaw(f);
+        let held = (self.ice as f64 * laws::HELD_SHARE) as i64;
+        gone.ran_off = (self.water - held).max(0);
+        self.water -= gone.ran_off;
+        self.tidy();
+        gone
+    }
+
+    /// The snow settles under half of its own load, and its albedo goes to that of old snow.
+    fn settle(&mut self, f: &Forcing) {
+        if self.depth == 0 {
+            return;
+        }
+        let at = ((self.density_kg_m3() / DENSITY_STEP) as usize).min(DENSITIES - 1);
+        let [grains, load] = f.settling[at];
+        let wet = if self.is_wet() { 2.0 } else { 1.0 };
+        let shrinks = libm::exp(-(grains * wet + load * self.mass() as f64));
+        self.depth = (self.depth as f64 * shrinks) as i64;
+        let old = (laws::OLD_ALBEDO * ALBEDO_UNITS) as i64;
+        self.albedo = old + ((self.albedo - old) as f64 * f.albedo_kept) as i64;
+    }
+
+    fn land(&mut self, ice: i64, depth: i64, renewed: f64) {
+        let new = (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64;
+        let bare = self.ice == 0;
+        self.albedo = if bare { new } else { self.albedo + ((new - self.albedo) as f64 * renewed) as i64 };
+        self.ice += ice;
+        self.depth += depth;
+    }
+
+    /// Takes ice away with its depth; answers how much there was of it.
+    fn lose(&mut self, wanted: i64) -> i64 {
+        let lost = wanted.min(self.ice);
+        if lost > 0 {
+            self.depth -= share(self.depth, lost, self.ice);
+            self.ice -= lost;
+        }
+        lost
+    }
+
+    fn thaw(&mut self, f: &Forcing) {
+        let melt = f.melt + f.melt_by_sun * (1.0 - self.albedo());
+        self.water += self.lose(melt as i64);
+        let freezes = f.refreezing.min(self.water);
+        self.water -= freezes;
+        self.ice += freezes;
+    }
+
+    /// No snow is denser than ice, and none is without ice.
+    fn tidy(&mut self) {
+        if self.mass() == 0 {
+            *self = Self::default();
+        } else {
+            self.depth = self.depth.max((self.mass() as f64 / laws::ICE_KG_M3) as i64 + 1);
+        }
+    }
+
+    /// Takes `part` of `whole` of the column away.
+    pub fn take(&mut self, part: i64, whole: i64) -> Part {
+        let exact = |v: i64| (i128::from(v) * i128::from(part) / i128::from(whole)) as i64;
+        let taken = Part { ice: exact(self.ice), water: exact(self.water), depth: exact(self.depth) };
+        self.ice -= taken.ice;
+        self.water -= taken.water;
+        self.depth -= taken.depth;
+        self.tidy();
+        taken
+    }
+
+    /// Takes ice of this mass away as the wind does it: the snow left is as dense as before.
+    pub fn erode(&mut self, wanted: i64) -> i64 {
+        let lost = self.lose(wanted);
+        self.tidy();
+        lost
+    }
+
+    /// Adds what comes from elsewhere; `albedo` is what it had there.
+    pub fn add(&mut self, part: Part, albedo: i64) {
+        let mass = self.mass() + part.mass();
+        if mass > 0 && part.mass() > 0 {
+            self.albedo += share(albedo - self.albedo, part.mass(), mass);
+        }
+        self.ice += part.ice;
+        self.water += part.water;
+        self.depth += part.depth;
+        self.tidy();
+    }
+
+    /// Presses `covered` of the column to this density, if it is less dense.
+    pub fn press(&mut self, density_kg_m3: f64, covered: f64) {
+        let pressed = (self.mass() as f64 / density_kg_m3) as i64;
+        if pressed < self.depth {
+            self.depth -= ((self.depth - pressed) as f64 * covered) as i64;
+            self.tidy();
+        }
+    }
+
+    /// Whether a saved one can be one of ours.
+    pub fn is_sound(&self) -> bool {
+        let most = (1e5 * UNITS) as i64;
+        let within = [self.ice, self.water, self.depth].iter().all(|v| (0..=most).contains(v));
+        within && (0..=ALBEDO_UNITS as i64).contains(&self.albedo) && (self.mass() == 0) == (self.depth == 0)
+    }
+
+    /// Albedo of dry snow that the wind lays down, which breaks its grains: that of new snow.
+    pub fn drifted_albedo() -> i64 {
+        (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64
+    }
+}

@@ -1,0 +1,350 @@
+//! Lying snow as a context holds it: as the weather reports it, or led over the timeline if the host asked for that.
+
+use std::sync::Arc;
+
+use super::{
+    COARSE_STEP_S, STEP_S,
+    column::{Column, Forcing},
+    field::{Field, Step},
+    laws, query,
+    saved::SavedSnow,
+    site::Site,
+};
+use crate::{
+    error::{Error, Result, Status},
+    surroundings::{Meltwater, TerrainHeights},
+    weather::{Conditions, snow_cover},
+    world::{HeldEffect, Within, World, parse_error},
+};
+
+/// Where the lying snow comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LyingSnowModel {
+    /// From the weather of the moment: as deep as it is reported, everywhere.
+    #[default]
+    Reported,
+    /// A state that snowfall fills and that settles, drifts, slides and melts ([`crate::snowpack`]). It begins as deep as the weather
+    /// reports it. An update that moves time by more than a day is fast-forward ([`crate::context::Context::accumulate`]); of one of
+    /// more than 30 days its last 30 count.
+    Simulated,
+}
+
+/// Sunlight for melting is looked up this often, s.
+const SUN_EVERY_S: f64 = 300.0;
+/// Beyond this an update is fast-forward, s, and beyond this the rest is left out.
+const LONGEST_S: f64 = 86_400.0;
+const MOST_S: f64 = 30.0 * 86_400.0;
+/// Side of the blocks of cells that ask once what falls in regions.
+const BLOCK: usize = 16;
+/// Density of snow of which only the depth is reported, kg/m^3: a seasonal pack's (Sturm et al. 1995, "prairie").
+const REPORTED_KG_M3: f64 = 250.0;
+/// Where it is in a saved state.
+const KEY: &str = "lying_snow";
+
+/// The snow and what its next step needs.
+#[derive(Clone, Debug)]
+pub(super) struct SnowState {
+    pub time_s: f64,
+    /// Sunlight on level ground since the last look at it.
+    pub sunlight_w_m2: f64,
+    /// On level, open ground.
+    pub country: Column,
+    pub melted: Meltwater,
+    /// Time that was laid by fast-forward, s.
+    pub coarse_s: f64,
+    /// On the host's terrain, once it has any.
+    pub field: Option<Field>,
+}
+
+/// The lying snow of a context.
+pub(crate) struct HeldSnow {
+    pub model: LyingSnowModel,
+    /// Updates are fast-forward.
+    pub is_fast: bool,
+    state: Option<SnowState>,
+    site: Option<Site>,
+    /// Steps that end up to here are coarse.
+    coarse_until_s: f64,
+    revision: u64,
+    published: u64,
+    /// What has come from under the snow since it was last published: from when on, for how long, s.
+    melts: Vec<(f64, f64, Meltwater)>,
+    /// What was published is of another past.
+    forgets: bool,
+}
+
+/// A saved snow that can be shown.
+pub(crate) struct LoadedSnow(Option<SnowState>);
+
+fn reported(depth_m: f64) -> Column {
+    Column::of(depth_m, REPORTED_KG_M3)
+}
+
+impl SnowState {
+    fn first(world: &World, time_s: f64) -> Result<Self> {
+        Ok(Self {
+            time_s,
+            sunlight_w_m2: world.sunlight_w_m2(time_s)?,
+            country: reported(world.timeline.at(time_s).surface.snow_depth_m),
+            melted: Meltwater { covered: 0.0, runoff_mm_h: 0.0 },
+            coarse_s: 0.0,
+            field: None,
+        })
+    }
+
+    /// Where its next step ends, s.
+    fn next_s(&self, coarse_until_s: f64) -> f64 {
+        let after = |length: f64| ((self.time_s / length).floor() + 1.0) * length;
+        let coarse = after(COARSE_STEP_S);
+        if coarse <= coarse_until_s { coarse } else { after(STEP_S) }
+    }
+
+    fn lies_anywhere(&self) -> bool {
+        self.country.mass() > 0 || self.field.as_ref().is_some_and(|f| f.books.balance() > 0)
+    }
+}
+
+impl HeldSnow {
+    pub fn new(model: LyingSnowModel) -> Self {
+        Self {
+            model,
+            is_fast: false,
+            state: None,
+            site: None,
+            coarse_until_s: f64::NEG_INFINITY,
+            revision: 1,
+            published: 0,
+            melts: Vec::new(),
+            forgets: false,
+        }
+    }
+
+    /// Snow on level, open ground.
+    pub(super) fn country(&self, world: &World) -> Column {
+        match &self.state {
+            Some(state) => state.country,
+            None => reported(world.timeline.at(world.time_s).surface.snow_depth_m),
+        }
+    }
+
+    /// Of the host's terrain.
+    pub(super) fn field(&self) -> Option<(&Site, &Field)> {
+        Some((self.site.as_ref()?, self.state.as_ref()?.field.as_ref()?))
+    }
+
+    pub(super) fn field_mut(&mut self) -> Option<(&Site, &mut Field)> {
+        Some((self.site.as_ref()?, self.state.as_mut()?.field.as_mut()?))
+    }
+
+    /// Time that fast-forward has laid, s.
+    pub fn coarse_s(&self) -> f64 {
+        self.state.as_ref().map_or(0.0, |s| s.coarse_s)
+    }
+
+    /// Says that the snow is another than before.
+    pub(super) fn changed(&mut self) {
+        self.revision += 1;
+    }
+
+    /// Makes the state be there, and lie on the world's terrain.
+    pub(super) fn be_there(&mut self, world: &World) -> Result<()> {
+        if self.model == LyingSnowModel::Simulated && self.state.is_none() {
+            self.state = Some(SnowState::first(world, world.time_s)?);
+        }
+        self.settle_on(world.set.terrain.as_ref());
+        Ok(())
+    }
+
+    /// Takes another terrain: one with nodes at the same places keeps its snow, on another it is as deep as on level ground.
+    fn settle_on(&mut self, terrain: Option<&Arc<TerrainHeights>>) {
+        let Some(state) = &mut self.state else { return };
+        let Some(terrain) = terrain else {
+            self.revision += u64::from(self.site.take().is_some() | state.field.take().is_some());
+            return;
+        };
+        if state.field.is_some()
+            && self.site.as_ref().is_some_and(|s| Arc::ptr_eq(&s.terrain, terrain) || s.terrain.hash == terrain.hash)
+        {
+            return;
+        }
+        let keeps = self.site.as_ref().is_none_or(|site| site.has_places_of(terrain));
+        let site = Site::new(terrain.clone());
+        let fits = state.field.as_ref().is_some_and(|f| keeps && f.columns.len() == site.land.len());
+        if !fits {
+            state.field = Some(Field::new(&site.land, state.country));
+        }
+        self.site = Some(site);
+        self.revision += 1;
+    }
+
+    /// Leads the snow through its next step.
+    fn step(&mut self, world: &World, end_s: f64) -> Result<()> {
+        let Some(state) = &mut self.state else { return Ok(()) };
+        let (from_s, seconds) = (state.time_s, end_s - state.time_s);
+        if from_s.rem_euclid(SUN_EVERY_S) == 0.0 || seconds > STEP_S {
+            // In the middle of a long step.
+            let at_s = if seconds > STEP_S { from_s + 0.5 * seconds } else { from_s };
+            state.sunlight_w_m2 = world.sunlight_w_m2(at_s)?;
+        }
+        state.coarse_s += if seconds > STEP_S { seconds } else { 0.0 };
+        state.time_s = end_s;
+        let middle_s = from_s + 0.5 * seconds;
+        let c = world.timeline.at(middle_s);
+        let f = &c.precipitation;
+        let snows = f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h > 0.0 || !world.set.regions.is_empty();
+        if !snows && !state.lies_anywhere() {
+            state.melted = Meltwater { covered: 0.0, runoff_mm_h: 0.0 };
+            self.melts.push((from_s, seconds, state.melted));
+            return Ok(());
+        }
+        let forcing = Forcing::new(&c, f, state.sunlight_w_m2, seconds);
+        let ran_off = state.country.step(&forcing, 1.0).ran_off;
+        state.melted = Meltwater {
+            covered: snow_cover(state.country.depth_m()),
+            runoff_mm_h: ran_off as f64 / super::column::UNITS * 3600.0 / seconds,
+        };
+        if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
+            if site.shade(&c, &world.set.shelters) {
+                field.clear_blocked(&site.land);
+            }
+            let forcings = forcings_over(site, world, (&c, middle_s), &forcing, (state.sunlight_w_m2, seconds));
+            // Asked as it stands at the step's end: of a solved field nothing earlier is known.
+            let wind = site.wind(world, end_s, &c, &field.columns);
+            let local: Option<Vec<_>> = wind.local.map(<[_]>::to_vec);
+            let wind = super::field::WindOver { mean: wind.mean, local: local.as_deref() };
+            let slides = end_s.rem_euclid(COARSE_STEP_S) == 0.0;
+            let country = &state.country;
+            field.step(&site.land, &Step { seconds, block: BLOCK, forcings: &forcings, wind, country, slides });
+            state.melted = Meltwater { covered: field.cover, runoff_mm_h: field.runoff_mm_h };
+        }
+        self.melts.push((from_s, seconds, state.melted));
+        self.revision += 1;
+        Ok(())
+    }
+
+    /// Takes its part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for what can be no snow of this context.
+    pub fn read(&self, saved: &mut toml::Table) -> Result<LoadedSnow> {
+        let saved: Option<SavedSnow> =
+            saved.remove(KEY).map(|v| v.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))).transpose()?;
+        let wanted = "lying_snow must be a simulated one with whole amounts of snow from 0 on";
+        let state = saved.map(|s| s.state().filter(|_| self.model == LyingSnowModel::Simulated));
+        state.map_or(Ok(LoadedSnow(None)), |s| Ok(LoadedSnow(Some(s.ok_or_else(|| parse_error(wanted))?))))
+    }
+
+    /// Shows a loaded snow, and leaves the one before in its place.
+    pub fn take_up(&mut self, world: &mut World, other: &mut LoadedSnow) {
+        std::mem::swap(&mut self.state, &mut other.0);
+        self.site = None;
+        self.coarse_until_s = f64::NEG_INFINITY;
+        self.settle_on(world.set.terrain.as_ref());
+        self.changed();
+        self.forgets = true;
+        self.melts.clear();
+        self.melts.extend(self.state.as_ref().map(|s| (s.time_s - STEP_S, STEP_S, s.melted)));
+        self.publish(world);
+    }
+}
+
+/// What acts on each block of cells: one for all without regions.
+fn forcings_over(
+    site: &Site,
+    world: &World,
+    (c, middle_s): (&Conditions, f64),
+    even: &Forcing,
+    (sunlight_w_m2, seconds): (f64, f64),
+) -> Vec<Forcing> {
+    if world.set.regions.is_empty() {
+        return vec![even.clone()];
+    }
+    let [nx, ny] = site.land.nodes;
+    let mut forcings: Vec<Forcing> = Vec::new();
+    let mut last = c.precipitation;
+    for row in (0..ny).step_by(BLOCK) {
+        for column in (0..nx).step_by(BLOCK) {
+            let middle = (row + BLOCK / 2).min(ny - 1) * nx + (column + BLOCK / 2).min(nx - 1);
+            let falling = world.over().falling_at(site.cell_position(middle), middle_s, *c).precipitation;
+            let same = forcings.last().filter(|_| falling == last).cloned();
+            forcings.push(same.unwrap_or_else(|| Forcing::new(c, &falling, sunlight_w_m2, seconds)));
+            last = falling;
+        }
+    }
+    forcings
+}
+
+impl HeldEffect for HeldSnow {
+    fn begin(&mut self, world: &World, time_s: f64) -> Result<()> {
+        self.be_there(world)?;
+        let Some(state) = &mut self.state else { return Ok(()) };
+        if self.is_fast || time_s - world.time_s > LONGEST_S {
+            self.coarse_until_s = time_s;
+        }
+        // Before that only time passes: on the grid of long steps, so that leaps that end a little apart begin alike.
+        let earliest_s = ((time_s - MOST_S) / COARSE_STEP_S).floor() * COARSE_STEP_S;
+        state.time_s = state.time_s.max(earliest_s);
+        Ok(())
+    }
+
+    fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+        self.settle_on(world.set.terrain.as_ref());
+        for steps in 0.. {
+            let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
+            if end_s > world.time_s {
+                break;
+            }
+            if steps > 0 && within.begun.elapsed() >= within.most {
+                return Ok(Status::Pending);
+            }
+            self.step(world, end_s)?;
+        }
+        Ok(Status::Ok)
+    }
+
+    fn publish(&mut self, world: &mut World) {
+        let Some(state) = &self.state else {
+            world.snow = None;
+            return;
+        };
+        let snow = world.snow.get_or_insert_default();
+        if std::mem::take(&mut self.forgets) {
+            snow.forget();
+        }
+        self.melts.drain(..).for_each(|(from_s, seconds, water)| snow.melts(from_s, seconds, water));
+        if self.published == self.revision {
+            return;
+        }
+        self.published = self.revision;
+        snow.country = query::seen(&state.country);
+        snow.cover = snow_cover(state.country.depth_m());
+        snow.threshold_m_s = laws::threshold_m_s(state.country.is_wet(), state.country.density_kg_m3());
+        snow.cells.clear();
+        if let Some(field) = &state.field {
+            snow.cells.extend(field.columns.iter().map(|c| {
+                let s = query::seen(c);
+                [s.depth_m, s.density_kg_m3, s.wetness, s.albedo].map(|v| v as f32)
+            }));
+        }
+        snow.has_cells = snow.cells.iter().any(|c| c[0] > 0.0);
+        snow.revision += 1;
+    }
+
+    fn stepped_to_s(&self) -> Option<f64> {
+        self.state.as_ref().map(|state| state.time_s)
+    }
+
+    fn created(&self, table: &mut toml::Table) {
+        if self.model == LyingSnowModel::Simulated {
+            table.insert("lying_snow_model".into(), format!("{:?}", self.model).into());
+        }
+    }
+
+    fn save(&self, table: &mut toml::Table) -> Result<()> {
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        if let Some(state) = &self.state {
+            table.insert(KEY.into(), toml::Value::try_from(SavedSnow::of(state)).map_err(written)?);
+        }
+        Ok(())
+    }
+}

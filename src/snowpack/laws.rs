@@ -1,0 +1,161 @@
+//! The laws of lying snow, in f64: how dense it lands, how it settles, melts and refreezes, when the wind moves it and how much.
+//!
+//! Each is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) take whole units of mass from them, so no
+//! mass is lost to rounding.
+
+use crate::weather::{Conditions, lifting::drift_friction_velocity_m_s, saturation_pressure_hpa};
+
+/// Density of ice, kg/m^3.
+pub const ICE_KG_M3: f64 = 917.0;
+/// Density of ice pellets and hail as they lie, kg/m^3: spheres of ice, packed loosely (0.6).
+pub const PELLETS_KG_M3: f64 = 550.0;
+/// Albedo of new snow, of visible light.
+pub const NEW_ALBEDO: f64 = 0.88;
+/// Least albedo of old snow: Wiscombe and Warren (1980) find 0.6 to 0.7 for old, wet and dirty snow.
+pub const OLD_ALBEDO: f64 = 0.6;
+/// New snow that restores most of the albedo, kg/m^2 (Douville, Royer and Mahfouf 1995; Essery 2015).
+pub const RENEWING_KG_M2: f64 = 10.0;
+/// Times in which the albedo falls by 1/e in frost and in thaw, s (the same).
+const FROST_S: f64 = 3.6e6;
+const THAW_S: f64 = 3.6e5;
+/// Share of the ice's mass that snow holds as liquid water (Bergstroem 1976).
+pub const HELD_SHARE: f64 = 0.1;
+/// Snow with more liquid than this share of its ice is wet: its grains stick.
+pub const WET_SHARE: f64 = 0.005;
+/// Wind at 10 m above which dry snow moves, m/s (Li and Pomeroy 1997).
+pub const DRY_THRESHOLD_M_S: f64 = 7.7;
+/// The same of wet snow.
+pub const WET_THRESHOLD_M_S: f64 = 9.9;
+/// Slope up to which loose snow lies.
+pub const REPOSE_DEG: f64 = 38.0;
+/// Latent heat of melting over the specific heat of water, C.
+const MELTING_C: f64 = 3.34e5 / 4186.0;
+
+/// Density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in Vionnet et al. 2012, eq. 1).
+pub fn new_density_kg_m3(temperature_c: f64, wind_m_s: f64) -> f64 {
+    (109.0 + 6.0 * temperature_c + 26.0 * wind_m_s.max(0.0).sqrt()).clamp(50.0, 400.0)
+}
+
+/// How fast snow settles by the change of its grains, 1/s (Anderson 1976 in Jordan 1991, eq. 29): slower above 100 kg/m^3, twice as fast
+/// where it is wet.
+pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> f64 {
+    let cold = (-temperature_c).max(0.0);
+    let dense = (density_kg_m3 - 100.0).max(0.0);
+    2.777e-6 * if wet { 2.0 } else { 1.0 } * libm::exp(-0.04 * cold - 0.046 * dense)
+}
+
+/// Viscosity of snow, kg s/m^2: a load in kg/m^2 over it is how fast the snow below settles, 1/s (Anderson 1976).
+pub fn viscosity(temperature_c: f64, density_kg_m3: f64) -> f64 {
+    9e5 * libm::exp(0.08 * (-temperature_c).max(0.0) + 0.023 * density_kg_m3)
+}
+
+/// Share of the albedo's way to that of old snow that is left after `seconds`.
+pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
+    libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
+}
+
+/// What melts, mm/h: without the sun, and per W/m^2 of sunlight that the snow takes up. By temperature and sun with the factors of
+/// Pellicciotti et al. (2005), above 1 C; rain adds its own heat, and with it the moist wind that the US Army Corps of Engineers (1956)
+/// counts in the open, 0.24 mm a day for each degree and m/s.
+pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
+    let t = c.air.temperature_c;
+    let rain = if rain_mm_h > 0.0 && t > 0.0 {
+        rain_mm_h * t / MELTING_C + 0.24 / 24.0 * c.wind.speed_m_s() * t * (rain_mm_h / 0.5).min(1.0)
+    } else {
+        0.0
+    };
+    if t > 1.0 { (0.05 * t + rain, 0.0094) } else { (rain, 0.0) }
+}
+
+/// What of the liquid refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm a day for each degree of frost).
+pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
+    0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
+}
+
+/// What snow loses to dry air, mm/h, by the bulk formula over a roughness of 1 mm: rho (k / ln(2 / z0))^2 U (qs - q), nothing where the
+/// air is moister than its surface.
+pub fn sublimation_mm_h(c: &Conditions) -> f64 {
+    let t = c.air.temperature_c.min(0.0);
+    let pressure = c.air.station_pressure_hpa;
+    let over_ice = 6.112 * libm::exp(22.46 * t / (272.62 + t));
+    let vapour = c.air.relative_humidity * saturation_pressure_hpa(c.air.temperature_c);
+    let exchange = libm::pow(0.4 / libm::log(2.0 / 1e-3), 2.0);
+    let air = pressure * 100.0 / (287.05 * (c.air.temperature_c + 273.15));
+    let dry = 0.622 * (over_ice - vapour) / pressure;
+    (3600.0 * air * exchange * c.wind.speed_at_height_m_s(2.0) * dry).max(0.0)
+}
+
+/// Wind at 10 m above which snow moves, m/s: denser snow is bound harder, above 300 kg/m^3 by the growth of Liston et al. (2007, eq. 20).
+pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
+    let loose = if wet { WET_THRESHOLD_M_S } else { DRY_THRESHOLD_M_S };
+    loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
+}
+
+/// What hops along the ground, kg/(m s): Pomeroy and Gray (1990), 0.68 rho / (u* g) u*t (u*^2 - u*t^2), for winds at 10 m.
+pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
+    if wind_m_s <= threshold_m_s {
+        return 0.0;
+    }
+    let (u, t) = (drift_friction_velocity_m_s(wind_m_s), drift_friction_velocity_m_s(threshold_m_s));
+    0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weather::{Weather, Wind, derive};
+
+    fn weather(temperature_c: f64, wind_m_s: f64, humidity: f64) -> Conditions {
+        let w = Weather {
+            temperature_c,
+            relative_humidity: humidity,
+            wind: Wind::of(wind_m_s, 270.0),
+            ..Weather::default()
+        };
+        derive(&w).unwrap()
+    }
+
+    #[test]
+    fn new_snow_lies_lighter_in_the_cold_and_denser_in_wind() {
+        assert_eq!(new_density_kg_m3(0.0, 0.0), 109.0);
+        assert_eq!(new_density_kg_m3(-5.0, 4.0), 131.0);
+        assert_eq!(new_density_kg_m3(-20.0, 0.0), 50.0);
+    }
+
+    #[test]
+    fn settling_has_the_published_rates() {
+        // 1 % an hour of light snow at the melting point, a quarter of it at 130 kg/m^3.
+        assert!((metamorphism_per_s(0.0, 80.0, false) * 3600.0 - 0.01).abs() < 1e-5);
+        let slower = metamorphism_per_s(0.0, 130.0, false) / metamorphism_per_s(0.0, 100.0, false);
+        assert!((slower - 0.2516).abs() < 1e-3, "{slower}");
+        assert!((viscosity(-10.0, 200.0) / 9e5 - (0.8f64 + 4.6).exp()).abs() < 1e-9 * 221.0);
+    }
+
+    #[test]
+    fn melt_follows_temperature_sun_and_rain() {
+        let (warm, sun) = melt_mm_h(&weather(5.0, 3.0, 0.6), 0.0);
+        assert!((warm - 0.25).abs() < 1e-12 && sun == 0.0094);
+        assert_eq!(melt_mm_h(&weather(0.5, 3.0, 0.6), 0.0), (0.0, 0.0));
+        // 10 mm of rain at 5 C bring the heat to melt 0.63 mm.
+        let rained = melt_mm_h(&weather(5.0, 0.0, 0.9), 10.0).0 - 0.25;
+        assert!((rained - 0.6266).abs() < 1e-3, "{rained}");
+        assert_eq!((refreezing_mm_h(2.0), sublimation_mm_h(&weather(-5.0, 5.0, 1.0)).min(1e-9)), (0.0, 0.0));
+        let dry = sublimation_mm_h(&weather(-5.0, 6.0, 0.6));
+        assert!((0.01..0.1).contains(&dry), "{dry} mm/h");
+    }
+
+    #[test]
+    fn drift_begins_at_the_threshold_and_grows_as_published() {
+        assert_eq!((threshold_m_s(false, 200.0), threshold_m_s(true, 200.0)), (7.7, 9.9));
+        assert!(threshold_m_s(false, 450.0) > 40.0, "pressed snow stays");
+        assert_eq!(saltation_kg_m_s(7.7, 7.7), 0.0);
+        // Friction velocities of 0.27 to 0.69 m/s at the thresholds of the literature's range.
+        assert!(
+            (0.27..0.69).contains(&drift_friction_velocity_m_s(7.7))
+                && (0.27..0.69).contains(&drift_friction_velocity_m_s(9.9))
+        );
+        let q = saltation_kg_m_s(15.0, 7.7);
+        assert!((0.01..0.03).contains(&q), "{q} kg/(m s)");
+        assert!(saltation_kg_m_s(7.8, 7.7) < 0.02 * q);
+    }
+}

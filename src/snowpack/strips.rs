@@ -1,0 +1,133 @@
+//! What a host does to lying snow: it ploughs and digs it away, and its wheels press tracks. Both are strips along a path.
+
+use std::ops::RangeInclusive;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    column::{Column, UNITS},
+    field::{Field, Land},
+    held::{HeldSnow, LyingSnowModel},
+    site::Site,
+};
+use crate::{
+    error::{Error, Result, Status, check_range},
+    world::World,
+};
+
+/// Most points of a strip.
+pub const MAX_STRIP_POINTS: usize = 1024;
+/// Density to which wheels press snow, kg/m^3: packed roads have 450 to 600.
+const PRESSED_KG_M3: f64 = 500.0;
+/// Samples of a cell a side, by which its covered share is counted.
+const SAMPLES: usize = 4;
+
+/// A strip of ground: a path with a width. Two points and a width make a rectangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SnowStrip {
+    /// Its middle line in the host's world, m; 2 to 1024 points. Heights do not matter.
+    pub points: Vec<DVec3>,
+    /// From side to side, m, \[0.01, 1000\].
+    pub width_m: f64,
+}
+
+impl SnowStrip {
+    /// Refuses what is no strip, by name.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        check_range("strip.width_m", self.width_m, 0.01, 1000.0, "m")?;
+        if !(2..=MAX_STRIP_POINTS).contains(&self.points.len()) {
+            return Err(Error::range("strip.points.len", "in [2, 1024]", self.points.len()));
+        }
+        match self.points.iter().position(|p| !(p.is_finite() && p.length() <= 1e12)) {
+            None => Ok(()),
+            Some(i) => Err(Error::range(&format!("strip.points[{i}]"), "finite and within 1e12 m", self.points[i])),
+        }
+    }
+}
+
+/// Whether a place lies on a path of this half width: its ends are cut straight, its bends are round.
+fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
+    let along = path.windows(2).any(|ends| {
+        let (way, from) = (ends[1] - ends[0], p - ends[0]);
+        let t = way.dot(from) / way.length_squared().max(1e-12);
+        (0.0..=1.0).contains(&t) && (from - way * t).length() <= half_m
+    });
+    along || path[1..path.len() - 1].iter().any(|bend| p.distance(*bend) <= half_m)
+}
+
+/// Cells between two places along an axis, those at half the width from them too.
+fn span(low: f64, high: f64, land: &Land, axis: usize) -> Option<RangeInclusive<usize>> {
+    let last = (land.nodes[axis] - 1) as f64;
+    let (low, high) = ((low / land.cell_m - 0.5).floor().max(0.0), (high / land.cell_m + 0.5).ceil().min(last));
+    (low <= high).then_some(low as usize..=high as usize)
+}
+
+/// Does `act` to the columns under a strip, with the share of each that it covers.
+fn each_under(site: &Site, field: &mut Field, strip: &SnowStrip, mut act: impl FnMut(&mut Column, f64)) {
+    let (land, half_m) = (&site.land, 0.5 * strip.width_m);
+    let path: Vec<DVec2> = strip.points.iter().map(|p| site.local(*p).truncate()).collect();
+    let low = path.iter().fold(DVec2::INFINITY, |low, p| low.min(*p)) - half_m;
+    let high = path.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p)) + half_m;
+    let (Some(columns), Some(rows)) = (span(low.x, high.x, land, 0), span(low.y, high.y, land, 1)) else { return };
+    let offset = |i: usize| (i as f64 + 0.5) / SAMPLES as f64 - 0.5;
+    for row in rows {
+        for column in columns.clone() {
+            let middle = DVec2::new(column as f64, row as f64);
+            let samples = (0..SAMPLES * SAMPLES)
+                .map(|i| (middle + DVec2::new(offset(i % SAMPLES), offset(i / SAMPLES))) * land.cell_m)
+                .filter(|p| lies_on(&path, half_m, *p));
+            let covered = samples.count() as f64 / (SAMPLES * SAMPLES) as f64;
+            if covered > 0.0 {
+                act(&mut field.columns[row * land.nodes[0] + column], covered);
+            }
+        }
+    }
+}
+
+impl HeldSnow {
+    /// The terrain's snow, to be changed now.
+    fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut Field)> {
+        strip.validate()?;
+        let wanted = "lying snow is changed on the host's terrain, where WK_LYING_SNOW_SIMULATED leads it";
+        if self.model == LyingSnowModel::Reported || world.set.terrain.is_none() {
+            return Err(Error::new(Status::WrongOrder, wanted));
+        }
+        self.be_there(world)?;
+        self.field_mut().ok_or_else(|| Error::new(Status::WrongOrder, wanted))
+    }
+
+    /// Takes snow away; see [`Context::take_snow`](crate::context::Context::take_snow).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn take(&mut self, world: &World, strip: &SnowStrip, left_m: f64) -> Result<f64> {
+        check_range("left_m", left_m, 0.0, 100.0, "m")?;
+        let (site, field) = self.field_for_change(world, strip)?;
+        let area = site.land.cell_m * site.land.cell_m;
+        let mut taken = 0;
+        each_under(site, field, strip, |column, covered| {
+            let depth = column.depth;
+            let over = ((column.depth_m() - left_m).max(0.0) * UNITS * covered) as i64;
+            if over > 0 {
+                taken += column.take(over.min(depth), depth).mass();
+            }
+        });
+        field.books.taken += taken;
+        self.changed();
+        Ok(taken as f64 / UNITS * area)
+    }
+
+    /// Presses tracks; see [`Context::press_snow`](crate::context::Context::press_snow).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn press(&mut self, world: &World, strip: &SnowStrip) -> Result<()> {
+        let (site, field) = self.field_for_change(world, strip)?;
+        each_under(site, field, strip, |column, covered| column.press(PRESSED_KG_M3, covered));
+        self.changed();
+        Ok(())
+    }
+}

@@ -1,0 +1,94 @@
+//! Lying snow as what is drawn on it, flows from under it or is lit by it reads it, whoever led it here.
+
+use std::collections::VecDeque;
+
+/// Meltwater is handed on by slots of this length, s.
+pub(crate) const MELT_SLOT_S: f64 = 60.0;
+/// Slots that are kept: a day and a little more.
+const SLOTS: usize = 1500;
+
+/// Snow at a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SnowHere {
+    pub depth_m: f64,
+    /// kg/m^3; 0 without snow.
+    pub density_kg_m3: f64,
+    /// Held water over what the snow can hold.
+    pub wetness: f64,
+    /// Of visible light; 0 without snow.
+    pub albedo: f64,
+}
+
+/// What snow does to the water below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Meltwater {
+    /// Share of the ground whose rain the snow takes.
+    pub covered: f64,
+    /// What runs off, mm/h over all of the ground.
+    pub runoff_mm_h: f64,
+}
+
+/// The lying snow of a world.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LyingSnow {
+    /// On level, open ground.
+    pub country: SnowHere,
+    /// Share of that ground that it covers.
+    pub cover: f64,
+    /// Wind at 10 m above which it moves, m/s.
+    pub threshold_m_s: f64,
+    /// Of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty without one.
+    pub cells: Vec<[f32; 4]>,
+    /// Incremented whenever `cells` change.
+    pub revision: u64,
+    /// Whether any of them has snow.
+    pub has_cells: bool,
+    melt: VecDeque<(i64, Meltwater)>,
+}
+
+impl LyingSnow {
+    /// Notes what comes from under the snow from `from_s` on for `seconds`.
+    pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
+        let first = (from_s / MELT_SLOT_S).floor() as i64;
+        let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;
+        for slot in first..last {
+            if self.melt.back().is_some_and(|(known, _)| *known >= slot) {
+                continue;
+            }
+            if self.melt.len() == SLOTS {
+                self.melt.pop_front();
+            }
+            self.melt.push_back((slot, water));
+        }
+    }
+
+    /// What came from under the snow in the slot before the one in which `time_s` lies: the last that is known at that time, however
+    /// far the snow has been led since.
+    pub fn meltwater(&self, time_s: f64) -> Option<Meltwater> {
+        let wanted = (time_s / MELT_SLOT_S).floor() as i64 - 1;
+        self.melt.iter().rev().find(|(slot, _)| *slot <= wanted).map(|(_, water)| *water)
+    }
+
+    /// Forgets the water of the past.
+    pub fn forget(&mut self) {
+        self.melt.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meltwater_comes_a_slot_later() {
+        let mut snow = LyingSnow::default();
+        let water = |runoff_mm_h| Meltwater { covered: 1.0, runoff_mm_h };
+        snow.melts(10.0, 50.0, water(1.0));
+        snow.melts(60.0, 540.0, water(2.0));
+        assert_eq!(snow.meltwater(50.0), None);
+        assert_eq!(snow.meltwater(60.0), Some(water(1.0)));
+        assert_eq!((snow.meltwater(120.0), snow.meltwater(1e5)), (Some(water(2.0)), Some(water(2.0))));
+        (0..3000).for_each(|i| snow.melts(600.0 + 60.0 * f64::from(i), 60.0, water(3.0)));
+        assert_eq!(snow.meltwater(500.0), None, "a day is kept");
+    }
+}
