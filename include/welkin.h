@@ -289,6 +289,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUDS 71
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
+/** wk_cloud_shadows */
+#define WK_STRUCT_TYPE_CLOUD_SHADOWS 85
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -4393,7 +4395,8 @@ typedef uint32_t wk_rain_model;
 
 /**
  * Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
- * or the time does not allow it (WK_PART_RAIN).
+ * or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+ * wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
@@ -4405,10 +4408,7 @@ typedef uint32_t wk_rain_model;
 #define WK_RAIN_MODEL_CONES 2
 /** Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
-/**
- * Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
- * (wk_caps.tier 1).
- */
+/** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
 /** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
@@ -4763,9 +4763,8 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on rain of
- * WK_RAIN_MODEL_INTEGRATED, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's
- * wind.
+ * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and flakes near a camera, in
+ * place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -4844,7 +4843,7 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
  * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
  * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
- * lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
+ * lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
  * ====================================================================================================
  */
 
@@ -5346,6 +5345,99 @@ wk_status wk_view_set_clouds(wk_view *view,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Shadows of clouds as a texture
+ *
+ * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one native
+ * texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
+ * ====================================================================================================
+ */
+
+/**
+ * The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to the
+ * air that carries the clouds, which repeats every 20 km.
+ */
+typedef struct wk_cloud_shadows {
+    /** sizeof(wk_cloud_shadows) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CLOUD_SHADOWS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits, an
+     * OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter that
+     * repeats.
+     */
+    uint64_t texture;
+    /** Texels of both sides. */
+    uint32_t width;
+    /** Texels of both sides. */
+    uint32_t height;
+    /**
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. Single
+     * precision is enough once the fourth column includes the camera's position.
+     */
+    double uv_from_world[2][4];
+    /** Likewise: the height of a place over the plane, m. */
+    double height_from_world[4];
+    /** u and v of the place in the plane that the camera of the last frame stood over. */
+    double camera_uv[2];
+    /** Share of the direct light on the mean over places: wk_context_get_light has that light. */
+    double mean_share;
+    /**
+     * How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light near the
+     * horizon. The texture means nothing then.
+     */
+    double told;
+    /** Height over the plane of the lowest clouds, m: from there on shadows are not told apart. */
+    double top_m;
+} wk_cloud_shadows;
+
+/** Every field of `wk_cloud_shadows` at its default. */
+#define WK_CLOUD_SHADOWS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cloud_shadows), \
+    /* struct_type */ WK_STRUCT_TYPE_CLOUD_SHADOWS, \
+    /* next */ NULL, \
+    /* texture */ UINT64_C(0), \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* uv_from_world */ { { 0.0, 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 0.0 } }, \
+    /* height_from_world */ { 0.0, 0.0, 0.0, 0.0 }, \
+    /* camera_uv */ { 0.0, 0.0 }, \
+    /* mean_share */ 0.0, \
+    /* told */ 0.0, \
+    /* top_m */ 0.0 \
+}
+
+/**
+ * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame brings it
+ * up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the view and stays
+ * the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls. Call this
+ * after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or record WK_STAGE_PREPARE
+ * first.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_view_get_cloud_shadows(wk_view *view,
+                                    wk_cloud_shadows *out_shadows);
+
+/**
+ * Gets the text of the sampling function: NUL-terminated UTF-8 that lives as long as the process.
+ * Thread: any.
+ */
+WK_API wk_status wk_get_cloud_shadow_snippet(wk_shading_language language, const char **out_text);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CLOUD_SHADOWS_INIT`. `struct_size` is `sizeof(wk_cloud_shadows)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
+                                uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -10,6 +10,7 @@
 extern crate self as welkin;
 
 pub mod almanac;
+pub mod bow;
 pub mod candidates;
 pub mod capi;
 pub mod chance;

@@ -71,6 +71,8 @@ pub mod stars;
 
 pub mod clouds;
 
+pub mod cloud_shadow;
+
 pub mod lightning;
 
 pub mod windscreen;

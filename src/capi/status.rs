@@ -169,6 +169,8 @@ pub const WK_STRUCT_TYPE_SNOW: wk_struct_type = 70;
 pub const WK_STRUCT_TYPE_CLOUDS: wk_struct_type = 71;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
+/// wk_cloud_shadows
+pub const WK_STRUCT_TYPE_CLOUD_SHADOWS: wk_struct_type = 85;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

@@ -5,10 +5,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
+    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
+    radiance::*, rain::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*,
+    veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -195,6 +195,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
         case("wk_view_get_environment", "view", false, |h| unsafe { wk_view_get_environment(h.cast(), null_mut()) }),
+        case("wk_view_get_cloud_shadows", "view", false, |h| unsafe {
+            wk_view_get_cloud_shadows(h.cast(), null_mut())
+        }),
         case("wk_view_get_frame_textures", "view", false, |h| unsafe {
             wk_view_get_frame_textures(h.cast(), null_mut())
         }),
@@ -291,6 +294,7 @@ const WITHOUT: &[&str] = &[
     "wk_utc_from_calendar",
     "wk_get_veil_snippet",
     "wk_get_ground_snippet",
+    "wk_get_cloud_shadow_snippet",
     "wk_set_log_callback",
     "wk_device_create",
     "wk_device_create_for_window",

@@ -4,10 +4,10 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*,
-    vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
+    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
+    radiance::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -743,6 +743,10 @@ pub const CALLS: &[(&str, Call)] = &[
         let mut text = null();
         unsafe { wk_get_ground_snippet(d.whole() as u32, &mut text) }.into()
     }),
+    ("wk_get_cloud_shadow_snippet", |d, _| {
+        let mut text = null();
+        unsafe { wk_get_cloud_shadow_snippet(d.whole() as u32, &mut text) }.into()
+    }),
     ("wk_surface_create", |d, w| {
         let (device, mut out) = (handle(d, &w.devices), null_mut());
         let mut window = Struct::random(d, "wk_window", 4);
@@ -778,6 +782,10 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_view_get_environment", |d, w| {
         let view = handle(d, &w.views);
         get("wk_environment", |p| unsafe { wk_view_get_environment(view, p.cast()) })
+    }),
+    ("wk_view_get_cloud_shadows", |d, w| {
+        let view = handle(d, &w.views);
+        get("wk_cloud_shadows", |p| unsafe { wk_view_get_cloud_shadows(view, p.cast()) })
     }),
     ("wk_view_get_frame_textures", |d, w| {
         let view = handle(d, &w.views);
