@@ -4389,7 +4389,8 @@ typedef uint32_t wk_rain_model;
 
 /**
  * Welkin chooses: single drops to 1.9 m and cones to 14.8 m; with a wk_budget less, where the picture does not need it
- * or the time does not allow it (WK_PART_RAIN).
+ * or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
+ * wk_context_set_wind_field) the drops follow it, on devices with compute shaders.
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
@@ -4401,10 +4402,7 @@ typedef uint32_t wk_rain_model;
 #define WK_RAIN_MODEL_CONES 2
 /** Single drops to 4 m, each where seed and time put it; cones beyond only where lamps light the rain. */
 #define WK_RAIN_MODEL_DROPS 3
-/**
- * Drops that follow a wind varying in space, step by step (wk_context_set_wind_grid). Needs compute shaders
- * (wk_caps.tier 1).
- */
+/** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
 
 /** How a view draws what falls: rain, hail and splashes. What falls does not depend on it. */
@@ -4759,9 +4757,8 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on rain of
- * WK_RAIN_MODEL_INTEGRATED, in place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's
- * wind.
+ * They act in wk_context_get_wind_at, in what lands on surfaces and windscreens, and on drops and flakes near a camera, in
+ * place of a wind field's (wk_context_set_wind_field). Everything else follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -4840,7 +4837,7 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
  * wk_context_set_ground_grid and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
  * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
- * lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
+ * lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
  * ====================================================================================================
  */
 
