@@ -307,7 +307,7 @@ impl Effects {
         self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
-        self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
+        self.ground.take_terrain(device, (&held.ground, world), now, wet && stages.has(Stages::SURFACE));
         self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
         self.snow.set_counting(frame.diagnostic == Diagnostic::Overdraw);

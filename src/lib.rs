@@ -39,6 +39,7 @@ pub mod snow;
 mod stage;
 pub mod stars;
 mod surroundings;
+pub mod terrain;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

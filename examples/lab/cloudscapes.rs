@@ -110,7 +110,14 @@ impl Host {
     /// # Errors
     /// GPU faults.
     pub fn truth(&mut self) -> Result<Picture> {
-        let settings = CloudSettings { fineness: TRUE_FINENESS, square_side: 1 };
+        self.whole(CloudSettings { fineness: TRUE_FINENESS, square_side: 1 })
+    }
+
+    /// The volume, every pixel marched in one frame.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn whole(&mut self, settings: CloudSettings) -> Result<Picture> {
         self.set(&CloudMethod { model: CloudModel::Volume, settings })?;
         self.frame(FrameFlags::NO_HISTORY)?;
         self.texels()

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, growth, regression, report, stability};
+use crate::{chart, clouds, compare, genera, growth, regression, report, stability};
 
 const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature]    cost against error, with plots
        lab growth                         how cost and bytes grow
@@ -14,6 +14,7 @@ const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature
        lab report                         everything on one HTML page
        lab scenes DIR [--scene PART]      a PNG of every scene; of those whose names contain PART
        lab scenes OLD NEW                 what differs between two such folders
+       lab genera DIR [--scene PART]      a PNG of every kind of cloud, to be looked at
        lab thresholds                     of the clouds' map, as src/clouds/thresholds.in has them
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
 
@@ -82,6 +83,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["report"] => report::run(&options),
         ["scenes", dir] => regression::draw(dir.as_ref(), options.scene.as_deref()),
         ["scenes", ..] => Err(usage("scenes needs one folder to draw into, or two to compare")),
+        ["genera", dir] => genera::draw(dir.as_ref(), options.scene.as_deref()),
         ["thresholds"] => clouds::print_thresholds(),
         [] => Err(usage("no command")),
         other => Err(usage(&format!("unknown command `{}`", other.join(" ")))),

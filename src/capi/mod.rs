@@ -83,6 +83,8 @@ pub mod ground_grid;
 
 pub mod ground_texture;
 
+pub mod terrain;
+
 mod boundary;
 mod device_cell;
 mod handles;

@@ -143,6 +143,10 @@ pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 /// wk_ground_texture
 pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
+/// wk_terrain
+pub const WK_STRUCT_TYPE_TERRAIN: wk_struct_type = 52;
+/// wk_terrain_cells
+pub const WK_STRUCT_TYPE_TERRAIN_CELLS: wk_struct_type = 53;
 /// wk_frame_light
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish

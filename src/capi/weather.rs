@@ -66,7 +66,7 @@ pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
 pub const WK_CLOUD_LAYER_HAS_WATER: wk_cloud_layer_has_flags = 2;
 /// droplet_radius_um
 pub const WK_CLOUD_LAYER_HAS_DROPLET_RADIUS: wk_cloud_layer_has_flags = 4;
-/// wind_m_s and wind_from_deg. Not in this version: all layers move with the weather's wind.
+/// wind_m_s and wind_from_deg
 pub const WK_CLOUD_LAYER_HAS_WIND: wk_cloud_layer_has_flags = 8;
 
 /// How precipitation falls.
@@ -102,10 +102,15 @@ pub struct wk_cloud_layer {
     pub water_g_m3: f64,
     /// Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind.
     pub droplet_radius_um: f64,
-    /// Optional, not in this version: speed of the layer's own wind, m/s. Default 0.
+    /// Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
+    /// middle of the layer, which grows and veers with height (docs/clouds.md). A change of it moves no cloud at once.
     pub wind_m_s: f64,
-    /// Optional, not in this version: where that wind comes from, degrees clockwise from true north. Default 0.
+    /// Optional, with the field before: where that wind comes from, degrees clockwise from true north. Range [0, 360].
     pub wind_from_deg: f64,
+    /// Distance from cloud to cloud, m. Range [50, 200000]; 0, the default, by kind and thickness.
+    pub spacing_m: f64,
+    /// Time in which its clouds come and go, s. Range [60, 1e6]; 0, the default, is 1200.
+    pub life_s: f64,
 }
 
 impl wk_cloud_layer {
@@ -122,6 +127,8 @@ impl wk_cloud_layer {
         droplet_radius_um: 0.0,
         wind_m_s: 0.0,
         wind_from_deg: 0.0,
+        spacing_m: 0.0,
+        life_s: 0.0,
     };
 }
 

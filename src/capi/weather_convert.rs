@@ -9,10 +9,10 @@ use super::{
     weather::*,
 };
 use crate::{
-    error::{Error, Result, Status},
+    error::{Error, Result},
     weather::{
-        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, Lofted, LoftedKind, MAX_CLOUD_LAYERS, Overrides,
-        Precipitation, PrecipitationKind, Sea, Surface, SurfaceState, Swell, Weather, Wind,
+        Aerosol, AerosolKind, CloudKind, CloudLayer, Fog, FogKind, LayerWind, Lofted, LoftedKind, MAX_CLOUD_LAYERS,
+        Overrides, Precipitation, PrecipitationKind, Sea, Surface, SurfaceState, Swell, Weather, Wind,
     },
 };
 
@@ -30,12 +30,8 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     unsafe { layout::check_chain(&param, c.next, &[WK_STRUCT_TYPE_WEATHER_OVERRIDES])? };
     let mut weather = fields(&c).map_err(|e| flat_name(param, e))?;
     let mut take = |i: usize, layer: wk_cloud_layer| {
-        if layer.has & WK_CLOUD_LAYER_HAS_WIND != 0 {
-            let field = format!("{param}.clouds[{i}].has");
-            let what = "holds WK_CLOUD_LAYER_HAS_WIND: all layers move with the weather's wind in this version, leave the bit out";
-            return Err(Error::about(Status::Unsupported, field, what));
-        }
-        weather.clouds.push(cloud(&layer)?);
+        let layer = cloud(&layer).map_err(|e| e.renamed("clouds[].kind", &format!("{param}.clouds[{i}].kind")))?;
+        weather.clouds.push(layer);
         Ok(())
     };
     let of = |field: &str| format!("{param}.{field}");
@@ -94,7 +90,9 @@ fn flat_name(param: &str, e: Error) -> Error {
     let flat = |field: &str| match field {
         "wind.variable_deg.0" => "wind_variable_from_deg".into(),
         "wind.variable_deg.1" => "wind_variable_to_deg".into(),
-        layer if layer.starts_with("clouds") => layer.to_owned(),
+        layer if layer.starts_with("clouds") => {
+            layer.replace(".wind.speed_m_s", ".wind_m_s").replace(".wind.from_deg", ".wind_from_deg")
+        }
         other => match other.strip_prefix("sea.swell.") {
             Some(swell) => format!("swell_{swell}"),
             None => other.replace('.', "_"),
@@ -182,6 +180,10 @@ fn cloud(c: &wk_cloud_layer) -> Result<CloudLayer> {
         kind: CloudKind::from_u32(c.kind)?,
         water_g_m3: some(WK_CLOUD_LAYER_HAS_WATER, c.water_g_m3),
         droplet_radius_um: some(WK_CLOUD_LAYER_HAS_DROPLET_RADIUS, c.droplet_radius_um),
+        wind: some(WK_CLOUD_LAYER_HAS_WIND, c.wind_m_s)
+            .map(|speed_m_s| LayerWind { speed_m_s, from_deg: c.wind_from_deg }),
+        spacing_m: (c.spacing_m != 0.0).then_some(c.spacing_m),
+        life_s: (c.life_s != 0.0).then_some(c.life_s),
     })
 }
 
@@ -324,6 +326,10 @@ fn cloud_to_c(layer: &CloudLayer) -> wk_cloud_layer {
         thickness_m: has.put(WK_CLOUD_LAYER_HAS_THICKNESS, layer.thickness_m),
         water_g_m3: has.put(WK_CLOUD_LAYER_HAS_WATER, layer.water_g_m3),
         droplet_radius_um: has.put(WK_CLOUD_LAYER_HAS_DROPLET_RADIUS, layer.droplet_radius_um),
+        wind_m_s: has.put(WK_CLOUD_LAYER_HAS_WIND, layer.wind.map(|w| w.speed_m_s)),
+        wind_from_deg: has.put(WK_CLOUD_LAYER_HAS_WIND, layer.wind.map(|w| w.from_deg)),
+        spacing_m: layer.spacing_m.unwrap_or(0.0),
+        life_s: layer.life_s.unwrap_or(0.0),
         ..wk_cloud_layer::INIT
     };
     c.has = has.0;

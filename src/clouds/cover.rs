@@ -101,9 +101,6 @@ fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
 /// Threshold of the map under which a layer covers what it is said to. Of a layer between kinds, between theirs by how near it is
 /// to each.
 pub fn threshold(slab: &CloudSlab) -> f64 {
-    if slab.cover >= 1.0 {
-        return CLOSED;
-    }
     let (mut sum, mut weights) = (0.0, 0.0);
     for ((_, row), traits) in THRESHOLDS.iter().zip(traits()) {
         let off: f64 = traits.iter().zip(traits_of(slab)).map(|(a, b)| (a - b) * (a - b)).sum();

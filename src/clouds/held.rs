@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     CloudModel,
@@ -16,6 +16,7 @@ use super::{
 use crate::{
     error::Result,
     moment::Scene,
+    wind::LayerDrifts,
     world::{HeldEffect, parse_error},
 };
 
@@ -86,18 +87,18 @@ impl HeldClouds {
     }
 
     /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: by the clouds that a
-    /// volume draws there, or with a deck on the mean over places. The wind at 10 m has carried the air `drift_m` by `time_s`.
+    /// volume draws there, or with a deck on the mean over places. The wind has carried the layers so far.
     ///
     /// # Errors
     /// As [`Solid::new`].
-    pub fn sun_share(&self, seed: u64, scene: &Scene, (drift_m, time_s): (DVec2, f64)) -> Result<f64> {
+    pub fn sun_share(&self, seed: u64, scene: &Scene, drifts: &LayerDrifts) -> Result<f64> {
         let c = &scene.conditions;
         if self.model == CloudModel::Deck {
             return Ok(scene.brighter().direct_share);
         }
         let grown = self.grown(seed)?;
-        let slabs = c.cloud_slabs().filter(|s| s.cover > 0.0);
-        Ok(sun_share(slabs.map(|slab| Shape::new(c, slab, drift_m, time_s)), &grown.map, &grown.solid, scene))
+        let slots = c.clouds.iter().zip(&drifts.slots).filter(|(slab, _)| slab.cover > 0.0);
+        Ok(sun_share(slots.map(|(slab, drift)| Shape::new(c, slab, drift)), &grown.map, &grown.solid, scene))
     }
 
     /// What clouds are cut out of.
@@ -109,19 +110,12 @@ impl HeldClouds {
         Ok(self.grown.get_or_init(|| grown))
     }
 
-    /// The clouds about a scene's place, where the model draws them as a volume. The wind at 10 m has carried the air `drift_m` by
-    /// `time_s`.
+    /// The clouds about a scene's place, where the model draws them as a volume. The wind has carried the layers so far.
     ///
     /// # Errors
     /// As [`Solid::new`].
-    pub fn rays(
-        &self,
-        seed: u64,
-        scene: &Scene,
-        (drift_m, time_s): (DVec2, f64),
-        radius_m: f64,
-    ) -> Result<Option<CloudRays<'_>>> {
-        let Some(overhead) = Overhead::new(self.model, scene, (drift_m, time_s)) else { return Ok(None) };
+    pub fn rays(&self, seed: u64, scene: &Scene, drifts: &LayerDrifts, radius_m: f64) -> Result<Option<CloudRays<'_>>> {
+        let Some(overhead) = Overhead::new(self.model, scene, drifts) else { return Ok(None) };
         Ok(Some(CloudRays::new(&overhead, self.grown(seed)?, scene, radius_m.min(1e9))))
     }
 }

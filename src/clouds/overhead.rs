@@ -12,6 +12,7 @@ use super::{
 use crate::{
     moment::Scene,
     weather::{CloudSlab, smoothstep},
+    wind::LayerDrifts,
     world::light_above_clouds,
 };
 
@@ -29,6 +30,8 @@ const DISC_PALES: [f64; 2] = [12.0, 14.0];
 pub(super) struct Layer {
     pub shape: Shape,
     pub slab: CloudSlab,
+    /// Its slot among those of the conditions.
+    pub slot: usize,
     pub share: f64,
 }
 
@@ -44,6 +47,8 @@ pub(super) struct Overhead {
     pub place_m: DVec2,
     /// Diameter of the droplets, um, one of those for which tables are made.
     pub liquid_um: f64,
+    /// How far the wind has carried the layers.
+    pub drifts: LayerDrifts,
 }
 
 /// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from further below, is a deck
@@ -71,10 +76,11 @@ fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
 }
 
 impl Overhead {
-    /// What there is at a scene's place for a model, where the wind at 10 m has carried the air `drift_m` by `time_s`; `None` where the model
-    /// is no volume or there are no clouds.
-    pub fn new(model: CloudModel, scene: &Scene, (drift_m, time_s): (DVec2, f64)) -> Option<Self> {
-        let slabs = || scene.conditions.cloud_slabs().filter(|s| s.cover > 0.0).take(LAYERS);
+    /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume or there
+    /// are no clouds.
+    pub fn new(model: CloudModel, scene: &Scene, drifts: &LayerDrifts) -> Option<Self> {
+        let slots = || scene.conditions.clouds.iter().enumerate().filter(|(_, s)| s.cover > 0.0);
+        let slabs = || slots().map(|(_, slab)| slab);
         if model == CloudModel::Deck || slabs().next().is_none() {
             return None;
         }
@@ -82,20 +88,22 @@ impl Overhead {
         let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
         // What is above a deck is hidden by it.
         let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
-        let layer = |slab: &CloudSlab| Layer {
-            shape: Shape::new(&scene.conditions, slab, drift_m, time_s),
+        let layer = |(slot, slab): (usize, &CloudSlab)| Layer {
+            shape: Shape::new(&scene.conditions, slab, &drifts.slots[slot]),
             slab: *slab,
+            slot,
             share: if is_above(slab) { share } else { 1.0 },
         };
         let mut overhead = Self {
-            layers: [layer(&CloudSlab::NONE); LAYERS],
+            layers: [layer((0, &CloudSlab::NONE)); LAYERS],
             has_deck: share < 1.0,
             count: 0,
             drawn: 0,
             place_m: DVec2::from_array(scene.map_m),
             liquid_um: nearest_diameter(slabs()),
+            drifts: *drifts,
         };
-        for layer in slabs().map(layer) {
+        for layer in slots().map(layer) {
             overhead.layers[overhead.count] = layer;
             overhead.count += 1;
             overhead.drawn += usize::from(layer.share > 0.0);
@@ -111,6 +119,12 @@ impl Overhead {
     /// All of them: what is drawn as a deck is cloud all the same.
     pub fn all(&self) -> &[Layer] {
         &self.layers[..self.count]
+    }
+
+    /// How far the wind has carried the lowest layer since these were the drifts, m east and north.
+    pub fn carried_since(&self, before: &LayerDrifts) -> DVec2 {
+        let Layer { slot, shape, .. } = &self.layers[0];
+        (self.drifts.slots[*slot].way - before.slots[*slot].way) * shape.scale_m
     }
 
     /// Whether some of it leaves gaps.

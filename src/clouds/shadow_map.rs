@@ -39,6 +39,9 @@ const TOLD: [f64; 2] = [LOWEST, 0.07];
 /// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
+/// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another layer is the lowest.
+const LEAP_OF_DRIFT_M: f64 = 1500.0;
+
 /// What a frame may take over from those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Past {
@@ -65,6 +68,8 @@ pub(super) struct Standing {
     pub time_s: f64,
     pub to_light: DVec3,
     pub threshold_sum: f64,
+    /// How far the layer to which it is fixed has come, m.
+    pub drift_m: DVec2,
     pub camera_m: DVec2,
 }
 
@@ -123,6 +128,7 @@ impl Lie {
                 to_light: light.direction,
                 threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
                 camera_m: DVec2::from_array(scene.map_m),
+                drift_m,
             },
             to_light: light.direction.with_z(light.direction.z.max(LOWEST)),
             plane_m,
@@ -265,6 +271,7 @@ impl Standing {
         (self.time_s - before.time_s).abs() > time_s
             || self.to_light.dot(before.to_light) < turn.cos()
             || (self.threshold_sum - before.threshold_sum).abs() > threshold
+            || self.drift_m.distance(before.drift_m) > LEAP_OF_DRIFT_M
             || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
     }
 }

@@ -9,14 +9,8 @@ use super::{
 use crate::{
     chance::normal_quantile,
     weather::{CloudSlab, Conditions},
+    wind::LayerDrift,
 };
-
-/// Speed of the wind that carries clouds over that at 10 m: at 100 m over open land it is 1.4 times as fast (log law, roughness 0.03 m),
-/// and above the friction layer 1.3 times as fast as there (Stull 1988, chapter 1). One number for all weathers: clouds are where the air
-/// that carries them has come, and another ratio would move all at once.
-const ALOFT: f64 = 1.8;
-/// Time in which the clouds of a layer come and go, s: a fair-weather cumulus lives some 20 minutes (Stull 1988, chapter 13).
-const LIFE_S: f64 = 1200.0;
 
 fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
@@ -40,12 +34,12 @@ fn filled_share(of: &Shape) -> f64 {
 }
 
 impl Shape {
-    /// Of a layer at a moment at which the wind at 10 m has carried the air so far.
-    pub(crate) fn new(c: &Conditions, slab: &CloudSlab, drift_m: DVec2, time_s: f64) -> Self {
+    /// Of a layer that has come so far.
+    pub(crate) fn new(c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
         Self {
             base_m: c.air.station_altitude_m + slab.base_m,
-            drift_m: drift_m * ALOFT,
-            evolution: DVec2::new(0.8, 0.6) * (time_s / LIFE_S),
+            drift_m: drift.way * slab.scale_m,
+            evolution: DVec2::new(0.8, 0.6) * drift.lives,
             ..Self::still(slab, threshold(slab))
         }
     }

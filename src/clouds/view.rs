@@ -18,6 +18,7 @@ use crate::{
     gpu::Device,
     moment::{Moment, Scene},
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
+    wind::LayerDrifts,
 };
 
 /// The order of the pixels of a square: each is far from those before it.
@@ -30,7 +31,7 @@ const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
 struct Before {
     clip: DMat4,
     eye: DVec3,
-    drift_m: DVec2,
+    drifts: LayerDrifts,
     exposure: f64,
 }
 
@@ -67,10 +68,9 @@ impl CloudsView {
     /// Takes the clouds of a moment.
     ///
     /// # Errors
-    /// As [`Moment::carrying`].
+    /// For a time that the weather does not know.
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
-        let drift_m = now.carrying()?.displacement_m().truncate();
-        let overhead = Overhead::new(model, &now.scene, (drift_m, now.time_s));
+        let overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?);
         self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;
@@ -181,13 +181,14 @@ impl CloudsView {
     /// How a picture's clouds follow from the last frame's.
     fn picture(&self, shot: &Shot<'_>) -> (PictureUniform, Before) {
         let (frame, now) = (shot.frame, shot.now);
-        let drift_m = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.layers()[0].shape.drift_m);
-        let here = Before { clip: shot.clip(), eye: now.eye, drift_m, exposure: shot.exposure };
+        let drifts = self.overhead.as_ref().map_or(LayerDrifts::ZERO, |o| o.drifts);
+        let here = Before { clip: shot.clip(), eye: now.eye, drifts, exposure: shot.exposure };
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
         let size = shot.color.texture.size();
         let side = self.side(frame);
         let moved = last.map_or(DVec3::ZERO, |b| {
-            (here.drift_m - b.drift_m).extend(0.0) - now.scene.world_to_enu * (here.eye - b.eye)
+            let carried = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.carried_since(&b.drifts));
+            carried.extend(0.0) - now.scene.world_to_enu * (here.eye - b.eye)
         });
         let uniform = PictureUniform {
             size: [size.width, size.height],

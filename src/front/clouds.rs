@@ -1,6 +1,6 @@
 //! The clouds by their name.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::{
     clouds::{CloudModel, CloudRays},
@@ -31,12 +31,7 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
     pub fn sun_share(&self, position: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
-        self.held.clouds.sun_share(self.world.seed, &scene, (self.cloud_drift_m(time_s)?, time_s))
-    }
-
-    /// How far the wind at 10 m has carried the air, m.
-    fn cloud_drift_m(&self, time_s: f64) -> Result<DVec2> {
-        Ok(self.world.over().carrying_until(time_s)?.displacement_m().truncate())
+        self.held.clouds.sun_share(self.world.seed, &scene, &self.world.over().layers_until(time_s)?)
     }
 
     /// The clouds about a scene's place, where they are drawn as a volume.
@@ -45,6 +40,6 @@ impl Context {
             return Ok(None);
         }
         let radius_m = self.world.set.planet.bottom_radius_m;
-        self.held.clouds.rays(self.world.seed, scene, (self.cloud_drift_m(time_s)?, time_s), radius_m)
+        self.held.clouds.rays(self.world.seed, scene, &self.world.over().layers_until(time_s)?, radius_m)
     }
 }

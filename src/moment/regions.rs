@@ -12,7 +12,7 @@ use crate::{
     },
     scene::WorldFrame,
     weather::{Conditions, Falling, Timeline, timeline::MAX_TIME_S},
-    wind::{Carrying, WindOver},
+    wind::{Carrying, LayerDrifts, WindOver},
 };
 
 /// A region with rain of its own, and what is known of it.
@@ -25,7 +25,7 @@ pub(crate) struct Region {
     pub carried_m: Option<[f64; 2]>,
 }
 
-/// Height above the station for which the wind of a cloud stands, m: the highest that the profile knows.
+/// Height above the station for which the wind of a cloud that rains stands, m: the top of the surface layer, whose wind does not turn.
 const CLOUD_WIND_M: f64 = 100.0;
 
 /// The weather of a context over places and times.
@@ -67,6 +67,15 @@ impl<'a> WeatherOver<'a> {
     pub fn carrying_until(&self, time_s: f64) -> Result<Carrying<'a>> {
         self.check_time(time_s)?;
         Ok(self.wind.carrying_until(time_s))
+    }
+
+    /// How far the wind has carried the layers of cloud, up to a moment.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn layers_until(&self, time_s: f64) -> Result<LayerDrifts> {
+        self.check_time(time_s)?;
+        Ok(self.wind.layers_at(time_s))
     }
 
     /// How far the wind had carried the air at the own time of a region, m east and north: nowhere at time 0, from which it is

@@ -168,7 +168,8 @@ impl Falling {
 }
 
 impl CloudSlab {
-    fn blend(&self, to: &Self, t: f64) -> Self {
+    /// As in [`Conditions::lerp`].
+    pub(crate) fn blend(&self, to: &Self, t: f64) -> Self {
         let q = share(self.cover, to.cover, t);
         let stopped = |tau: f64| tau / (tau + 10.0);
         let y = mix(stopped(self.optical_depth), stopped(to.optical_depth), q);
@@ -184,6 +185,8 @@ impl CloudSlab {
             scale_m: mix(self.scale_m, to.scale_m, q),
             cellular: mix(self.cellular, to.cellular, q),
             fibre: mix(self.fibre, to.fibre, q),
+            wind_m_s: [0, 1].map(|i| mix(self.wind_m_s[i], to.wind_m_s[i], q)),
+            life_s: mix(self.life_s, to.life_s, q),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Clouds as slabs of water, and the light that they let through.
 
 use super::blend::smoothstep;
-use super::conditions::{CloudSlab, Conditions};
+use super::conditions::{CloudSlab, Conditions, WindProfile};
 use super::kinds::{CloudKind, PrecipitationKind};
 use super::model::{CloudLayer, MAX_CLOUD_LAYERS, Weather};
 
@@ -96,7 +96,7 @@ pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
 }
 
 /// One layer as a slab, with `least_water_kg_m2` of water at least where there is cloud.
-fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64) -> CloudSlab {
+fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64, wind: &WindProfile) -> CloudSlab {
     let s = substance(kind);
     let thickness = layer.thickness_m.unwrap_or(s.thickness_m);
     let radius = layer.droplet_radius_um.unwrap_or(s.droplet_radius_um);
@@ -110,10 +110,21 @@ fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64) -> CloudSla
         asymmetry: 0.85 + (0.77 - 0.85) * s.ice_fraction,
         convection: s.convection,
         ice_fraction: s.ice_fraction,
-        scale_m: s.spacing * thickness.clamp(s.thickness_m / WIDER, s.thickness_m * WIDER),
+        scale_m: layer
+            .spacing_m
+            .unwrap_or_else(|| s.spacing * thickness.clamp(s.thickness_m / WIDER, s.thickness_m * WIDER)),
         cellular: s.cellular,
         fibre: s.fibre,
+        wind_m_s: carrying_wind(layer, thickness, wind),
+        life_s: layer.life_s.unwrap_or(CloudSlab::NONE.life_s),
     }
+}
+
+/// The wind that carries a layer: its own, or the weather's at its middle.
+fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f64; 2] {
+    let Some(own) = layer.wind else { return wind.mean_at_height_m_s(layer.base_m + 0.5 * thickness_m) };
+    let (sine, cosine) = libm::sincos(own.from_deg.to_radians());
+    [-own.speed_m_s * sine, -own.speed_m_s * cosine]
 }
 
 /// Index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers most.
@@ -134,7 +145,7 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
 /// Rain needs cloud: the layer it falls from holds [`water_path_for_rate_kg_m2`] at least, and where the host named no cloud
 /// at all an overcast of nimbostratus at 600 m is there (`rain_needs_cloud` false switches both off). Ice crystals fall from
 /// a clear sky.
-pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
+pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
     let showers = p.showers || p.thunderstorm;
@@ -151,7 +162,7 @@ pub(super) fn cloud_slabs(w: &Weather, rain_needs_cloud: bool) -> [CloudSlab; MA
         let known =
             if layer.kind == CloudKind::Unknown { likely_kind(layer, rains && !drizzle, showers) } else { layer.kind };
         let water = if rains && rain_needs_cloud { water_path_for_rate_kg_m2(p.rate_mm_h) } else { 0.0 };
-        made.push(slab(layer, known, water));
+        made.push(slab(layer, known, water, wind));
     }
     into_slots(made)
 }

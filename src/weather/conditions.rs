@@ -214,6 +214,17 @@ pub struct CloudSlab {
     /// How far it is drawn out into fibres, 0 to 1: cirrus.
     #[serde(default)]
     pub fibre: f64,
+    /// Wind that carries it, m/s towards east and north.
+    #[serde(default)]
+    pub wind_m_s: [f64; 2],
+    /// Time in which its clouds come and go, s.
+    #[serde(default = "common_life")]
+    pub life_s: f64,
+}
+
+/// Life of clouds in states that were saved without one, s.
+fn common_life() -> f64 {
+    CloudSlab::NONE.life_s
 }
 
 /// Distance from cloud to cloud in states that were saved without one, m.
@@ -353,6 +364,8 @@ impl CloudSlab {
         scale_m: 1500.0,
         cellular: 0.0,
         fibre: 0.0,
+        wind_m_s: [0.0; 2],
+        life_s: 1200.0,
     };
 
     /// Top above the station, m.

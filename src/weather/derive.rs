@@ -94,7 +94,7 @@ pub fn derive_with(weather: &Weather, overrides: &Overrides) -> Result<Condition
     let wind = surface::wind_profile(w);
     let mut ground = surface::surface_cover(&w.surface, w.temperature_c, w.relative_humidity, &falling);
     ground.wetness = o.wetness.unwrap_or(ground.wetness);
-    let clouds = cloud_light::cloud_slabs(w, o.rain_needs_cloud.unwrap_or(true));
+    let clouds = cloud_light::cloud_slabs(w, &wind, o.rain_needs_cloud.unwrap_or(true));
     Ok(Conditions {
         extinction_per_m: air.rayleigh_extinction_per_m + shares.aerosol_per_m + counted + falling.extinction_per_m(),
         air,

@@ -5,6 +5,7 @@
 //! the same bits on every machine.
 
 pub mod air;
+mod aloft;
 mod blend;
 mod cloud_light;
 mod conditions;
@@ -32,7 +33,7 @@ pub use derive::{Overrides, derive, derive_with};
 pub use kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 pub use metar::{MAX_METAR_BYTES, MetarReport, RunwayVisualRange};
 pub use model::{
-    Aerosol, CloudLayer, Fog, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
+    Aerosol, CloudLayer, Fog, LayerWind, Lofted, MAX_CLOUD_LAYERS, Precipitation, Sea, Surface, Swell, Weather, Wind,
     cover_from_oktas, saturation_pressure_hpa,
 };
 pub use particles::{humidity_growth, unlimited_visibility_m};

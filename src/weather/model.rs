@@ -95,6 +95,22 @@ pub struct CloudLayer {
     pub water_g_m3: Option<f64>,
     /// Effective radius of droplets or crystals, um. Range [1, 500]; default by kind.
     pub droplet_radius_um: Option<f64>,
+    /// Wind that carries it; default the weather's at the middle of the layer ([`super::WindProfile::mean_at_height_m_s`]).
+    pub wind: Option<LayerWind>,
+    /// Distance from cloud to cloud, m. Range [50, 200 000]; default by kind and thickness.
+    pub spacing_m: Option<f64>,
+    /// Time in which its clouds come and go, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some 20 minutes
+    /// (Stull 1988, chapter 13).
+    pub life_s: Option<f64>,
+}
+
+/// Wind of a layer of cloud.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerWind {
+    /// Speed, m/s. Range [0, 150].
+    pub speed_m_s: f64,
+    /// Where it comes from, degrees clockwise from true north. Range [0, 360].
+    pub from_deg: f64,
 }
 
 /// What falls from the clouds.
@@ -232,7 +248,17 @@ impl CloudLayer {
 
     /// A layer of `kind` with that kind's thickness and water; `cover` a fraction, `base_m` above the station.
     pub const fn of(kind: CloudKind, cover: f64, base_m: f64) -> Self {
-        Self { cover, base_m, thickness_m: None, kind, water_g_m3: None, droplet_radius_um: None }
+        Self {
+            cover,
+            base_m,
+            thickness_m: None,
+            kind,
+            water_g_m3: None,
+            droplet_radius_um: None,
+            wind: None,
+            spacing_m: None,
+            life_s: None,
+        }
     }
 }
 

@@ -159,9 +159,9 @@ impl Timeline {
         is_always(&self.known_from_s)
     }
 
-    /// The wind below all changes, and the changes that lie over it, in order of their starts.
-    pub(crate) fn winds(&self) -> (&super::WindProfile, &[Change]) {
-        (&self.base.wind, &self.changes)
+    /// The weather below all changes, and the changes that lie over it, in order of their starts.
+    pub(crate) fn parts(&self) -> (&Conditions, &[Change]) {
+        (&self.base, &self.changes)
     }
 
     /// The timeline as text (a seal, then TOML), for [`Timeline::load`]; numbers come back bit for bit.

@@ -66,7 +66,12 @@ impl CloudLayer {
         check_range(&name("base_m"), self.base_m, 0.0, 20_000.0, "m")?;
         check_some(&name("thickness_m"), self.thickness_m, 1.0, 20_000.0, "m")?;
         check_some(&name("water_g_m3"), self.water_g_m3, 0.0, 10.0, "g/m^3")?;
-        check_some(&name("droplet_radius_um"), self.droplet_radius_um, 1.0, 500.0, "um")
+        check_some(&name("droplet_radius_um"), self.droplet_radius_um, 1.0, 500.0, "um")?;
+        check_some(&name("spacing_m"), self.spacing_m, 50.0, 200_000.0, "m")?;
+        check_some(&name("life_s"), self.life_s, 60.0, 1e6, "s")?;
+        let Some(wind) = self.wind else { return Ok(()) };
+        check_range(&name("wind.speed_m_s"), wind.speed_m_s, 0.0, 150.0, "m/s")?;
+        check_range(&name("wind.from_deg"), wind.from_deg, 0.0, 360.0, "degrees")
     }
 }
 
@@ -108,7 +113,7 @@ impl Sea {
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::Swell;
+    use super::super::model::{LayerWind, Swell};
     use super::*;
     use crate::error::Status;
 
@@ -137,6 +142,10 @@ mod tests {
         ("clouds[0].thickness_m", |w, v| w.clouds[0].thickness_m = Some(v)),
         ("clouds[0].water_g_m3", |w, v| w.clouds[0].water_g_m3 = Some(v)),
         ("clouds[0].droplet_radius_um", |w, v| w.clouds[0].droplet_radius_um = Some(v)),
+        ("clouds[0].spacing_m", |w, v| w.clouds[0].spacing_m = Some(v)),
+        ("clouds[1].life_s", |w, v| w.clouds[1].life_s = Some(v)),
+        ("clouds[0].wind.speed_m_s", |w, v| w.clouds[0].wind = Some(LayerWind { speed_m_s: v, from_deg: 10.0 })),
+        ("clouds[0].wind.from_deg", |w, v| w.clouds[0].wind = Some(LayerWind { speed_m_s: 10.0, from_deg: v })),
         ("precipitation.rate_mm_h", |w, v| w.precipitation = Precipitation::of(PrecipitationKind::Rain, v)),
         ("precipitation.liquid_fraction", |w, v| w.precipitation.liquid_fraction = Some(v)),
         ("wind.speed_m_s", |w, v| w.wind.speed_m_s = v),

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 
 use glam::DVec3;
 
-use super::{Blowing, Drift, Wind};
+use super::{Blowing, Drift, LayerDrifts, Wind};
 use crate::weather::Timeline;
 
 /// The wind of a seed over a timeline of weathers.
@@ -14,6 +14,8 @@ pub(crate) struct WindOver<'a> {
     pub timeline: &'a Timeline,
     /// How far it had carried the air when the last change ended that the timeline has forgotten.
     pub kept: Drift,
+    /// The same of the layers of cloud.
+    pub kept_layers: &'a LayerDrifts,
     /// Revision of the timeline: no two contexts share one, and every change of the timeline makes a new one.
     pub revision: u64,
 }
@@ -22,6 +24,11 @@ impl<'a> WindOver<'a> {
     /// The wind at 10 m at a time that the timeline knows, and how far it has carried the air since time 0.
     pub fn at(&self, time_s: f64) -> Blowing {
         self.wind.blowing(self.timeline, self.kept, time_s)
+    }
+
+    /// How far the layers of cloud have come at a time that the timeline knows.
+    pub fn layers_at(&self, time_s: f64) -> LayerDrifts {
+        self.kept_layers.until(self.timeline, time_s)
     }
 
     /// The wind that carries the air, up to a moment.
@@ -106,7 +113,8 @@ mod tests {
         for (revision, speed) in [(1, 4.0), (2, 11.0)] {
             weather.wind.speed_m_s = speed;
             let timeline = Timeline::new(derive(&weather).unwrap());
-            let over = WindOver { wind: &wind, timeline: &timeline, kept: Drift::ZERO, revision };
+            let kept_layers = &LayerDrifts::ZERO;
+            let over = WindOver { wind: &wind, timeline: &timeline, kept: Drift::ZERO, kept_layers, revision };
             // More moments than there is room for, some of them again.
             for i in 0..40 {
                 let time_s = f64::from(i % 23) * 1.5;

@@ -10,10 +10,10 @@ use super::{
     Wind,
     gusts::{Gusts, Stir, Stretch},
 };
-use crate::weather::{Timeline, WindProfile, timeline::Change};
+use crate::weather::{Conditions, Timeline, WindProfile, timeline::Change};
 
 /// Nodes and weights of Gauss and Legendre's rule of 8 points on [-1, 1], one half (Abramowitz and Stegun 1964, table 25.4).
-const GAUSS: [(f64, f64); 4] = [
+pub(super) const GAUSS: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
@@ -75,8 +75,8 @@ fn stir_of(wind: &WindProfile) -> Stir {
 impl<'a> Walk<'a> {
     /// From `kept`, which belongs to what the timeline has forgotten, towards `t`.
     pub fn new(gusts: &'a Gusts, timeline: &'a Timeline, kept: Drift, t: f64) -> Self {
-        let (base, changes) = timeline.winds();
-        let mut walk = Self { gusts, base: *base, changes, at: kept, stir: stir_of(base) };
+        let (Conditions { wind, .. }, changes) = timeline.parts();
+        let mut walk = Self { gusts, base: *wind, changes, at: kept, stir: stir_of(wind) };
         // Counting begins at time 0, wherever the changes do.
         match changes.first() {
             Some(first) if timeline.known_since_ever() && t < first.start_s => walk.changes = &[],

@@ -1,6 +1,7 @@
 //! Wind: a mean that the weather gives, gusts of a published spectrum about it, and how far it has carried the air.
 //!
-//! The mean follows the logarithmic profile over the ground's roughness. Gusts are 24 waves along and 24 across the wind whose
+//! The mean follows the logarithmic profile over the ground's roughness up to 100 m, and above it turns and grows to the geostrophic wind
+//! ([`WindProfile::mean_at_height_m_s`]); layers of cloud go with it (`layers`). Gusts are 24 waves along and 24 across the wind whose
 //! lengths are spread as Kaimal et al. (1972) found them, with the weather's turbulence intensity along the wind and 0.8 of
 //! it across (IEC 61400-1, annex C); they pass along the path of the mean wind (Taylor 1938), the same over all the
 //! world. Where a report says that the direction varies, a slow wave turns the wind within that range.
@@ -12,6 +13,7 @@ mod carrying;
 mod drift;
 mod grid;
 mod gusts;
+mod layers;
 #[cfg(test)]
 mod tests;
 mod volume;
@@ -23,6 +25,7 @@ use drift::Walk;
 pub use drift::{Blowing, Drift};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};
 use gusts::Gusts;
+pub(crate) use layers::{LayerDrift, LayerDrifts};
 pub(crate) use volume::WindVolume;
 
 use crate::weather::{Timeline, WindProfile};
@@ -65,16 +68,16 @@ impl Blowing {
 
     /// The wind at `height_m` above ground under a `profile`.
     ///
-    /// The mean follows the logarithmic law ([`WindProfile::speed_at_height_m_s`]); gusts are as strong at all heights
-    /// (Panofsky and Dutton 1984) but where the mean falls below half of that at 10 m: there they die away with it.
+    /// The mean follows [`WindProfile::mean_at_height_m_s`]; gusts are as strong at all heights (Panofsky and Dutton 1984) but where the
+    /// mean falls below half of that at 10 m: there they die away with it.
     pub fn at_height(&self, profile: &WindProfile, height_m: f64) -> WindAt {
         let speed = profile.speed_m_s();
-        let share = if speed > 0.0 { profile.speed_at_height_m_s(height_m) / speed } else { 0.0 };
-        let gusts = (2.0 * share).min(1.0);
+        let share = DVec2::from_array(profile.relative_at_height(height_m));
+        let gusts = (2.0 * share.length()).min(1.0);
         let level = |v: DVec2| v.extend(0.0);
         WindAt {
-            velocity_m_s: level((self.mean_m_s + self.turned_m_s) * share + self.gust_m_s * gusts),
-            mean_m_s: level(self.mean_m_s * share),
+            velocity_m_s: level(share.rotate(self.mean_m_s + self.turned_m_s) + self.gust_m_s * gusts),
+            mean_m_s: level(share.rotate(self.mean_m_s)),
             gust_deviation_m_s: profile.turbulence_intensity * speed * gusts,
         }
     }

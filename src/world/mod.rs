@@ -6,6 +6,7 @@
 //! machine, without a device and a frame.
 
 mod air;
+mod binary;
 mod held;
 mod kept;
 mod lights;
@@ -26,6 +27,7 @@ use std::{
 use glam::{DMat3, DVec3};
 
 pub(crate) use air::planet_under;
+pub(crate) use binary::{binary_text, text_binary};
 pub(crate) use held::{HeldEffect, Within};
 pub(crate) use kept::KeptScene;
 pub(crate) use lights::color_of;
@@ -45,8 +47,9 @@ use crate::{
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
     surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
+    terrain::Terrain,
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
-    wind::{Drift, Wind, WindGrid, WindOver, WindVolume},
+    wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
 
 /// A direction to a light, given by the host in place of the almanac.
@@ -91,6 +94,8 @@ pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
     /// The host's terrain; whatever holds it saves it.
     pub terrain: Option<Arc<TerrainHeights>>,
+    /// The same in tiles, of which the host keeps the heights; never both.
+    pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
@@ -131,6 +136,8 @@ pub(crate) struct World {
     wind: Wind,
     /// How far the wind had carried the air when the last change ended that the timeline has forgotten.
     pub drifted: Drift,
+    /// The same of the layers of cloud.
+    layers_drifted: LayerDrifts,
     pub set: Settings,
     pub night: NightSettings,
     pub maps: Option<Box<OccluderMaps>>,
@@ -184,9 +191,11 @@ impl World {
             timeline_revision: next_revision(),
             wind: Wind::new(seed),
             drifted: Drift::ZERO,
+            layers_drifted: LayerDrifts::ZERO,
             set: Settings {
                 shelters: Vec::new(),
                 terrain: None,
+                tiles: None,
                 regions: Vec::new(),
                 given_sun: None,
                 given_moon: None,
@@ -222,7 +231,8 @@ impl World {
     /// The weather over all places and times.
     pub fn over(&self) -> WeatherOver<'_> {
         let revision = self.timeline_revision;
-        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept: self.drifted, revision };
+        let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
+        let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept, kept_layers, revision };
         WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
     }
 
@@ -275,6 +285,7 @@ impl World {
     /// Forgets what has ended, but for what is asked from `keep_s` on.
     pub fn forget_before(&mut self, keep_s: f64) {
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
+        self.layers_drifted = self.layers_drifted.kept(&self.timeline, keep_s);
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 

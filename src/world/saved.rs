@@ -14,7 +14,7 @@ use crate::{
     moment::Region,
     scene::WorldKind,
     weather::{Timeline, timeline::MAX_TIME_S},
-    wind::Drift,
+    wind::{Drift, LayerDrift, LayerDrifts},
 };
 
 /// What is saved of a world.
@@ -28,6 +28,9 @@ pub(crate) struct SavedWorld {
     timeline: String,
     /// How far the wind had carried the air when the last forgotten change ended: time, path, east, north.
     drifted: [f64; 4],
+    /// The same of the layers of cloud by their slots: ways (east, north) in distances from cloud to cloud, and lives. None: time 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    layers_drifted: Vec<[f64; 3]>,
     created: toml::Table,
     settings: SavedSettings,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -63,11 +66,32 @@ fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) ->
     sound.then_some(drift).ok_or_else(|| parse_error(wanted))
 }
 
+/// The same of the layers of cloud. States of before have none: their clouds stand as at time 0.
+fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
+    let mut drifts = LayerDrifts { time_s, ..LayerDrifts::ZERO };
+    let fits = saved.is_empty() || saved.len() == drifts.slots.len();
+    if !fits || !saved.as_flattened().iter().all(|v| v.is_finite()) {
+        return Err(parse_error("layers_drifted must be finite, one of each of 16 layers"));
+    }
+    for (to, [east, north, lives]) in drifts.slots.iter_mut().zip(saved) {
+        *to = LayerDrift { way: DVec2::new(*east, *north), lives: *lives };
+    }
+    Ok(drifts)
+}
+
+fn saved_layers(drifts: &LayerDrifts) -> Vec<[f64; 3]> {
+    if *drifts == LayerDrifts::ZERO {
+        return Vec::new();
+    }
+    drifts.slots.iter().map(|d| [d.way.x, d.way.y, d.lives]).collect()
+}
+
 /// A saved world that can be shown.
 pub(crate) struct LoadedWorld {
     time_s: f64,
     timeline: Timeline,
     drifted: Drift,
+    layers_drifted: LayerDrifts,
     set: Settings,
     beside: SetBeside,
 }
@@ -85,6 +109,7 @@ impl World {
             timeline_revision: _,
             wind: _,
             drifted: _,
+            layers_drifted: _,
             set: _,
             maps: _,
             lights: _,
@@ -130,6 +155,7 @@ impl World {
         let Settings {
             shelters,
             terrain: _,
+            tiles: _,
             regions,
             given_sun,
             given_moon,
@@ -149,6 +175,7 @@ impl World {
             moon: angles(given_moon),
             timeline: self.timeline.save()?,
             drifted: [drifted.time_s, drifted.path_m, carried.x, carried.y],
+            layers_drifted: saved_layers(&self.layers_drifted),
             created,
             settings,
             areas: regions.clone(),
@@ -184,6 +211,7 @@ impl World {
         let set = Settings {
             shelters,
             terrain: None,
+            tiles: None,
             regions: saved.areas,
             given_sun,
             given_moon,
@@ -196,6 +224,7 @@ impl World {
         Ok(LoadedWorld {
             time_s: saved.time_s,
             drifted: drifted_from(saved.drifted, &timeline)?,
+            layers_drifted: layers_drifted_from(&saved.layers_drifted, saved.drifted[0])?,
             timeline,
             set,
             beside,
@@ -209,7 +238,10 @@ impl World {
         swap(&mut self.timeline, &mut other.timeline);
         self.timeline_revision = super::next_revision();
         swap(&mut self.drifted, &mut other.drifted);
+        swap(&mut self.layers_drifted, &mut other.layers_drifted);
         swap(&mut self.set, &mut other.set);
+        // Tiles are the host's, whatever is loaded.
+        swap(&mut self.set.tiles, &mut other.set.tiles);
         swap(&mut self.exposure, &mut other.beside.exposure);
         if let Some(tone) = &mut other.beside.tone {
             swap(&mut self.tone, tone);

@@ -7,8 +7,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
     frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
-    radiance::*, rain::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*,
-    vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    radiance::*, rain::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*,
+    veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -101,6 +101,23 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_ground_texture", "context", false, |h| unsafe {
             wk_context_get_ground_texture(h.cast(), null_mut())
+        }),
+        case("wk_context_set_terrain", "context", false, |h| unsafe { wk_context_set_terrain(h.cast(), null()) }),
+        case("wk_context_set_terrain_tile", "context", false, |h| unsafe {
+            wk_context_set_terrain_tile(h.cast(), null())
+        }),
+        case("wk_context_update_terrain", "context", false, |h| unsafe { wk_context_update_terrain(h.cast(), null()) }),
+        case("wk_context_remove_terrain_tile", "context", false, |h| unsafe {
+            wk_context_remove_terrain_tile(h.cast(), 0, 0)
+        }),
+        case("wk_context_get_terrain_revision", "context", false, |h| unsafe {
+            wk_context_get_terrain_revision(h.cast(), null_mut())
+        }),
+        case("wk_context_get_terrain_points", "context", false, |h| unsafe {
+            wk_context_get_terrain_points(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_terrain_water", "context", false, |h| unsafe {
+            wk_context_get_terrain_water(h.cast(), 0, 0, null_mut(), 0, 0, null_mut())
         }),
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)

@@ -9,8 +9,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
     frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*,
-    query::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*,
-    view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    query::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -124,6 +124,10 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
+        case("wk_terrain", "terrain", true, move |p| unsafe { wk_context_set_terrain(context, p.cast()) }),
+        case("wk_terrain_cells", "terrain_cells", false, move |p| unsafe {
+            wk_context_update_terrain(context, p.cast())
+        }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_snow", "snow", true, move |p| unsafe { wk_view_set_snow(view, p.cast()) }),
         case("wk_clouds", "clouds", true, move |p| unsafe { wk_view_set_clouds(view, p.cast()) }),
@@ -211,6 +215,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_flash",
     "wk_ground_light",
     "wk_ground_cell",
+    "wk_terrain_point",
     "wk_segment",
     "wk_between",
     "wk_sky_radiance",

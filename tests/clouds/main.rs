@@ -1,6 +1,7 @@
 //! Clouds as a volume, drawn.
 
 mod asked;
+mod carried;
 mod drawn;
 mod elsewhere;
 mod handed;

@@ -110,9 +110,12 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
             scale_m,
             cellular,
             fibre,
+            wind_m_s,
+            life_s,
         } = slab;
         out.extend([cover, base_m, thickness_m, optical_depth, droplet_radius_um, asymmetry, convection, ice_fraction]);
-        out.extend([scale_m, cellular, fibre]);
+        out.extend([scale_m, cellular, fibre, life_s]);
+        out.extend(wind_m_s);
     }
     let WindProfile {
         east_m_s,

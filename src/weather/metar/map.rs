@@ -163,13 +163,29 @@ fn lift(w: &mut Weather, lofted: LoftedKind, aerosol: AerosolKind) {
     w.aerosol = Aerosol::of(aerosol);
 }
 
+/// Cover of a layer of its own whose group says `cover`, where all below it hide `below` of the sky. A group counts what is hidden by its
+/// layer and all lower ones (summation principle, Federal Meteorological Handbook No. 1, chapter 9); of what they leave open the layer covers
+/// (c - below) / (1 - below), if layers lie independently. Updates `below`.
+///
+/// Cumulonimbus and towering cumulus are reported beside the layers, with a cover of their own (WMO-No. 306, FM 15, 15.9).
+fn own_cover(cover: f64, kind: CloudKind, below: &mut f64) -> f64 {
+    if matches!(kind, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus) {
+        return cover;
+    }
+    let own = if cover <= *below || *below >= 1.0 { 0.0 } else { (cover - *below) / (1.0 - *below) };
+    *below = below.max(cover);
+    own
+}
+
 fn clouds(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
+    let mut below = 0.0;
     for group in &p.clouds {
         match *group {
             CloudGroup::Layer { cover, base_m, kind } if w.clouds.len() < MAX_CLOUD_LAYERS => {
                 if base_m.is_none() && !assumed.contains(&"clouds[].base_m") {
                     assumed.push("clouds[].base_m");
                 }
+                let cover = own_cover(cover, kind, &mut below);
                 w.clouds.push(CloudLayer::of(kind, cover, base_m.unwrap_or(ASSUMED_BASE_M).min(20_000.0)));
             }
             CloudGroup::Obscured(vertical_m) => {
@@ -191,7 +207,7 @@ fn name_the_thundercloud(w: &mut Weather) {
     if !w.precipitation.thunderstorm || named {
         return;
     }
-    let lowest = w.clouds.iter_mut().min_by(|a, b| {
+    let lowest = w.clouds.iter_mut().filter(|c| c.cover > 0.0).min_by(|a, b| {
         let thin = |c: &CloudLayer| c.cover < 0.5;
         thin(a).cmp(&thin(b)).then(a.base_m.total_cmp(&b.base_m))
     });
@@ -290,4 +306,38 @@ pub(super) fn report(p: &Parsed) -> Result<MetarReport> {
         trend: p.trend.clone(),
         remarks: p.remarks.clone(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covers(groups: &str) -> Vec<f64> {
+        let report = Weather::from_metar(&format!("METAR LOWI 121150Z 24008KT 9999 {groups} 12/08 Q1015")).unwrap();
+        report.weather.clouds.iter().map(|c| c.cover).collect()
+    }
+
+    fn assert_near(got: &[f64], want: &[f64]) {
+        let near = got.len() == want.len() && got.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(near, "{got:?} where {want:?} is wanted");
+    }
+
+    #[test]
+    fn groups_count_what_lies_below_and_layers_do_not() {
+        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|oktas| oktas / 8.0);
+        assert_near(&covers("FEW020 SCT040 BKN100"), &[few, (sct - few) / (1.0 - few), (bkn - sct) / (1.0 - sct)]);
+        assert_near(&covers("SCT020 OVC040"), &[sct, 1.0]);
+        assert_near(&covers("BKN020 BKN040 SCT090 OVC200"), &[bkn, 0.0, 0.0, 1.0]);
+        assert_near(&covers("OVC010 OVC020 BKN090"), &[1.0, 0.0, 0.0]);
+        // What is hidden in all is what the highest group says.
+        let clear: f64 = covers("FEW020 SCT040 BKN100").iter().map(|c| 1.0 - c).product();
+        assert!((1.0 - clear - bkn).abs() < 1e-12, "{clear}");
+    }
+
+    #[test]
+    fn towers_stand_beside_the_layers() {
+        let [few, sct, bkn] = [1.5, 3.5, 6.0].map(|oktas| oktas / 8.0);
+        assert_near(&covers("FEW015CB SCT020 BKN040"), &[few, sct, (bkn - sct) / (1.0 - sct)]);
+        assert_near(&covers("BKN020 FEW030TCU BKN090"), &[bkn, few, 0.0]);
+    }
 }

@@ -1,0 +1,173 @@
+//! How far the wind has carried each layer of cloud, and how much of their lives its clouds have lived.
+//!
+//! A layer goes with the mean wind at its height, or with its own ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its way is counted in
+//! distances from cloud to cloud, and time in lives, so that a weather with wider or longer-lived clouds does not shift those that are there.
+//! Both are integrals over the timeline: between the starts and ends of changes by eight points of Gauss and Legendre, as in
+//! [`Drift`](super::Drift), so that any sequence of updates finds the same bits.
+
+use glam::DVec2;
+
+use super::drift::GAUSS;
+use crate::weather::{CloudSlab, Conditions, MAX_CLOUD_LAYERS, Timeline, timeline::Change};
+
+/// How far one layer has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LayerDrift {
+    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0.
+    pub way: DVec2,
+    /// Lives of its clouds since time 0.
+    pub lives: f64,
+}
+
+/// How far the layers have come at a moment, by the slots of [`Conditions::clouds`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LayerDrifts {
+    pub time_s: f64,
+    pub slots: [LayerDrift; MAX_CLOUD_LAYERS],
+}
+
+/// Slots of the weather below all changes, and the changes that are under way over it.
+#[derive(Clone, Copy)]
+struct Under<'a> {
+    base: &'a Conditions,
+    active: &'a [Change],
+}
+
+fn rate(slab: &CloudSlab) -> LayerDrift {
+    LayerDrift { way: DVec2::from_array(slab.wind_m_s) / slab.scale_m, lives: 1.0 / slab.life_s }
+}
+
+impl Under<'_> {
+    fn slab(&self, slot: usize, t: f64) -> CloudSlab {
+        let over = |below: CloudSlab, change: &Change| below.blend(&change.to.clouds[slot], change.share(t));
+        self.active.iter().fold(self.base.clouds[slot], over)
+    }
+
+    /// How far a slot comes over a time.
+    fn integral(&self, slot: usize, from_s: f64, to_s: f64) -> LayerDrift {
+        let (middle, half) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
+        if self.active.is_empty() {
+            return LayerDrift::default().after(&rate(&self.base.clouds[slot]), to_s - from_s);
+        }
+        GAUSS.iter().fold(LayerDrift::default(), |sum, &(x, weight)| {
+            let at = |x: f64| rate(&self.slab(slot, middle + half * x));
+            sum.after(&at(-x), half * weight).after(&at(x), half * weight)
+        })
+    }
+}
+
+impl LayerDrift {
+    /// After a time at a rate.
+    fn after(self, rate: &Self, time_s: f64) -> Self {
+        Self { way: self.way + rate.way * time_s, lives: self.lives + rate.lives * time_s }
+    }
+}
+
+impl LayerDrifts {
+    /// Time 0.
+    pub const ZERO: Self = Self { time_s: 0.0, slots: [LayerDrift { way: DVec2::ZERO, lives: 0.0 }; MAX_CLOUD_LAYERS] };
+
+    fn onward(&self, under: Under<'_>, to_s: f64) -> Self {
+        let one = |slot: usize| self.slots[slot].after(&under.integral(slot, self.time_s, to_s), 1.0);
+        Self { time_s: to_s, slots: std::array::from_fn(one) }
+    }
+
+    /// At `t`, which the timeline knows; `self` belongs to the end of what it has forgotten.
+    pub fn until(self, timeline: &Timeline, t: f64) -> Self {
+        let (mut base, mut changes) = timeline.parts();
+        let mut at = self;
+        match changes.first() {
+            // Counting begins at time 0, wherever the changes do.
+            Some(first) if timeline.known_since_ever() && t < first.start_s => changes = &[],
+            Some(first) if timeline.known_since_ever() && first.start_s < at.time_s => {
+                at = at.onward(Under { base, active: &[] }, first.start_s);
+            }
+            _ => {}
+        }
+        loop {
+            let now = at.time_s;
+            if let Some(ended) = changes.iter().rposition(|c| c.start_s <= now && c.end_s() <= now) {
+                (base, changes) = (&changes[ended].to, &changes[ended + 1..]);
+            }
+            let count = changes.iter().take_while(|c| c.start_s <= now).count();
+            let active = &changes[..count];
+            let end = active.iter().map(Change::end_s).fold(f64::INFINITY, f64::min);
+            let next = changes.get(count).map_or(end, |c| c.start_s.min(end));
+            at = at.onward(Under { base, active }, next.min(t));
+            if next > t {
+                return at;
+            }
+        }
+    }
+
+    /// At the end of the last change that the timeline will have forgotten once it has advanced to `now_s`. To be asked before it advances.
+    pub fn kept(self, timeline: &Timeline, now_s: f64) -> Self {
+        timeline.ends_before(now_s).map_or(self, |end_s| self.until(timeline, end_s))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weather::{CloudKind, CloudLayer, LayerWind, Weather, Wind, derive};
+
+    fn of(layers: &[CloudLayer], speed_m_s: f64, from_deg: f64) -> Conditions {
+        let (clouds, wind) = (layers.to_vec(), Wind::of(speed_m_s, from_deg));
+        derive(&Weather { clouds, wind, ..Weather::default() }).unwrap()
+    }
+
+    fn low(wind: Option<LayerWind>, spacing_m: Option<f64>) -> CloudLayer {
+        CloudLayer { wind, spacing_m, ..CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0) }
+    }
+
+    /// Changes one after another, laid over each other, a cut, a calm, and layers that come and go.
+    fn told() -> Timeline {
+        let own = LayerWind { speed_m_s: 20.0, from_deg: 180.0 };
+        let high = CloudLayer::of(CloudKind::Cirrus, 0.3, 9000.0);
+        let mut timeline = Timeline::new(of(&[low(None, None)], 4.0, 270.0));
+        let changes = [
+            (of(&[low(Some(own), None), high], 9.0, 200.0), -50.0, 30.0),
+            (of(&[low(Some(own), Some(4000.0))], 9.0, 200.0), 60.0, 300.0),
+            (of(&[], 0.0, 0.0), 200.0, 400.0),
+            (of(&[low(None, None), high], 15.0, 30.0), 500.0, 0.0),
+            (of(&[low(None, None)], 2.0, 90.0), 700.0, 100.0),
+        ];
+        for (to, start_s, transition_s) in changes {
+            timeline.change(to, start_s, transition_s).unwrap();
+        }
+        timeline
+    }
+
+    #[test]
+    fn ways_and_lives_are_the_integrals_of_their_rates_and_no_change_throws_them() {
+        let timeline = told();
+        let at = |t: f64| LayerDrifts::ZERO.until(&timeline, t);
+        let step_s = 0.25;
+        for i in -400..4000 {
+            let t = f64::from(i) * step_s;
+            let (a, b, weather) = (at(t), at(t + step_s), timeline.at(t + 0.5 * step_s));
+            let ends = [timeline.at(t + 1e-6), timeline.at(t + step_s - 1e-6)];
+            // Of a layer that has hardly begun, or is nearly gone, the wind is another one within a second.
+            for (slot, slab) in weather.clouds.iter().enumerate().filter(|(_, s)| s.cover > 0.02) {
+                let want = rate(slab);
+                let way = (b.slots[slot].way - a.slots[slot].way) / step_s;
+                let [first, last] = [0, 1].map(|i| rate(&ends[i].clouds[slot]).way);
+                let off = (way - want.way).length() - (first - last).length();
+                assert!(off < 0.02 * want.way.length() + 1e-5, "slot {slot} at {t}: {way} against {}", want.way);
+                let lives = (b.slots[slot].lives - a.slots[slot].lives) / step_s;
+                assert!((lives / want.lives - 1.0).abs() < 0.01, "slot {slot} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn forgetting_on_the_way_changes_no_bit() {
+        let whole = LayerDrifts::ZERO.until(&told(), 1500.0);
+        let (mut timeline, mut kept) = (told(), LayerDrifts::ZERO);
+        for now_s in [-10.0, 5.0, 100.0, 365.0, 640.0, 650.0, 900.0] {
+            kept = kept.kept(&timeline, now_s);
+            timeline.advance(now_s);
+            assert_eq!(kept.until(&timeline, 1500.0), whole, "after {now_s} s");
+        }
+    }
+}
