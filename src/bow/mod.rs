@@ -6,7 +6,7 @@
 //! 42 from the point opposite to the light, and 231 for k = 2, 51 from that point. Between both is Alexander's dark band. Water bends blue
 //! more than red, so the primary bow is red outside and the secondary inside. Light is a wave: the two rays of a direction interfere, and
 //! near the least turn their light is Airy's (1838), wider the smaller the drop. [`mod@reference`] has that in f64, held against Mie's theory.
-//! Over the sizes of drops, the wavelengths and the disc of the light a [`table`] of the angle follows.
+//! Over the sizes of drops, the wavelengths and the disc of the light a [`Table`] of the angle follows.
 //!
 //! The veil's smooth phase functions hold the light of both bows already. So the table has the bows less a smooth function of the same
 //! sum over all directions: a bow moves light, and adds none. The composition adds it to what fog and rain scatter once, which they

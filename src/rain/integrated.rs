@@ -1,5 +1,5 @@
-//! Drops that are stepped through a wind that varies in space: their lattice as [`crate::stage::stepping`] wants it, which has the model.
-//! [`super::cull_pass`] draws them.
+//! Drops that are stepped through a wind that varies in space: their lattice as `stage::stepping` wants it, which has the model.
+//! `cull_pass` draws them.
 
 use glam::DVec3;
 
