@@ -47,7 +47,8 @@ int main(void)
     frame.position_m[2] = 2.0;
     target.color = color;
     frame.target = &target;
-    frame.flags = WK_FRAME_DEPTH_REVERSED;
+    /* One picture alone: all of it is drawn in this frame. Leave WK_FRAME_NO_HISTORY out where frames follow each other. */
+    frame.flags = WK_FRAME_DEPTH_REVERSED | WK_FRAME_NO_HISTORY;
     check(wk_view_record(view, &frame, WK_STAGE_ALL));
     check(wk_texture_read(color, pixels, sizeof pixels, WIDTH * 4));
     printf("P6 %d %d 255\n", WIDTH, HEIGHT);

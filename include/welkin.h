@@ -263,6 +263,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_GROUND_GRID 46
 /** wk_ground_texture */
 #define WK_STRUCT_TYPE_GROUND_TEXTURE 47
+/** wk_terrain */
+#define WK_STRUCT_TYPE_TERRAIN 52
+/** wk_terrain_cells */
+#define WK_STRUCT_TYPE_TERRAIN_CELLS 53
 /** wk_frame_light */
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
 /** wk_part_wish */
@@ -285,6 +289,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUDS 71
 /** wk_environment */
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
+/** wk_cloud_shadows */
+#define WK_STRUCT_TYPE_CLOUD_SHADOWS 85
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -2382,7 +2388,8 @@ WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode m
 /**
  * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
  * weather, time, clock, given sun and moon, planet, exposure, tone curve, fog law, shelters, lamps, rain areas, wind
- * grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Not included:
+ * grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Of the tiles of a
+ * wk_terrain it has the water alone. Not included:
  * how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
  * may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
  * and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
@@ -2395,7 +2402,8 @@ WK_API wk_status wk_context_save(const wk_context *context, void *buffer, size_t
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
  * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
  * WK_WORLD_ECEF), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
- * same of these too. Occluder maps stay as they are.
+ * same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
+ * were when it was saved, before.
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
  * format, which the message names (this version reads format 2; save states of format 1 again, because they did not
@@ -4848,7 +4856,7 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * Wind round terrain and buildings
  *
  * A context can solve for the wind in a box of air about a place: it goes round the terrain of
- * wk_context_set_ground_grid and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
+ * wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
  * leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
  * lands on surfaces and windscreens, and on rain of WK_RAIN_MODEL_INTEGRATED. Nothing is solved unless you ask for it.
  * ====================================================================================================
@@ -5355,6 +5363,99 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
+ * Shadows of clouds as a texture
+ *
+ * For the host's own materials: the share of the direct light of sun or moon that broken clouds let through, as one native
+ * texture for all places about the camera. The published sampling function, GLSL and WGSL, looks it up.
+ * ====================================================================================================
+ */
+
+/**
+ * The map of the clouds' shadows, and how it lay in the view's last frame: a plane at the station's height, fixed to the
+ * air that carries the clouds, which repeats every 20 km.
+ */
+typedef struct wk_cloud_shadows {
+    /** sizeof(wk_cloud_shadows) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CLOUD_SHADOWS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Share of the direct light of sun or moon, whichever is brighter, that clouds let through: one channel of 8 bits, an
+     * OpenGL texture name (GL_TEXTURE_2D, GL_R8) or a VkImage (VK_FORMAT_R8_UNORM). Sample it with a linear filter that
+     * repeats.
+     */
+    uint64_t texture;
+    /** Texels of both sides. */
+    uint32_t width;
+    /** Texels of both sides. */
+    uint32_t height;
+    /**
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v. Single
+     * precision is enough once the fourth column includes the camera's position.
+     */
+    double uv_from_world[2][4];
+    /** Likewise: the height of a place over the plane, m. */
+    double height_from_world[4];
+    /** u and v of the place in the plane that the camera of the last frame stood over. */
+    double camera_uv[2];
+    /** Share of the direct light on the mean over places: wk_context_get_light has that light. */
+    double mean_share;
+    /**
+     * How far shadows are told apart, 0 to 1: 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and under a light near the
+     * horizon. The texture means nothing then.
+     */
+    double told;
+    /** Height over the plane of the lowest clouds, m: from there on shadows are not told apart. */
+    double top_m;
+} wk_cloud_shadows;
+
+/** Every field of `wk_cloud_shadows` at its default. */
+#define WK_CLOUD_SHADOWS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cloud_shadows), \
+    /* struct_type */ WK_STRUCT_TYPE_CLOUD_SHADOWS, \
+    /* next */ NULL, \
+    /* texture */ UINT64_C(0), \
+    /* width */ 0, \
+    /* height */ 0, \
+    /* uv_from_world */ { { 0.0, 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 0.0 } }, \
+    /* height_from_world */ { 0.0, 0.0, 0.0, 0.0 }, \
+    /* camera_uv */ { 0.0, 0.0 }, \
+    /* mean_share */ 0.0, \
+    /* told */ 0.0, \
+    /* top_m */ 0.0 \
+}
+
+/**
+ * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame brings it
+ * up to date, and WK_STAGE_SURFACE lays no shadows of clouds any more: your materials do. It belongs to the view and stays
+ * the same until that is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls. Call this
+ * after each frame for how the map lies. If you draw before Welkin, use that of the last frame, or record WK_STAGE_PREPARE
+ * first.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_view_get_cloud_shadows(wk_view *view,
+                                    wk_cloud_shadows *out_shadows);
+
+/**
+ * Gets the text of the sampling function: NUL-terminated UTF-8 that lives as long as the process.
+ * Thread: any.
+ */
+WK_API wk_status wk_get_cloud_shadow_snippet(wk_shading_language language, const char **out_text);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CLOUD_SHADOWS_INIT`. `struct_size` is `sizeof(wk_cloud_shadows)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
+                                uint32_t struct_size);
+
+/*
+ * ====================================================================================================
  * Lightning
  *
  * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes: three times a minute in each square of 20 km, or
@@ -5831,8 +5932,8 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  */
 
 /**
- * What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid, then the
- * context's default.
+ * What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid or the
+ * tiles of the wk_terrain, then the context's default.
  */
 typedef uint32_t wk_surface_class;
 
@@ -5936,8 +6037,9 @@ typedef struct wk_simulation_desc {
 
 /**
  * Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
- * (wk_context_set_ground_grid) and up to 3 m above it, the answer is that of its cells. Elsewhere it is that of level,
- * open ground with the hollows that are drawn, a pattern fixed to the world by the context's seed.
+ * (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is that of its cells.
+ * Elsewhere it is that of level, open ground with the hollows that are drawn, a pattern fixed to the world by the
+ * context's seed.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
  */
@@ -6171,6 +6273,217 @@ WK_API wk_status wk_get_ground_snippet(wk_shading_language language, const char 
 WK_API
 wk_status wk_ground_texture_init(wk_ground_texture *out,
                                  uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Terrain in tiles
+ *
+ * The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
+ * with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
+ * rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and queries
+ * read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders of
+ * tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+ *
+ * Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles set
+ * before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
+ * remain (WK_PENDING) they act after these.
+ * ====================================================================================================
+ */
+
+/** In surface_classes of wk_terrain_cells: a cell without ground. Water beside it runs off. */
+#define WK_TERRAIN_HOLE 255
+
+/** The lattice of a terrain in tiles. */
+typedef struct wk_terrain {
+    /** sizeof(wk_terrain) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_TERRAIN. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from its
+     * own. Default 0, 0, 0.
+     */
+    double origin_m[3];
+    /** Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells. */
+    double cell_m;
+    /**
+     * Cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain may have
+     * 16 777 216 cells together.
+     */
+    uint32_t tile_cells;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_terrain;
+
+/** Every field of `wk_terrain` at its default. */
+#define WK_TERRAIN_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_terrain), \
+    /* struct_type */ WK_STRUCT_TYPE_TERRAIN, \
+    /* next */ NULL, \
+    /* origin_m */ { 0.0, 0.0, 0.0 }, \
+    /* cell_m */ 1.0, \
+    /* tile_cells */ 256, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to north.
+ */
+typedef struct wk_terrain_cells {
+    /** sizeof(wk_terrain_cells) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_TERRAIN_CELLS. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Key of the tile: how many tiles it lies east and north of the origin, each within 1 000 000; negative to the
+     * west and south. Default 0, 0.
+     */
+    int32_t tile[2];
+    /** The rectangle's south-western cell in the tile, east and north. Default 0, 0. */
+    uint32_t first_cell[2];
+    /** Cells of the rectangle east and north. Default 0, 0: all of the tile. */
+    uint32_t cells[2];
+    /**
+     * Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
+     * they are; a new tile needs them.
+     */
+    const float *heights_m;
+    /** Numbers in heights_m, at least as many as the rectangle reaches over. */
+    uint32_t height_count;
+    /**
+     * Numbers from the beginning of a row in heights_m to that of the next. Default 0: rows follow without a gap.
+     */
+    uint32_t height_stride;
+    /**
+     * Class of each cell: a wk_surface_class, 0 to use the context's default, or WK_TERRAIN_HOLE. Copied by the call.
+     * NULL with a count of 0 leaves them as they are; in a new tile 0.
+     */
+    const uint8_t *surface_classes;
+    /** Numbers in surface_classes, at least as many as the rectangle reaches over. */
+    uint32_t surface_class_count;
+    /**
+     * Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
+     */
+    uint32_t surface_class_stride;
+} wk_terrain_cells;
+
+/** Every field of `wk_terrain_cells` at its default. */
+#define WK_TERRAIN_CELLS_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_terrain_cells), \
+    /* struct_type */ WK_STRUCT_TYPE_TERRAIN_CELLS, \
+    /* next */ NULL, \
+    /* tile */ { 0, 0 }, \
+    /* first_cell */ { 0, 0 }, \
+    /* cells */ { 0, 0 }, \
+    /* heights_m */ NULL, \
+    /* height_count */ 0, \
+    /* height_stride */ 0, \
+    /* surface_classes */ NULL, \
+    /* surface_class_count */ 0, \
+    /* surface_class_stride */ 0 \
+}
+
+/** The terrain under a place; plain values of a list. */
+typedef struct wk_terrain_point {
+    /** Height of the ground above the terrain's origin, m, linear between cells; 0 where there is none. */
+    double height_m;
+    /** Revision of the nearest cell's tile: the terrain's when it changed last. 0 where there is no ground. */
+    uint64_t revision;
+    /** Key of that tile. */
+    int32_t tile[2];
+    /** What the nearest cell is made of; WK_SURFACE_CLASS_UNSPECIFIED where nothing is said. */
+    wk_surface_class surface_class;
+    /** 1 on the ground of a tile, else 0. */
+    uint32_t has_ground;
+} wk_terrain_point;
+
+/**
+ * Sets the lattice of a terrain in tiles, still without any, in place of the tiles or the wk_ground_grid before; NULL
+ * leaves no tiles. The lattice that is set already stays with its tiles. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API wk_status wk_context_set_terrain(wk_context *context, const wk_terrain *terrain);
+
+/**
+ * Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one
+ * that is there keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
+ * cells than a terrain may have.
+ */
+WK_API wk_status wk_context_set_terrain_tile(wk_context *context, const wk_terrain_cells *terrain_cells);
+
+/**
+ * Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
+ * ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water that
+ * it touches, not with the tile or the terrain. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: as wk_context_set_terrain_tile, and for the key of no tile.
+ */
+WK_API
+wk_status wk_context_update_terrain(wk_context *context,
+                                    const wk_terrain_cells *terrain_cells);
+
+/**
+ * Takes a tile away with the water on it. Where it was, water of the other tiles runs off.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
+ */
+WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t tile_east, int32_t tile_north);
+
+/**
+ * Gets a number that grows whenever the tiles change; 0 without a terrain.
+ * Thread: concurrent.
+ */
+WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint64_t *out_revision);
+
+/**
+ * Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them. `position_size`
+ * and `point_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_terrain_point) of your header.
+ * Thread: concurrent.
+ */
+WK_API
+wk_status wk_context_get_terrain_points(const wk_context *context,
+                                        const double (*positions_m)[3],
+                                        uint32_t count,
+                                        uint32_t position_size,
+                                        wk_terrain_point *points,
+                                        uint32_t point_size);
+
+/**
+ * Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
+ * sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on the
+ * terrain changes; with capacity 0 the call returns only this number.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+ */
+WK_API
+wk_status wk_context_get_terrain_water(const wk_context *context,
+                                       int32_t tile_east,
+                                       int32_t tile_north,
+                                       wk_ground_cell *cells,
+                                       uint32_t capacity,
+                                       uint32_t cell_size,
+                                       uint64_t *out_revision);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_TERRAIN_INIT`. `struct_size` is `sizeof(wk_terrain)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_terrain_init(wk_terrain *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_TERRAIN_CELLS_INIT`. `struct_size` is `sizeof(wk_terrain_cells)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_terrain_cells_init(wk_terrain_cells *out,
+                                uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

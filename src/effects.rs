@@ -16,6 +16,7 @@ use glam::DVec2;
 
 use crate::{
     almanac::sun::Utc,
+    bow::BowView,
     clouds::{self, CloudsView, HeldClouds},
     error::Result,
     flow::HeldFlow,
@@ -223,12 +224,13 @@ pub(crate) struct Effects {
     pub stars: StarsView,
     pub clouds: CloudsView,
     pub lightning: LightningView,
+    pub bow: BowView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
 }
 
 /// How many a view has.
-const COUNT: usize = if cfg!(test) { 10 } else { 9 };
+const COUNT: usize = if cfg!(test) { 11 } else { 10 };
 
 impl Effects {
     /// Those of a view.
@@ -247,23 +249,25 @@ impl Effects {
             stars: StarsView::default(),
             clouds: CloudsView::default(),
             lightning: LightningView::default(),
+            bow: BowView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
         })
     }
 
-    /// All of them, in their order.
+    /// All of them, in their order: what hangs in the sky is drawn before what falls, which shows it behind columns of rain.
     pub fn each(&mut self) -> [&mut dyn DrawnEffect; COUNT] {
         [
             &mut self.sky,
             &mut self.fog,
             &mut self.ground,
+            &mut self.stars,
+            &mut self.clouds,
             &mut self.rain,
             &mut self.snow,
             &mut self.glass,
-            &mut self.stars,
-            &mut self.clouds,
             &mut self.lightning,
+            &mut self.bow,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -275,12 +279,13 @@ impl Effects {
             &self.sky,
             &self.fog,
             &self.ground,
+            &self.stars,
+            &self.clouds,
             &self.rain,
             &self.snow,
             &self.glass,
-            &self.stars,
-            &self.clouds,
             &self.lightning,
+            &self.bow,
             #[cfg(test)]
             &self.plane,
         ]
@@ -302,12 +307,13 @@ impl Effects {
         self.fog.gather(now, held.fog.law.as_ref())?;
         let fog_depth = self.fog.depth_above(now.scene.place.altitude_m);
         let wet = self.ground.gather(now, frame, &held.ground.seen(world, now), fog_depth)?;
-        self.ground.set_terrain(held.ground.views(device, wet && stages.has(Stages::SURFACE)));
+        self.ground.take_terrain(device, (&held.ground, world), now, wet && stages.has(Stages::SURFACE));
         self.rain.set_counting(device, frame.diagnostic == Diagnostic::Overdraw);
         self.rain.gather(now)?;
         self.snow.set_counting(frame.diagnostic == Diagnostic::Overdraw);
         self.snow.gather(now, device);
         self.clouds.gather(now, held.clouds.model)?;
+        self.bow.gather(now);
         #[cfg(test)]
         self.plane.gather(now);
         let utc = world.utc_at(now.time_s);

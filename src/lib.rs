@@ -10,6 +10,7 @@
 extern crate self as welkin;
 
 pub mod almanac;
+pub mod bow;
 pub mod candidates;
 pub mod capi;
 pub mod chance;
@@ -38,6 +39,7 @@ pub mod snow;
 mod stage;
 pub mod stars;
 mod surroundings;
+pub mod terrain;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

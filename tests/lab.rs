@@ -28,6 +28,8 @@ mod effect_charts;
 mod fog;
 #[path = "../examples/lab/front.rs"]
 mod front;
+#[path = "../examples/lab/genera.rs"]
+mod genera;
 #[path = "../examples/lab/growth.rs"]
 mod growth;
 #[path = "../examples/lab/page.rs"]

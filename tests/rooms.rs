@@ -155,7 +155,7 @@ fn folders_of_shaders_use_what_their_rows_name_and_form_no_circle() {
     hold(&shader_arrows(), &table("shaders"));
 }
 
-const EFFECTS: [&str; 9] = ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "glass"];
+const EFFECTS: [&str; 10] = ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "glass", "bow"];
 
 #[test]
 fn the_effects_are_those_of_the_list() {

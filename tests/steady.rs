@@ -23,6 +23,7 @@ use welkin::{
     Status,
     almanac::Utc,
     capi::{abi, context::*, device::*, frame::*, status::*, texture::*, timeline::*, view::*},
+    clouds::CloudModel,
     context::{Context, ContextDesc},
     flow::{WindFieldDesc, WindFieldMode},
     frame::{Frame, Shared, Stages, View},
@@ -189,6 +190,8 @@ impl RustHost {
         desc.world.kind = WorldKind::Tangent;
         let mut context = Context::new(device.clone(), shared, desc).unwrap();
         context.set_weather(weather, 0.0, 0.0).unwrap();
+        // A volume has passes that the bare calls do not know.
+        context.set_cloud_model(CloudModel::Deck);
         let view = View::new(&context).unwrap();
         let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -223,6 +226,13 @@ impl RustHost {
             list,
             times,
         }
+    }
+
+    /// Under clouds that are a volume.
+    fn under_a_volume(backends: wgpu::Backends) -> Self {
+        let mut host = Self::new(backends);
+        host.context.set_cloud_model(CloudModel::Volume);
+        host
     }
 
     /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and one for the
@@ -299,7 +309,7 @@ fn init<T>(name: &str) -> T {
 
 impl CHost {
     fn new(backends: wk_backend_flags) -> Self {
-        use welkin::capi::{weather::*, weather_kinds::*};
+        use welkin::capi::{clouds::*, weather::*, weather_kinds::*};
         let mut host = Self {
             device: null_mut(),
             context: null_mut(),
@@ -330,6 +340,7 @@ impl CHost {
             assert_eq!(wk_device_create(&desc, &mut host.device), WK_OK);
             assert_eq!(wk_context_create(host.device, &world, &mut host.context), WK_OK);
             assert_eq!(wk_context_set_weather(host.context, &weather, 0.0, 0.0), WK_OK);
+            assert_eq!(wk_context_set_cloud_model(host.context, WK_CLOUD_MODEL_DECK), WK_OK);
             assert_eq!(wk_view_create(host.context, null(), &mut host.view), WK_OK);
             assert_eq!(wk_texture_create(host.device, &color, &mut host.color), WK_OK);
             assert_eq!(wk_texture_create(host.device, &depth, &mut host.depth), WK_OK);
@@ -508,6 +519,7 @@ fn recording_allocates_nothing_of_its_own() {
         steady(&format!("{backends:?}"), &mut host, frames, bare.calls);
         if backends == wgpu::Backends::NOOP {
             quiet("behind a windscreen", &mut Behind(RustHost::new(backends)), WARM, 2000);
+            quiet("under clouds of a volume", &mut RustHost::under_a_volume(backends), WARM, 1000);
             let night = Utc(1_768_773_600.0);
             quiet("a clear night", &mut RustHost::under(backends, &clear(), night), WARM, 1000);
             // Flashes come and go meanwhile, 3 a minute; the first makes what all of them draw with.

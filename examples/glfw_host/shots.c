@@ -274,6 +274,16 @@ static bool rain_shaft(demo *d)
            weather_check(wk_context_set_rain_areas(d->weather.context, areas, 3, sizeof areas[0]));
 }
 
+/* The sun stands behind the viewer, below 42 degrees. */
+static bool rainbow(demo *d)
+{
+    wk_weather w = weather_here(35e3, 0.6);
+    wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.2, 2500.0);
+    const wk_rain_area area = shower(6500, 0, 8000, 3000, 12);
+    return sun_at(d, SITE_VIEW_AZIMUTH_DEG - 176.0, 22) && set(d, &w, &heaps) &&
+           weather_check(wk_context_set_rain_areas(d->weather.context, &area, 1, sizeof area));
+}
+
 static bool under_the_bridge(demo *d)
 {
     wk_weather w = weather_here(4000, 0.95);
@@ -385,6 +395,7 @@ const shot SHOTS[] = {
     {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL},
     {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
     {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
+    {"rainbow", "Rainbow", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 12.0, 60.0, rainbow, WORLD, NULL},
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
     {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL},
     {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL},

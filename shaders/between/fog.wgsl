@@ -1,5 +1,6 @@
 // The fog's share of what lies between the eye and a point. Where a pipeline draws none, fog_clear.wgsl stands here.
 //!include "between/air.wgsl"
+//!include "between/bow.wgsl"
 //!include "fog/lookup.wgsl"
 
 // Whether there is any fog.
@@ -14,6 +15,9 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     // What drops and flakes near the eye hide is drawn as such.
     let hidden = drawn.w * depth_of_drawn(range);
     var f = fog_beside_drops(fog, ray.origin, ray.direction, range, plane, hidden);
+    if BOW {
+        f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, fog.to_sun), vec3f(0.0));
+    }
     f.radiance *= drawn.y;
     f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
     var before = Veil(vec3f(0.0), vec3f(1.0));

@@ -57,15 +57,15 @@ fn cloud_fades(within: f32) -> f32 {
 
 // Altitude at a distance along a ray.
 fn cloud_altitude(direction: vec3f, t: f32) -> f32 {
-    let r = clouds.radius + clouds.altitude;
+    let r = clouds.radius + cloud_eye();
     let rise = t * (2.0 * direction.z + t / r);
-    return clouds.altitude + rise * r / (r + sqrt(max(r * (r + rise), 0.0)));
+    return cloud_eye() + rise * r / (r + sqrt(max(r * (r + rise), 0.0)));
 }
 
 fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     let altitude = cloud_altitude(direction, t);
     // Along the ground.
-    let level = direction.xy * t * (clouds.radius / (clouds.radius + altitude));
+    let level = cloud_origin.xy + direction.xy * t * (clouds.radius / (clouds.radius + altitude));
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 

@@ -47,3 +47,11 @@ struct CloudsUniform {
 }
 
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
+
+// Where a ray begins, relative to the camera (east, north, up), m: at the camera, but for rays of parallel views.
+var<private> cloud_origin: vec3f;
+
+// Height of that place above the planet's ground, m.
+fn cloud_eye() -> f32 {
+    return clouds.altitude + cloud_origin.z;
+}

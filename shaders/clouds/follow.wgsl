@@ -23,7 +23,8 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
     let distance = select(1e6, exp2(0.5 * (reach.x + reach.y)), cover > 1e-4);
     let middle = min(square * picture.side + picture.side / 2u, picture.size - 1u);
     let ndc = pixel_ndc(picture, middle, frame.y_sign);
-    let was = picture.before * vec4f(view_ray(frame.depth, ndc).direction * distance - picture.moved, 1.0);
+    let ray = view_ray(frame.depth, ndc);
+    let was = picture.before * vec4f(ray.origin + ray.direction * distance - picture.moved, 1.0);
     let moved = (was.xy / max(was.w, 1e-6) - ndc) * vec2f(0.5, -0.5 * frame.y_sign);
     let back = moved * vec2f(picture.size);
     var out: FollowedSquare;

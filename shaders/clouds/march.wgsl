@@ -20,10 +20,10 @@ struct CloudSeen {
     reach: vec2f,
 }
 
-// Distances at which a ray from the camera crosses a sphere `height` above the planet's ground, in order; both the same where it does not.
+// Distances at which a ray crosses a sphere `height` above the planet's ground, in order; both the same where it does not.
 fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
-    let r = clouds.radius + clouds.altitude;
-    let rise = height - clouds.altitude;
+    let r = clouds.radius + cloud_eye();
+    let rise = height - cloud_eye();
     // t^2 + 2 r mu t = rise (2 r + rise), solved without the difference of squares of large numbers.
     let b = r * direction.z;
     let c = rise * (2.0 * r + rise);
@@ -97,7 +97,7 @@ fn cloud_part(before: CloudMarch, after: CloudMarch, share: f32) -> CloudMarch {
 // All layers up to `range`.
 fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     var seen = CloudMarch(vec3f(0.0), 1.0, vec2f(0.0));
-    let lowest = -(clouds.radius + clouds.altitude) * direction.z;
+    let lowest = -(clouds.radius + cloud_eye()) * direction.z;
     let ground = cloud_crossings(direction, 0.0);
     let end = select(range, min(range, ground.x), direction.z < 0.0 && ground.y > ground.x && ground.x > 0.0);
     // On the way down layers come from above, on the way up from below.

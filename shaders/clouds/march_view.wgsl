@@ -17,7 +17,9 @@ struct MarchedPixel {
 fn march(in: FullscreenVarying) -> MarchedPixel {
     drawn = frame.drawn;
     let ndc = pixel_ndc(picture, marched_pixel(picture, vec2u(in.position.xy)), frame.y_sign);
-    let seen = clouds_seen(view_ray(frame.depth, ndc).direction, RANGE_SKY, clouds.jitter);
+    let ray = view_ray(frame.depth, ndc);
+    cloud_origin = ray.origin;
+    let seen = clouds_seen(ray.direction, RANGE_SKY, clouds.jitter);
     let cover = 1.0 - seen.transmittance;
     return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
 }

@@ -36,7 +36,8 @@ fn shadow_on(pixel: vec2u) -> f32 {
     }
     let ndc = pixel_ndc(picture, pixel, frame.y_sign);
     let range = view_range(frame.depth, textureLoad(host_depth, vec2i(pixel), 0).r, ndc);
-    return cloud_shadow(shadows, shadow_map, repeating, view_ray(frame.depth, ndc).direction * range);
+    let ray = view_ray(frame.depth, ndc);
+    return cloud_shadow(shadows, shadow_map, repeating, ray.origin + ray.direction * range);
 }
 
 @fragment

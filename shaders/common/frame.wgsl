@@ -82,6 +82,8 @@ struct FrameUniform {
     mean_cloud: vec4f,
     // Of falling snow, as drops: what drawn flakes hide, 1/m, up to which distance, m.
     flakes: vec2f,
+    // What bows add to the phase function of drops, 1/sr a channel: two tables over the angle (between/bow.wgsl).
+    bows: array<vec4f, 320>,
 }
 
 // Colour of light at the planet's three wavelengths. The purest blues lie outside of Rec. 709: their negative parts are cut.

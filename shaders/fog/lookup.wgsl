@@ -49,6 +49,8 @@ struct Fog {
     transmittance: vec3f,
     // Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
     shade: f32,
+    // Light of sun or moon that is scattered once into the ray and no more, over the phase function.
+    once: vec3f,
 }
 
 struct LayerPath {
@@ -72,12 +74,18 @@ struct RayCourse {
     bend: f32,
 }
 
+// Of sunlight that has travelled the optical path `slant`, the share of what counts as not scattered that has not been; as
+// share_unscattered of src/fog/phase.rs.
+fn share_unscattered(forward: f32, slant: f32) -> f32 {
+    let fs = min(forward * slant, 1e4);
+    return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
+}
+
 // The phase function per steradian, at the angle whose 1 - cos is `versine`, for sunlight that has travelled the
 // optical path `slant`: the smooth part, and the peak above it; derivation in src/fog/phase.rs, fog_phase_after.
 fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> vec2f {
     let forward = u.scattering.z;
-    let fs = min(forward * slant, 1e4);
-    let share = select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
+    let share = share_unscattered(forward, slant);
     let order = inverseSqrt(share);
     let met = max(order * u.lobes.w, 1.0);
     let e = exp(vec3f(u.lobes.xy, u.scattering.x) * vec3f(order, met, order));
@@ -365,7 +373,13 @@ fn grazing_light(
     return source_along(u, mu, beam, a0, a1, s, path, left) + (1.0 - unforward) * edges;
 }
 
-fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec2f, depth: f32) -> vec3f {
+struct LayerLight {
+    radiance: vec3f,
+    // Of Fog.
+    once: vec3f,
+}
+
+fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec2f, depth: f32) -> LayerLight {
     let above = select(ends, max(2.0 * u.depth_total - ends, vec2f(0.5 * u.depth_total)), ends > vec2f(u.depth_total));
     let scaling = fog_channels(u.scaling);
     let a0 = scaling * above.x;
@@ -391,7 +405,8 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     let b0 = fog_exp(-a0 * u.inverse_mu0);
     let b1 = fog_exp(-a1 * u.inverse_mu0);
     let beyond = attenuated(rate, b1, fog_exp(-edge * u.inverse_mu0) * clear, rest);
-    let aureole = u.first * phase.y * (attenuated(rate, b0, b1 * through, path) + beyond * (through - left));
+    let met = attenuated(rate, b0, b1 * through, path);
+    let aureole = u.first * phase.y * (met + beyond * (through - left));
 
     let steep = smoothstep(0.5, 2.0, abs(slant) / u.spread);
     var l = vec3f(0.0);
@@ -403,7 +418,7 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
         let end = behind * clear + source_along(u, mu, beam, a1, edge, level, rest, clear);
         l += steep * (source_along(u, mu, beam, a0, a1, level, path, through) + end * (through - left));
     }
-    return max(l + aureole, vec3f(0.0));
+    return LayerLight(max(l + aureole, vec3f(0.0)), u.first * share_unscattered(u.scattering.z, sunlight) * met);
 }
 
 fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden: f32) -> Fog {
@@ -438,7 +453,9 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden:
     let to_sun = direction - u.to_sun;
     var fog: Fog;
     let entry_mu = clamp(mu + u.curvature * path.first, -1.0, 1.0);
-    fog.radiance = layer_radiance(u, mu, entry_mu, 0.5 * dot(to_sun, to_sun), ends, depth);
+    let light = layer_radiance(u, mu, entry_mu, 0.5 * dot(to_sun, to_sun), ends, depth);
+    fog.radiance = light.radiance;
+    fog.once = light.once;
     fog.transmittance = fog_exp(-fog_channels(u.ratio) * depth);
     fog.distance = path.first + (path.last - path.first) * mean_place(depth) * u.lit;
     let inside = select((path.last - path.first) / max(range, 1e-3), 0.0, range >= RANGE_SKY);
@@ -461,7 +478,7 @@ fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fo
             v = 0.0;
         }
     }
-    return Fog(u.first * (1.0 - v), 0.0, vec3f(v), 1.0);
+    return Fog(u.first * (1.0 - v), 0.0, vec3f(v), 1.0, vec3f(0.0));
 }
 
 // What fog does to the pixel whose ray starts at `origin` (relative to the camera) along `direction` (unit), with an
@@ -473,7 +490,7 @@ fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: 
 // As fog_along, where `hidden` of the optical depth of what falls is drawn as drops, flakes and stones: that much of it is left
 // out, and never more than all of it.
 fn fog_beside_drops(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32, hidden: f32) -> Fog {
-    var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0);
+    var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
     // A pipeline for one fog alone asks nothing.
     let is_layer = FOG_KINDS == 2u || FOG_KINDS == 4u || (FOG_KINDS == 1u && FOG_FALLING);
     if is_layer || ((FOG_KINDS & 7u) != 0u && u.kind <= FOG_EXPONENTIAL && (u.kind != FOG_CLEAR || u.falling.x > 0.0)) {

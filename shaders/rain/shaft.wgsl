@@ -1,6 +1,7 @@
 // Columns of rain seen from afar: one quad over each, blended as a veil before the picture. The f64 twin of what a ray meets is
 // in src/rain/shaft.rs; the entry points read the depth: shaft_single.wgsl and shaft_multi.wgsl.
 //!include "between/veil.wgsl"
+//!include "between/bow.wgsl"
 //!include "rain/area.wgsl"
 //!include "rain/phase.wgsl"
 
@@ -198,7 +199,8 @@ fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     let height = p.z + shaft.to_sun.z * way;
     let open = smoothstep(0.0, 0.3 * max(top - columns.list[i].ground, 100.0), top - height);
     let beam = shaft.sun * (open * exp(-0.5 * columns.list[i].extinction * way));
-    return around + beam * (drop_phase(dot(d, shaft.to_sun)) * 0.07957747);
+    let phase = vec3f(drop_phase(dot(d, shaft.to_sun)) * 0.07957747) + bow_phase(BOW_COLUMNS, d, shaft.to_sun);
+    return around + beam * max(phase, vec3f(0.0));
 }
 
 // The veil of a column before the pixel at `ndc`, premultiplied, in the drops' units.

@@ -40,8 +40,8 @@ pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
-/// What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid, then the
-/// context's default.
+/// What the ground is made of. An image of the target (the byte of red) counts first, then the wk_ground_grid or the
+/// tiles of the wk_terrain, then the context's default.
 pub type wk_surface_class = u32;
 /// In an image or a grid: the next source decides. As the context's default: natural ground, which is vegetation where
 /// the host's colour is green and soil elsewhere.
@@ -147,8 +147,9 @@ impl wk_ground {
 }
 
 /// Gets the water on the ground at a place of the host's world, as of wk_context_get_state_time. On the host's terrain
-/// (wk_context_set_ground_grid) and up to 3 m above it, the answer is that of its cells. Elsewhere it is that of level,
-/// open ground with the hollows that are drawn, a pattern fixed to the world by the context's seed.
+/// (wk_context_set_ground_grid, wk_context_set_terrain) and up to 3 m above it, the answer is that of its cells.
+/// Elsewhere it is that of level, open ground with the hollows that are drawn, a pattern fixed to the world by the
+/// context's seed.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
 #[unsafe(no_mangle)]

@@ -93,7 +93,7 @@ pub struct wk_ground_cell {
 }
 
 impl wk_ground_cell {
-    fn of(c: &GroundCell) -> Self {
+    pub(super) fn of(c: &GroundCell) -> Self {
         Self { film_mm: c.film_mm, soaked: c.soaked, standing_mm: c.standing_mm, ice: c.ice }
     }
 }

@@ -71,6 +71,8 @@ pub mod stars;
 
 pub mod clouds;
 
+pub mod cloud_shadow;
+
 pub mod lightning;
 
 pub mod windscreen;
@@ -80,6 +82,8 @@ pub mod ground;
 pub mod ground_grid;
 
 pub mod ground_texture;
+
+pub mod terrain;
 
 mod boundary;
 mod device_cell;

@@ -143,6 +143,10 @@ pub const WK_STRUCT_TYPE_SHELTER_SHAPE: wk_struct_type = 45;
 pub const WK_STRUCT_TYPE_GROUND_GRID: wk_struct_type = 46;
 /// wk_ground_texture
 pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
+/// wk_terrain
+pub const WK_STRUCT_TYPE_TERRAIN: wk_struct_type = 52;
+/// wk_terrain_cells
+pub const WK_STRUCT_TYPE_TERRAIN_CELLS: wk_struct_type = 53;
 /// wk_frame_light
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish
@@ -165,6 +169,8 @@ pub const WK_STRUCT_TYPE_SNOW: wk_struct_type = 70;
 pub const WK_STRUCT_TYPE_CLOUDS: wk_struct_type = 71;
 /// wk_environment
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
+/// wk_cloud_shadows
+pub const WK_STRUCT_TYPE_CLOUD_SHADOWS: wk_struct_type = 85;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

@@ -211,7 +211,8 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 
 /// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
 /// weather, time, clock, given sun and moon, planet, exposure, tone curve, fog law, shelters, lamps, rain areas, wind
-/// grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Not included:
+/// grid, the terrain with its water, and the world, place, seed and ground model that it belongs to. Of the tiles of a
+/// wk_terrain it has the water alone. Not included:
 /// how it is drawn (sky settings, views, plans), and the images of wk_context_set_occluder_maps, because each channel
 /// may have its own. `*out_size` gets the bytes needed, even if `capacity` is too small (then nothing else is written
 /// and the call fails) or `buffer` is NULL with `capacity` 0 (then it succeeds).
@@ -236,7 +237,8 @@ pub unsafe extern "C" fn wk_context_save(
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
 /// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (these two not for
 /// WK_WORLD_ECEF), seed and ground_model. A state of an earlier version that holds no planet and tone curve needs the
-/// same of these too. Occluder maps stay as they are.
+/// same of these too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: set those of the state, as they
+/// were when it was saved, before.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for bytes that are no saved state, are cut short, have even one byte changed, or have another
 /// format, which the message names (this version reads format 2; save states of format 1 again, because they did not

@@ -232,6 +232,8 @@ pub(super) struct ViewObject {
     veil: AtomicBool,
     /// Whether it samples the cube map of what stands around.
     environment: AtomicBool,
+    /// Whether it samples the map of the clouds' shadows.
+    cloud_shadows: AtomicBool,
 }
 
 impl ViewObject {
@@ -253,6 +255,16 @@ impl ViewObject {
     /// Whether the host samples the cube map.
     pub(super) fn has_environment(&self) -> bool {
         self.environment.load(Ordering::Relaxed)
+    }
+
+    /// From now on the map of the clouds' shadows is handed over.
+    pub(super) fn uses_cloud_shadows(&self) {
+        self.cloud_shadows.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the host samples the map of the clouds' shadows.
+    pub(super) fn has_cloud_shadows(&self) -> bool {
+        self.cloud_shadows.load(Ordering::Relaxed)
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, View> {
@@ -294,6 +306,7 @@ pub unsafe extern "C" fn wk_view_create(
             view,
             veil: AtomicBool::new(false),
             environment: AtomicBool::new(false),
+            cloud_shadows: AtomicBool::new(false),
         };
         let handle = handles::insert::<_, ContextObject>(Arc::new(view), Some(context))?;
         // SAFETY: `place` was checked and is the caller's.

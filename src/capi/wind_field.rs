@@ -1,7 +1,7 @@
 //! Wind round terrain and buildings
 //!
 //! A context can solve for the wind in a box of air about a place: it goes round the terrain of
-//! wk_context_set_ground_grid and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
+//! wk_context_set_ground_grid or wk_context_set_terrain and the boxes of wk_context_set_shelters, moving ones too, comes in as the weather's wind and
 //! leaves behind. It acts where a wind grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in what
 //! lands on surfaces and windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
 

@@ -7,7 +7,7 @@
 //!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
-//! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures.
+//! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own materials (`handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
@@ -19,6 +19,7 @@ pub mod candidates;
 pub mod cover;
 pub mod field;
 pub mod halo;
+mod handed;
 mod held;
 pub mod light;
 pub mod map;
@@ -41,6 +42,7 @@ mod view;
 
 use serde::{Deserialize, Serialize};
 
+pub use handed::{CloudShadows, SHADOW_SNIPPET_GLSL, SHADOW_SNIPPET_WGSL};
 pub(crate) use held::HeldClouds;
 pub(crate) use march::CloudRays;
 pub use settings::CloudSettings;

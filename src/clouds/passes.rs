@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{
     picture::{BEHIND, PAIR, Picture, SEEN},
     round::{Around, Round},
-    shadow_map::{Past, ShadowMap, Standing},
+    shadow_map::{Lie, Past, ShadowMap},
     tables::CloudTables,
     uniforms::{CloudsUniform, PictureUniform, ShadowUniform},
 };
@@ -140,7 +140,7 @@ pub(super) struct CloudPasses {
 
 /// What shadows are made of, and what they fall on.
 pub(super) struct Shaded<'a> {
-    pub lie: (Standing, ShadowUniform),
+    pub lie: Lie,
     pub depth: Layer<'a>,
 }
 
@@ -320,10 +320,11 @@ impl CloudPasses {
         (shaded, past): (Option<&Shaded<'_>>, Past),
     ) -> Result<wgpu::BindGroup> {
         if shaded.is_some() && self.shadows.is_none() {
-            (self.shadows, self.shaded) = (Some(ShadowMap::new(device, &self.tables, &self.block)?), None);
+            let map = ShadowMap::new(device, &self.tables, &self.block, &ShadowMap::texture(device))?;
+            (self.shadows, self.shaded) = (Some(map), None);
         }
         if let (Some(of), Some(shadows)) = (shaded, &mut self.shadows) {
-            shadows.draw(device, encoder, of.lie, past);
+            shadows.draw(device, encoder, &of.lie, past);
         }
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
         if let Some((made, group)) = &self.shaded
@@ -345,6 +346,28 @@ impl CloudPasses {
         });
         self.shaded = Some((key, group.clone()));
         Ok(group)
+    }
+
+    /// The texture of the map of shadows, if there is one.
+    pub fn shadow_texture(&self) -> Option<&wgpu::Texture> {
+        self.shadows.as_ref().map(|map| map.view.texture())
+    }
+
+    /// Brings the map of shadows up to a frame, in a texture that a host's own materials read.
+    pub fn draw_shadows(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (clouds, lie, past): (&CloudsUniform, &Lie, Past),
+        texture: &wgpu::Texture,
+    ) -> Result<()> {
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(clouds));
+        let map = match &mut self.shadows {
+            Some(map) => map,
+            none => none.insert(ShadowMap::new(device, &self.tables, &self.block, texture)?),
+        };
+        map.draw(device, encoder, lie, past);
+        Ok(())
     }
 
     /// Makes what is wanted of a frame. Answers the passes that it took.

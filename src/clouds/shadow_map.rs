@@ -73,6 +73,23 @@ pub(super) struct Standing {
     pub camera_m: DVec2,
 }
 
+/// How the map lies about a camera.
+#[derive(Clone, Copy)]
+pub(super) struct Lie {
+    pub standing: Standing,
+    /// Unit, never level.
+    pub to_light: DVec3,
+    plane_m: f64,
+    /// Where the camera stands in the map, in its period, and its height over the plane, m.
+    pub camera: DVec2,
+    pub eye_m: f64,
+    pub period_m: f64,
+    mean: f64,
+    /// How far shadows are told apart, and the height over the plane from which on they are not, m.
+    pub told: f64,
+    pub top_m: f64,
+}
+
 /// The map and the passes that make it.
 pub(super) struct ShadowMap {
     pub view: wgpu::TextureView,
@@ -95,42 +112,57 @@ struct Coarse {
     group: wgpu::BindGroup,
 }
 
-/// What the map is made of for a frame, how it lies, and where the camera stands in it.
-pub(super) fn lie<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> + Clone) -> (Standing, ShadowUniform) {
-    let scene = &now.scene;
-    let plane_m = scene.conditions.air.station_altitude_m;
-    let light = scene.brighter();
-    let drift_m = shapes.clone().next().map_or(DVec2::ZERO, |s| s.drift_m);
-    let period_m = TEXEL_M * f64::from(TEXELS);
-    let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
-    let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
-    let standing = Standing {
-        time_s: now.time_s,
-        to_light: light.direction,
-        threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
-        camera_m: DVec2::from_array(scene.map_m),
-        drift_m,
-    };
-    let uniform = ShadowUniform {
-        to_light: light.direction.with_z(light.direction.z.max(LOWEST)).as_vec3().to_array(),
-        plane: plane_m as f32,
-        camera: [camera.x, camera.y].map(|v| v.rem_euclid(1.0) as f32),
-        period: period_m as f32,
-        eye: (scene.place.altitude_m - plane_m) as f32,
-        mean: light.direct_share as f32,
-        told: smoothstep(TOLD[0], TOLD[1], light.direction.z) as f32,
-        top: (lowest_m - plane_m).max(0.0) as f32,
-        pad: 0.0,
-    };
-    (standing, uniform)
+impl Lie {
+    /// Of a moment's clouds.
+    pub fn new<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> + Clone) -> Self {
+        let scene = &now.scene;
+        let plane_m = scene.conditions.air.station_altitude_m;
+        let light = scene.brighter();
+        let drift_m = shapes.clone().next().map_or(DVec2::ZERO, |s| s.drift_m);
+        let period_m = TEXEL_M * f64::from(TEXELS);
+        let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
+        let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
+        Self {
+            standing: Standing {
+                time_s: now.time_s,
+                to_light: light.direction,
+                threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
+                camera_m: DVec2::from_array(scene.map_m),
+                drift_m,
+            },
+            to_light: light.direction.with_z(light.direction.z.max(LOWEST)),
+            plane_m,
+            camera: DVec2::new(camera.x.rem_euclid(1.0), camera.y.rem_euclid(1.0)),
+            eye_m: scene.place.altitude_m - plane_m,
+            period_m,
+            mean: light.direct_share,
+            told: smoothstep(TOLD[0], TOLD[1], light.direction.z),
+            top_m: (lowest_m - plane_m).max(0.0),
+        }
+    }
+
+    fn uniform(&self) -> ShadowUniform {
+        ShadowUniform {
+            to_light: self.to_light.as_vec3().to_array(),
+            plane: self.plane_m as f32,
+            camera: self.camera.as_vec2().to_array(),
+            period: self.period_m as f32,
+            eye: self.eye_m as f32,
+            mean: self.mean as f32,
+            told: self.told as f32,
+            top: self.top_m as f32,
+            pad: 0.0,
+        }
+    }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-fn map(device: &Device, side: u32) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let texture = flat_texture(&device.device, "shadows of clouds", (side, side), FORMAT, usage);
-    texture.create_view(&Default::default())
+/// A map of so many texels along a side.
+fn texture(device: &Device, side: u32) -> wgpu::Texture {
+    let usage =
+        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    flat_texture(&device.device, "shadows of clouds", (side, side), FORMAT, usage)
 }
 
 fn pipeline(
@@ -149,7 +181,7 @@ impl Coarse {
     fn new(device: &Device, shadow: &wgpu::BindGroupLayout, repeating: &wgpu::Sampler) -> Result<Self> {
         let slots = [(2, Slot::Filtered), (5, Slot::Sampler)];
         let layout = bind::layout(&device.device, "coarse shadows", wgpu::ShaderStages::FRAGMENT, &slots);
-        let view = map(device, COARSE);
+        let view = texture(device, COARSE).create_view(&Default::default());
         let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("coarse shadows"),
             layout: &layout,
@@ -165,8 +197,13 @@ impl Coarse {
 }
 
 impl ShadowMap {
-    /// Of clouds in these tables and this block.
-    pub fn new(device: &Device, tables: &CloudTables, clouds: &wgpu::Buffer) -> Result<Self> {
+    /// The texture of a map.
+    pub fn texture(device: &Device) -> wgpu::Texture {
+        texture(device, TEXELS)
+    }
+
+    /// Of clouds in these tables and this block, in a texture.
+    pub fn new(device: &Device, tables: &CloudTables, clouds: &wgpu::Buffer, of: &wgpu::Texture) -> Result<Self> {
         let slots = [
             (1, Slot::Uniform(size_of::<super::uniforms::CloudsUniform>())),
             (2, Slot::Filtered),
@@ -189,7 +226,7 @@ impl ShadowMap {
             ],
         });
         Ok(Self {
-            view: map(device, TEXELS),
+            view: of.create_view(&Default::default()),
             pipeline: pipeline(device, ("clouds/shadow.wgsl", "shadow"), &layout, TEXELS)?,
             coarse: Coarse::new(device, &layout, &tables.repeating)?,
             clouds: group,
@@ -205,14 +242,9 @@ impl ShadowMap {
 
     /// Makes some rows anew, and before them the whole map coarsely where nothing of it holds any more or the picture is cut; where a
     /// frame is a pure function of view and time, all rows.
-    pub fn draw(
-        &mut self,
-        device: &Device,
-        encoder: &mut wgpu::CommandEncoder,
-        (here, block): (Standing, ShadowUniform),
-        past: Past,
-    ) {
-        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&block));
+    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) {
+        let here = lie.standing;
+        device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&lie.uniform()));
         let rests = past != Past::Cut && self.standing == Some(here);
         let holds = past == Past::Kept && self.standing.is_some_and(|b| !here.leaps_from(&b));
         self.standing = Some(here);

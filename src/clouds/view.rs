@@ -5,15 +5,17 @@ use glam::{DMat4, DVec2, DVec3};
 use super::{
     CloudModel, CloudSettings,
     candidates::{CLOUDS, clouds_work},
+    handed::{CloudShadows, Handed},
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
     round::Around,
     shadow::LOWEST,
-    shadow_map,
+    shadow_map::{Lie, Past, ShadowMap},
     uniforms::{CloudsUniform, LAYERS, LayerUniform, MediumUniform, PictureUniform},
 };
 use crate::{
     error::Result,
+    gpu::Device,
     moment::{Moment, Scene},
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
     wind::LayerDrifts,
@@ -56,6 +58,8 @@ pub(crate) struct CloudsView {
     wanted: Option<Wanted>,
     /// The picture before this call holds the last frame's clouds.
     kept: bool,
+    /// The map of shadows, once a host's own materials read it.
+    handed: Option<Handed>,
     /// The layer of stars that shine between them.
     behind: Option<wgpu::Texture>,
 }
@@ -77,7 +81,9 @@ impl CloudsView {
     /// Whether some clouds leave places in the light and others not, and the host drew what shadows may fall on.
     fn casts_shadows(&self, shot: &Shot<'_>, stages: Stages) -> bool {
         let told = shot.now.scene.brighter().direction.z > LOWEST;
-        told && stages.has(Stages::SURFACE)
+        // A host that reads the map lays the shadows itself.
+        told && self.handed.is_none()
+            && stages.has(Stages::SURFACE)
             && shot.frame.depth.is_some()
             && self.overhead.as_ref().is_some_and(Overhead::is_broken)
     }
@@ -131,20 +137,20 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
 }
 
 impl Overhead {
-    fn uniform(&self, shot: &Shot<'_>, passes: &CloudPasses) -> CloudsUniform {
-        let scene = &shot.now.scene;
+    fn uniform(&self, now: &Moment<'_>, exposure: f64, passes: &CloudPasses) -> CloudsUniform {
+        let scene = &now.scene;
         let light = scene.brighter();
         let mut layers = [bytemuck::Zeroable::zeroed(); LAYERS];
         for (to, layer) in layers.iter_mut().zip(self.layers()) {
             let of = (layer.medium(), &passes.tables.light.media[layer.medium()].scattering);
-            let light = light_on(scene, &layer.shape, shot.exposure);
+            let light = light_on(scene, &layer.shape, exposure);
             *to = LayerUniform::new(&layer.shape, layer.share, self.place_m, &light, of);
         }
         CloudsUniform {
             to_sun: light.direction.as_vec3().to_array(),
             layer_count: self.layers().len() as u32,
             altitude: scene.place.altitude_m as f32,
-            radius: shot.now.planet_radius_m.min(1e9) as f32,
+            radius: now.planet_radius_m.min(1e9) as f32,
             jitter: 0.5,
             unused: 0.0,
             media: [0, 1].map(|i| MediumUniform::new(&passes.tables.light.media[i].scattering)),
@@ -154,6 +160,19 @@ impl Overhead {
 }
 
 impl CloudsView {
+    /// The map of shadows for a host's own materials: from the first call on each frame's first call brings it up to date.
+    pub fn shadows(&mut self, device: &Device) -> CloudShadows {
+        let made = self.passes.as_ref().and_then(|passes| passes.shadow_texture().cloned());
+        let handed = self.handed.get_or_insert_with(|| Handed::new(made.unwrap_or_else(|| ShadowMap::texture(device))));
+        handed.shadows.clone()
+    }
+
+    fn lay(&mut self, now: &Moment<'_>, lie: Option<&Lie>) {
+        if let Some(handed) = &mut self.handed {
+            handed.lay(now, lie);
+        }
+    }
+
     /// Side of the squares of pixels of which one is marched a frame: a pure function of view and time has no history to wait for.
     fn side(&self, frame: &Frame<'_>) -> u32 {
         if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.square_side }
@@ -193,13 +212,25 @@ impl DrawnEffect for CloudsView {
     }
 
     fn prepare(&mut self, at: &crate::stage::Prepare<'_>, to: &mut Recording<'_>) -> Result<()> {
-        let Some(overhead) = &self.overhead else { return Ok(()) };
+        let Some(overhead) = &self.overhead else {
+            self.lay(at.now, None);
+            return Ok(());
+        };
         let passes = match &mut self.passes {
             Some(passes) => passes,
             none => none.insert(Box::new(CloudPasses::new(to.device, at.now.seed)?)),
         };
         let cosine = at.now.scene.brighter().direction.z;
         passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);
+        let told = cosine > LOWEST && overhead.is_broken();
+        let lie = told.then(|| Lie::new(at.now, overhead.layers().iter().map(|l| &l.shape)));
+        if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
+            // Shadows do not ask for the exposure.
+            let clouds = overhead.uniform(at.now, 1.0, passes);
+            let of = (&clouds, lie, Past::of(at.frame));
+            passes.draw_shadows(to.device, to.encoder, of, &handed.shadows.texture)?;
+        }
+        self.lay(at.now, lie.as_ref());
         Ok(())
     }
 
@@ -259,13 +290,14 @@ impl DrawnEffect for CloudsView {
         else {
             return Ok(());
         };
-        let lie = shadow_map::lie(shot.now, overhead.layers().iter().map(|l| &l.shape));
-        let around = Around { standing: lie.0, altitude_m: shot.now.scene.place.altitude_m, exposure: shot.exposure };
+        let lie = Lie::new(shot.now, overhead.layers().iter().map(|l| &l.shape));
+        let around =
+            Around { standing: lie.standing, altitude_m: shot.now.scene.place.altitude_m, exposure: shot.exposure };
         let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
         let sampling = Sampling::of(shot.color.texture, shot.frame.depth);
         let of = CloudFrame {
             wanted,
-            clouds: overhead.uniform(shot, passes),
+            clouds: overhead.uniform(shot.now, shot.exposure, passes),
             picture,
             frame: with.block,
             sky: (layout, group),
@@ -273,7 +305,7 @@ impl DrawnEffect for CloudsView {
             shaded,
             around,
             fineness: self.settings.fineness,
-            past: shadow_map::Past::of(shot.frame),
+            past: Past::of(shot.frame),
             is_multisampled: sampling.multisampled()[1],
             depth_kinds: f64::from(shot.rays.depth_kinds()),
         };

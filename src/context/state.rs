@@ -62,14 +62,15 @@ impl Context {
         table
     }
 
-    fn saved(&self) -> Result<String> {
+    /// `for_hash`: to be hashed, never loaded.
+    fn saved(&self, for_hash: bool) -> Result<String> {
         if self.behind.is_some() {
             let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the simulation remain";
             return Err(Error::new(Status::WrongOrder, format!("{wanted} up to {} s", self.world.time_s)));
         }
         let fault = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
         let mut table = toml::Table::try_from(self.world.saved(self.created())?).map_err(fault)?;
-        self.held.all().iter().try_for_each(|effect| effect.save(&mut table))?;
+        self.held.all().iter().try_for_each(|effect| effect.save_in(&self.world, for_hash, &mut table))?;
         toml::to_string(&table).map_err(fault)
     }
 
@@ -80,7 +81,7 @@ impl Context {
     /// # Errors
     /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
-        Ok(sealed(&self.saved()?).into_bytes())
+        Ok(sealed(&self.saved(false)?).into_bytes())
     }
 
     /// Loads a state that [`Context::save`] wrote, in place of all that it holds, on a context that was created alike: the same
@@ -118,11 +119,11 @@ impl Context {
     }
 
     /// A number that is equal on two channels whose contexts show the same world from now on: a hash of what
-    /// [`Context::save`] writes.
+    /// [`Context::save`] writes, in which the water of each tile stands by a hash that is kept until it changes.
     ///
     /// # Errors
     /// As [`Context::save`].
     pub fn state_hash(&self) -> Result<u64> {
-        Ok(checksum(&self.saved()?))
+        Ok(checksum(&self.saved(true)?))
     }
 }

@@ -28,7 +28,8 @@ impl Context {
         Ok(())
     }
 
-    /// As [`Context::update`], with steps of the simulated ground for about as long as `most`, one at least. [`Status::Pending`]
+    /// As [`Context::update`], with steps of the simulated ground for about as long as `most`, one at least, or of a terrain in tiles a part
+    /// of one. [`Status::Pending`]
     /// says that steps remain: call it again with the same time, now or after a frame, until it answers [`Status::Ok`].
     ///
     /// Until then weather and light are of the new time, water is shown and answered as of [`Context::state_time_s`], and a time
@@ -99,5 +100,10 @@ impl Context {
             Some(_) => stepped.fold(self.world.time_s, f64::min),
             None => self.world.time_s,
         }
+    }
+
+    /// Whether an update has left steps for another call.
+    pub(crate) fn has_steps_to_do(&self) -> bool {
+        self.behind.is_some()
     }
 }

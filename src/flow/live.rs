@@ -12,6 +12,7 @@ use crate::{
     error::Result,
     scene::WorldKind,
     surroundings::{Shelter, TerrainHeights},
+    terrain::Terrain,
     weather::WindProfile,
     wind::{Blowing, WindVolume},
     world::World,
@@ -118,6 +119,7 @@ struct Scenery<'a> {
     /// How long after the host's boxes stand where they are, s.
     since_s: f64,
     terrain: Option<&'a Arc<TerrainHeights>>,
+    tiles: Option<&'a Arc<Terrain>>,
     /// From the terrain's origin to the field's corner, m.
     from_terrain: DVec3,
     /// Height of the ground where there is no terrain, m.
@@ -128,7 +130,8 @@ impl<'a> Scenery<'a> {
     fn new(world: &'a World, live: &Live, time_s: f64) -> Self {
         let (anchor, corner_m) = (live.anchor, live.corner_m());
         let station_m = world.timeline.at(time_s).air.station_altitude_m;
-        let terrain = world.set.terrain.as_ref();
+        let (terrain, tiles) = (world.set.terrain.as_ref(), world.set.tiles.as_ref());
+        let origin = terrain.map(|t| t.origin).or(tiles.map(|t| t.desc.origin));
         Self {
             world,
             anchor,
@@ -137,7 +140,8 @@ impl<'a> Scenery<'a> {
             size_m: DVec3::from(live.desc.cells.map(f64::from)) * live.desc.cell_m,
             since_s: time_s - world.time_s,
             terrain,
-            from_terrain: terrain.map_or(DVec3::ZERO, |t| corner_m - anchor.to_enu * (t.origin - anchor.origin)),
+            tiles,
+            from_terrain: origin.map_or(DVec3::ZERO, |o| corner_m - anchor.to_enu * (o - anchor.origin)),
             level_m: station_m - anchor.altitude_m - corner_m.z,
         }
     }
@@ -164,10 +168,12 @@ impl<'a> Scenery<'a> {
     }
 
     fn ground_m(&self, place: DVec2) -> f64 {
-        match self.terrain {
-            Some(t) => t.height_m(place + self.from_terrain.truncate()) - self.from_terrain.z,
-            None => self.level_m,
-        }
+        let at = place + self.from_terrain.truncate();
+        let height_m = match (self.terrain, self.tiles) {
+            (Some(t), _) => Some(t.height_m(at)),
+            (None, tiles) => tiles.and_then(|t| t.height_near(at)),
+        };
+        height_m.map_or(self.level_m, |height| height - self.from_terrain.z)
     }
 
     /// Two numbers that are the same for scenery that is alike: of all that stands, and of what moves.
@@ -179,10 +185,14 @@ impl<'a> Scenery<'a> {
             }
         };
         self.corner.iter().for_each(|c| add(0, *c as u64));
-        match self.terrain {
-            Some(t) => {
-                add(0, t.hash);
+        let low = self.from_terrain.truncate();
+        let tiles = self.tiles.map(|t| t.hash_within(low, low + self.size_m.truncate()));
+        match self.terrain.map(|t| t.hash).or(tiles) {
+            Some(heights) => {
+                add(0, heights);
                 self.from_terrain.to_array().iter().for_each(|v| add(0, v.to_bits()));
+                // Where tiles leave holes the station's height counts.
+                self.tiles.iter().for_each(|_| add(0, self.level_m.to_bits()));
             }
             None => add(0, self.level_m.to_bits()),
         }

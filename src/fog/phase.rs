@@ -5,6 +5,13 @@ use std::f64::consts::PI;
 
 use crate::light::phase::{PhaseLobes, lobes_phase};
 
+/// Of sunlight that has travelled the optical path `slant` with the share `forward` of what is scattered counted as not scattered, the share
+/// that has not been: (1 - e^(-f s)) / (f s), as below.
+pub fn share_unscattered(forward: f64, slant: f64) -> f64 {
+    let fs = (forward * slant).min(1e4);
+    if fs < 1e-3 { 1.0 - 0.5 * fs } else { (1.0 - (-fs).exp()) / fs }
+}
+
 /// The phase function with which sunlight that has travelled the optical path `slant` through the layer is scattered
 /// into the eye, its forward-scattered share `forward` counted with the beam, as the delta-scaled solution counts it.
 ///
@@ -16,8 +23,7 @@ use crate::light::phase::{PhaseLobes, lobes_phase};
 ///
 /// Answers the smooth part, and the peak above it.
 pub fn fog_phase_after(lobes: &PhaseLobes, forward: f64, smooth: f64, slant: f64, versine: f64) -> [f64; 2] {
-    let fs = (forward * slant).min(1e4);
-    let share = if fs < 1e-3 { 1.0 - 0.5 * fs } else { (1.0 - (-fs).exp()) / fs };
+    let share = share_unscattered(forward, slant);
     let d = (1.0 - smooth) * (1.0 - smooth) + 2.0 * smooth * versine;
     let even = (1.0 - forward) * (1.0 - smooth * smooth) / (d * d.sqrt()) / (4.0 * PI);
     [even, share * (lobes_phase(lobes, 1.0 / share.sqrt(), versine) - even)]

@@ -28,7 +28,7 @@ use glam::DVec3;
 use super::laws::DistanceKind;
 use super::light::Solution;
 use super::patterns::{Curtains, PATCH_WAVES, patch_mean};
-use super::phase::fog_phase_after;
+use super::phase::{fog_phase_after, share_unscattered};
 use crate::light::PhaseLobes;
 use crate::scene::depth::RANGE_SKY_M;
 
@@ -163,7 +163,7 @@ impl FallingModel {
 }
 
 /// What fog does to one pixel: `colour * transmittance + radiance`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FogSample {
     /// Light scattered into the ray.
     pub radiance: DVec3,
@@ -174,6 +174,8 @@ pub struct FogSample {
     pub distance: f64,
     /// Of the air's light between the eye and an object, what is left inside a layer that keeps the light from it.
     pub shade: f64,
+    /// Light of sun or moon that is scattered once into the ray and no more, over the phase function.
+    pub once: DVec3,
 }
 
 /// A ray's way through the layer.
@@ -443,8 +445,8 @@ fn source_along(m: &FogModel, mu: f64, beam: DVec3, a: [DVec3; 2], slant: DVec3,
 /// cos of its angle with the sun, `ends` the depths above its ends at 550 nm, `depth` along it.
 ///
 /// Below the ground's level (a hollow of the host's terrain) the field is mirrored: it has fog below it, not the bare
-/// ground that is known at the level only.
-fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64; 2], depth: f64) -> DVec3 {
+/// ground that is known at the level only. Answers the radiance, and what [`FogSample::once`] is.
+fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64; 2], depth: f64) -> [DVec3; 2] {
     let mirrored = |a: f64| if a > m.depth_total { (2.0 * m.depth_total - a).max(0.5 * m.depth_total) } else { a };
     let above = ends.map(mirrored);
     let a = above.map(|a| m.scaling * a);
@@ -473,7 +475,8 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let rate = DVec3::splat(1.0 - slant * m.inverse_mu0);
     let [b0, b1, b2] = [a[0], a[1], edge].map(|a| exp3(-a * m.inverse_mu0));
     let beyond = attenuated(rate, b1, b2 * clear, rest);
-    let aureole = m.first * peak * (attenuated(rate, b0, b1 * through, path) + beyond * (through - left));
+    let met = attenuated(rate, b0, b1 * through, path);
+    let aureole = m.first * peak * (met + beyond * (through - left));
 
     let x = ((slant.abs() / FORWARD_SPREAD - 0.5) / 1.5).clamp(0.0, 1.0);
     let steep = x * x * (3.0 - 2.0 * x);
@@ -481,7 +484,8 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let behind = m.ground_radiance.lerp(m.sky_radiance, toward_sky);
     let end = behind * clear + source_along(m, mu, beam, [a[1], edge], level, rest, clear);
     let narrow = source_along(m, mu, beam, a, level, path, through) + end * (through - left);
-    (wide.lerp(narrow, steep) + aureole).max(DVec3::ZERO)
+    let once = m.first * share_unscattered(m.forward, sunlight) * met;
+    [(wide.lerp(narrow, steep) + aureole).max(DVec3::ZERO), once]
 }
 
 /// Light in a ray near the level, whose forward lobe reaches up and down: every scattering on the way counts, the
@@ -522,7 +526,7 @@ pub fn fog_beside_drops(
 ) -> FogSample {
     match m.kind {
         FogKind::Clear if m.falling.extinction <= 0.0 => {
-            FogSample { radiance: DVec3::ZERO, transmittance: DVec3::ONE, distance: 0.0, shade: 1.0 }
+            FogSample { transmittance: DVec3::ONE, shade: 1.0, ..FogSample::default() }
         }
         FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, hidden),
         _ => fog_compatible(m, direction, range, plane),
@@ -570,13 +574,13 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: 
     let ends = [h0, path.end_altitude].map(|h| layer_depth_above(m, h));
     let versine = 0.5 * (direction - m.to_sun).length_squared();
     let entry_mu = (mu + m.curvature * path.first).clamp(-1.0, 1.0);
-    let radiance = layer_radiance(m, mu, entry_mu, versine, ends, depth);
+    let [radiance, once] = layer_radiance(m, mu, entry_mu, versine, ends, depth);
     let transmittance = exp3(-m.ratio * depth);
     // Mean distance of the scattered light, as in an even medium between entry and exit. The air is drawn as lit from a
     // free sky: where the layer lets only a share down, only that share of the air inside counts.
     let distance = path.first + (path.last - path.first) * mean_place(depth) * m.lit;
     let inside = if range >= RANGE_SKY_M { 0.0 } else { ((path.last - path.first) / range.max(1e-3)).min(1.0) };
-    FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside }
+    FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside, once }
 }
 
 fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> FogSample {
@@ -593,5 +597,5 @@ fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> Fog
             v = 0.0;
         }
     }
-    FogSample { radiance: m.first * (1.0 - v), transmittance: DVec3::splat(v), distance: 0.0, shade: 1.0 }
+    FogSample { radiance: m.first * (1.0 - v), transmittance: DVec3::splat(v), shade: 1.0, ..FogSample::default() }
 }

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Context {
-    /// The host's terrain, over which wetness and puddles are found cell by cell; `None` leaves level ground everywhere. The grid
+    /// The host's terrain as one grid, over which wetness and puddles are found cell by cell, in place of tiles; `None` leaves level ground everywhere. The grid
     /// whose heights are set already keeps its water. With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which begins as the
     /// ground has it and which [`Context::save`] keeps together with the heights; else the weather's wetness is spread over the
     /// terrain's hollows. Takes some tenths of a second for the largest grids.
@@ -17,9 +17,10 @@ impl Context {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_ground_grid(&mut self, grid: Option<GroundGrid>) -> Result<()> {
+        let is_set = grid.is_some();
         self.held.ground.set_grid(&self.world, grid)?;
         self.world.set.terrain = self.held.ground.heights();
-        Ok(())
+        if is_set { self.held.ground.set_terrain(&mut self.world, None) } else { Ok(()) }
     }
 
     /// The host's terrain.

@@ -8,5 +8,6 @@ mod lightning;
 mod rain;
 mod sky;
 mod stars;
+mod terrain;
 mod view;
 mod wind;

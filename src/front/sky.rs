@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::air::unit_vector;
 use crate::{
+    bow,
     clouds::CloudRays,
     context::{Context, Light, Scene},
     error::Result,
@@ -47,7 +48,8 @@ impl Context {
         let fog_depth = fog.depth_above(scene.place.altitude_m);
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
         let clouds = self.cloud_rays(&scene, time_s)?;
-        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, night, clouds };
+        let bows = bow::in_low_air(&scene.conditions).filter(|_| bow::is_lit(&scene));
+        let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, bows, night, clouds };
         units.into_iter().map(|d| Ok(seen.with_fog(d)?.to_array())).collect()
     }
 }
@@ -63,6 +65,8 @@ struct Seen<'a> {
     solved: OnceCell<Arc<SolvedSky>>,
     scene: &'a Scene,
     fog: FogModel,
+    /// The bows of its drops, where light shows them.
+    bows: Option<bow::Table>,
     night: NightBehind,
     /// Clouds that the model draws as a volume.
     clouds: Option<CloudRays<'a>>,
@@ -165,6 +169,8 @@ impl Seen<'_> {
         if fog.distance > NEAR_FOG_M {
             (before, through) = self.air(d, fog.distance)?;
         }
-        Ok(before + through * fog.radiance + fog.transmittance * (fog.shade * behind - before))
+        let bow = self.bows.as_ref().map_or(DVec3::ZERO, |table| bow::phase_in(table, d, self.fog.to_sun));
+        let radiance = (fog.radiance + fog.once * bow).max(DVec3::ZERO);
+        Ok(before + through * radiance + fog.transmittance * (fog.shade * behind - before))
     }
 }

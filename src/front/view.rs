@@ -1,7 +1,7 @@
 //! What a host sets and asks of a view's effects.
 
 use crate::{
-    clouds::CloudSettings,
+    clouds::{CloudSettings, CloudShadows},
     error::Result,
     frame::View,
     glass::{GlassReport, Windscreen, reference::Cells},
@@ -28,6 +28,20 @@ impl View {
         settings.validate()?;
         self.effects.clouds.settings = settings;
         Ok(())
+    }
+
+    /// The map of the clouds' shadows, for a host that lights its own materials. From the first call on, the first call of each frame brings
+    /// it up to date, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) lays no shadows of clouds any more: the host does. Ask after each
+    /// frame for how the map lies; a host that draws before Welkin uses that of the last frame, in which clouds have moved by centimetres.
+    ///
+    /// # Errors
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn cloud_shadows(&mut self) -> Result<CloudShadows> {
+        let device = self.device.clone();
+        let _entered = device.enter()?;
+        let shadows = self.effects.clouds.shadows(&device);
+        device.check_made()?;
+        Ok(shadows)
     }
 
     /// Sets how falling snow is drawn. Default: [`SnowSettings::default`].

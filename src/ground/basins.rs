@@ -279,7 +279,7 @@ pub(super) mod tests {
     }
 
     /// The level at which water that is poured everywhere without end stands, mm: the priority-flood.
-    fn flooded(heights: &[f32], columns: usize) -> Vec<f64> {
+    pub(in super::super) fn flooded(heights: &[f32], columns: usize) -> Vec<f64> {
         let rows = heights.len() / columns;
         let (mut level, mut queue) = (vec![f64::NAN; heights.len()], BinaryHeap::new());
         let key = |mm: f64, cell: usize| Reverse(((mm * 1e6) as i64, cell));

@@ -10,7 +10,7 @@ pub const MAX_GRID_NODES: u32 = 512;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
 /// What lies higher above the terrain than this, m, is on something that stands on it: a bridge, a roof.
-const ABOVE_M: f64 = 3.0;
+pub(super) const ABOVE_M: f64 = 3.0;
 
 /// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the square
 /// cell about it, with one state of water; between nodes the state goes linearly. Outside of the nodes the ground is the
@@ -73,11 +73,15 @@ impl GroundGrid {
         (p.truncate() / self.cell_m, p.z)
     }
 
+    /// The cells alone.
+    pub(super) fn cells(&self) -> CellGrid<'_> {
+        CellGrid { origin: self.origin, cell_m: self.cell_m, nodes: self.nodes, heights_m: &self.heights_m }
+    }
+
     /// Where a node lies in the host's world.
-    pub(crate) fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
-        let columns = self.nodes[0] as usize;
-        let plan = DVec2::new((index % columns) as f64, (index / columns) as f64) * self.cell_m;
-        self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
+    #[cfg(test)]
+    pub(super) fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
+        self.cells().node(index, to_enu)
     }
 
     /// Whether another has the same heights at the same places, whatever it is made of.
@@ -104,12 +108,6 @@ impl GroundGrid {
         })
     }
 
-    /// Lowest and highest node, m.
-    pub(crate) fn range(&self) -> (f64, f64) {
-        let ends = self.heights_m.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-        (f64::from(ends.0), f64::from(ends.1))
-    }
-
     /// The four nodes about a place and their shares; `None` outside.
     pub(crate) fn about(&self, cells: DVec2) -> Option<[(usize, f64); 4]> {
         let c = cells.to_array();
@@ -131,6 +129,36 @@ impl GroundGrid {
         let about = self.about(cells)?;
         let ground: f64 = about.iter().map(|(i, share)| share * f64::from(self.heights_m[*i])).sum();
         (height < ground + ABOVE_M).then_some(about)
+    }
+}
+
+/// Cells of a grid or of a tile: where they lie and how high.
+#[derive(Clone, Copy)]
+pub(super) struct CellGrid<'a> {
+    /// The first node, in the host's world; its height is what heights count from.
+    pub origin: DVec3,
+    pub cell_m: f64,
+    /// East and north.
+    pub nodes: [u32; 2],
+    pub heights_m: &'a [f32],
+}
+
+impl CellGrid<'_> {
+    pub fn len(&self) -> usize {
+        self.heights_m.len()
+    }
+
+    /// Where a node lies in the host's world.
+    pub fn node(&self, index: usize, to_enu: &DMat3) -> DVec3 {
+        let columns = self.nodes[0] as usize;
+        let plan = DVec2::new((index % columns) as f64, (index / columns) as f64) * self.cell_m;
+        self.origin + to_enu.transpose() * plan.extend(f64::from(self.heights_m[index]))
+    }
+
+    /// Lowest and highest node, m.
+    pub fn range(&self) -> (f64, f64) {
+        let ends = self.heights_m.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
+        (f64::from(ends.0), f64::from(ends.1))
     }
 }
 

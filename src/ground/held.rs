@@ -8,17 +8,21 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     GroundGrid, GroundSeen, GroundWater, Hollows, SurfaceClass,
+    held_tiles::GroundStep,
     host::{GroundCell, HostGround},
     saved::SavedGround,
     terrain::CellWater,
     texture::TerrainTextures,
+    tiled::{Changed, SavedTiles, TiledWater},
     water::{Forcing, STEP_S, depth_at_mm},
+    window::{DrawnTerrain, RecentChanges},
 };
 use crate::{
     error::{Error, Result, Status},
     moment::Moment,
     scene::WorldKind,
     surroundings::TerrainHeights,
+    terrain::Terrain,
     weather::{SurfaceCover, cover_under_rain},
     world::{HeldEffect, Within, World, parse_error},
 };
@@ -119,6 +123,10 @@ pub(crate) struct HeldGround {
     /// The terrain has no part in steps before this, s: it was set later.
     terrain_from_s: f64,
     pub(super) textures: Mutex<TerrainTextures>,
+    /// Water on the host's tiles, and the changes of these that it has still to follow, with the terrain after each.
+    pub(super) tiled: Option<Box<TiledWater>>,
+    pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
+    pub(super) recent: RecentChanges,
 }
 
 /// A saved ground that can be shown.
@@ -127,11 +135,14 @@ pub(crate) struct LoadedGround {
     host: Option<Box<HostGround>>,
     surface_class: SurfaceClass,
     terrain_from_s: f64,
+    tiled: Option<Box<TiledWater>>,
+    waiting: Vec<(Changed, Arc<Terrain>)>,
 }
 
 /// Where the parts of the ground are in a saved state.
 const STATE_KEY: &str = "ground";
 const TERRAIN_KEY: &str = "terrain";
+pub(super) const TILES_KEY: &str = "terrain_tiles";
 const CLASS_KEY: &str = "surface_class";
 
 impl HeldGround {
@@ -148,6 +159,9 @@ impl HeldGround {
             surface_class: SurfaceClass::Unspecified,
             terrain_from_s: f64::NEG_INFINITY,
             textures: Mutex::default(),
+            tiled: None,
+            waiting: Vec::new(),
+            recent: RecentChanges::default(),
         }
     }
 
@@ -203,13 +217,14 @@ impl HeldGround {
     }
 
     /// What the ground at a place is made of, by the cell of the host's terrain, else by the default.
-    fn surface_class_at(&self, position: DVec3) -> SurfaceClass {
+    fn surface_class_at(&self, world: &World, position: DVec3) -> SurfaceClass {
+        let tile = self.tile_class_at(world, position);
         let cell = self.host.as_ref().and_then(|held| {
             let about = held.terrain.grid.on_terrain(position, held.to_enu)?;
             let nearest = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
             Some(held.terrain.grid.class(nearest.0))
         });
-        cell.unwrap_or_default().or(self.surface_class)
+        cell.or(tile).unwrap_or_default().or(self.surface_class)
     }
 
     /// Water at a place on the host's terrain, and the share of the terrain under standing water; `None` elsewhere.
@@ -271,8 +286,12 @@ impl HeldGround {
         GroundSeen {
             cover: self.cover_at(world, now.eye, now.scene.conditions.surface),
             hollows: &self.hollows,
-            terrain: self.drawn_terrain(),
-            has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry()),
+            terrain: match self.drawn_terrain() {
+                Some((grid, to_enu)) => Some(DrawnTerrain::of_grid(grid, to_enu)),
+                None => world.set.tiles.as_ref().and_then(|terrain| DrawnTerrain::window(terrain, now.eye)),
+            },
+            has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry())
+                || self.tiled.as_ref().is_some_and(|tiled| tiled.is_wet()),
             surface_class: self.surface_class,
         }
     }
@@ -283,8 +302,8 @@ impl HeldGround {
     /// [`Status::InvalidArgument`] if the position is no place.
     pub fn at(&self, world: &World, position: DVec3) -> Result<GroundAt> {
         let frame = world.frame.place_at("position", position)?;
-        let surface_class = self.surface_class_at(position);
-        if let Some((cell, puddles)) = self.terrain_at(position) {
+        let surface_class = self.surface_class_at(world, position);
+        if let Some((cell, puddles)) = self.terrain_at(position).or_else(|| self.tiles_at(world, position)) {
             return Ok(GroundAt {
                 water_mm: cell.depth_mm(),
                 film_mm: cell.film_mm,
@@ -322,7 +341,8 @@ impl HeldGround {
     pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
         // Out with all of them first: what is left is the world's, whatever is wrong here.
-        let [state, terrain, class] = [STATE_KEY, TERRAIN_KEY, CLASS_KEY].map(|key| saved.remove(key));
+        let [state, terrain, class, tiles] =
+            [STATE_KEY, TERRAIN_KEY, CLASS_KEY, TILES_KEY].map(|key| saved.remove(key));
         let simulated = self.model == GroundModel::Simulated;
         let state: Option<GroundState> = state.map(|v| v.try_into().map_err(|e| fault(STATE_KEY, e))).transpose()?;
         if state.is_some_and(|g| !simulated || !g.is_valid()) {
@@ -339,7 +359,19 @@ impl HeldGround {
         let class: u8 =
             class.map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
         let class = SurfaceClass::from_number("surface_class", class);
+        let tiles: Option<SavedTiles> = tiles.map(|v| v.try_into().map_err(|e| fault(TILES_KEY, e))).transpose()?;
+        let here = world.set.tiles.as_deref();
+        if host.is_some() && here.is_some() {
+            let wanted = "holds a ground grid: remove the tiles of the terrain before, with wk_context_set_terrain";
+            return Err(Error::invalid("state", wanted));
+        }
+        let tiled = match tiles {
+            Some(saved) => Some(Box::new(saved.water(here)?)),
+            None => here.map(|terrain| Box::new(TiledWater::of_all(terrain))),
+        };
         Ok(LoadedGround {
+            tiled,
+            waiting: Vec::new(),
             state,
             host: host.transpose()?,
             surface_class: class.map_err(|e| e.with_status(Status::Parse).found_in("saved state"))?,
@@ -359,6 +391,8 @@ impl HeldGround {
         std::mem::swap(&mut self.host, &mut other.host);
         std::mem::swap(&mut self.surface_class, &mut other.surface_class);
         std::mem::swap(&mut self.terrain_from_s, &mut other.terrain_from_s);
+        std::mem::swap(&mut self.tiled, &mut other.tiled);
+        std::mem::swap(&mut self.waiting, &mut other.waiting);
     }
 }
 
@@ -372,6 +406,7 @@ impl HeldEffect for HeldGround {
             let begin_s = ((time_s - LONGEST_S) / SUN_EVERY_S).floor() * SUN_EVERY_S;
             let state = GroundState::first(world, begin_s.max(world.time_s))?;
             self.host.iter_mut().for_each(|host| host.begin_anew());
+            self.tiled.iter_mut().for_each(|tiled| tiled.begin_anew());
             state
         } else {
             self.state.map_or_else(|| GroundState::first(world, world.time_s), Ok)?
@@ -380,6 +415,7 @@ impl HeldEffect for HeldGround {
     }
 
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
+        self.follow_late(world);
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
             let end_s = state.next_s();
@@ -395,6 +431,10 @@ impl HeldEffect for HeldGround {
             let (before, from_s, seconds) = (state.water(), state.time_s, end_s - state.time_s);
             let c = world.timeline.at(0.5 * (from_s + end_s));
             let forcing = Forcing::of(&c, state.sunlight_w_m2);
+            let step = GroundStep { from_s, seconds, conditions: &c, forcing: &forcing, water: &before };
+            if !self.step_tiles(world, &step, within)? {
+                return Ok(Status::Pending);
+            }
             state.set(before.after(&forcing, seconds));
             state.time_s = end_s;
             if let Some(host) = self.host.as_mut().filter(|_| from_s >= self.terrain_from_s) {
@@ -418,6 +458,11 @@ impl HeldEffect for HeldGround {
 
     fn created(&self, table: &mut toml::Table) {
         table.insert("ground_model".into(), format!("{:?}", self.model).into());
+    }
+
+    fn save_in(&self, world: &World, for_hash: bool, table: &mut toml::Table) -> Result<()> {
+        self.save(table)?;
+        self.save_tiles(world, for_hash, table)
     }
 
     fn save(&self, table: &mut toml::Table) -> Result<()> {

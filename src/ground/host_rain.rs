@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::{GroundGrid, host::HostGround, terrain::RUN};
+use super::{grid::CellGrid, rain_on::RainOn, terrain::RUN, water::Forcing};
 use crate::{
     error::Result,
     falling::{MAX_AREAS, area::Shaft},
@@ -41,6 +41,11 @@ impl AreasOverGrid {
         self.list.iter().zip(evens).all(|(over, even)| over.is_none() || even.is_some())
     }
 
+    /// Whether any liquid falls on the grid.
+    pub fn rain(&self, forcing: &Forcing) -> bool {
+        forcing.liquid_mm_h > 0.0 || self.all().any(|o| o.liquid_mm_h > 0.0)
+    }
+
     /// Whether as much falls on each cell.
     pub fn even(&self) -> bool {
         self.are_even(&self.evens)
@@ -60,7 +65,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    fn new(grid: &GroundGrid, (to_enu, altitude_m): (&DMat3, f64), cells: Range<usize>) -> Self {
+    pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (&DMat3, f64), cells: Range<usize>) -> Self {
         let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let columns = grid.nodes[0] as usize;
         let (low, high) = cells.fold(ends, |(low, high), cell| {
@@ -77,9 +82,16 @@ impl Part {
     }
 
     /// All of a grid, and each run of its cells.
-    pub fn whole_and_runs(grid: &GroundGrid, frame: (&DMat3, f64)) -> (Self, Vec<Self>) {
+    pub fn whole_and_runs(grid: &CellGrid<'_>, frame: (&DMat3, f64)) -> (Self, Vec<Self>) {
         let run = |first| Self::new(grid, frame, first..(first + RUN).min(grid.len()));
         (Self::new(grid, frame, 0..grid.len()), (0..grid.len()).step_by(RUN).map(run).collect())
+    }
+
+    /// Reaches over another too.
+    pub fn reach_over(&mut self, other: &Self) {
+        self.reach_m = self.reach_m.max((other.middle - self.middle).length() + other.reach_m);
+        let [low, high] = other.altitudes_m;
+        self.altitudes_m = [self.altitudes_m[0].min(low), self.altitudes_m[1].max(high)];
     }
 
     /// Between which shares an area lies here, and what it is if it is the same everywhere.
@@ -101,14 +113,14 @@ impl Part {
     }
 }
 
-impl HostGround {
+impl RainOn {
     /// Rain and drizzle at a cell where the weather has `own`, mm/h.
-    fn liquid_with(&self, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
+    fn liquid_with(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, evens: &Evens, own: f64, cell: usize) -> f64 {
         overs.list.iter().zip(evens).fold(own, |sum, (over, even)| {
             let Some(over) = over else { return sum };
             let (share, begun) = even.unwrap_or_else(|| {
-                let altitude = self.altitude_m + f64::from(self.terrain.grid.heights_m[cell]);
-                let p = self.terrain.grid.node(cell, &self.to_enu);
+                let altitude = self.altitude_m + f64::from(grid.heights_m[cell]);
+                let p = grid.node(cell, &self.to_enu);
                 (over.shaft.share_at(p, &self.to_enu, altitude), over.shaft.begun(altitude))
             });
             sum * (1.0 - share) + over.liquid_mm_h * share * begun
@@ -116,27 +128,27 @@ impl HostGround {
     }
 
     /// The same by what is even over all of the grid.
-    pub(super) fn liquid(&self, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
-        self.liquid_with(overs, &overs.evens, own, cell)
+    pub(super) fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
+        self.liquid_with(grid, overs, &overs.evens, own, cell)
     }
 
     /// Rain and drizzle at each cell, mm/h: asked once for each run of cells on which areas lie evenly.
-    pub(super) fn liquids(&self, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
+    pub(super) fn liquids(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, liquids: &mut Vec<f64>) {
         liquids.clear();
-        let count = self.terrain.grid.len();
+        let count = grid.len();
         for (run, part) in self.runs.iter().enumerate() {
             let cells = run * RUN..((run + 1) * RUN).min(count);
             let evens = part.evens(overs, &self.to_enu);
             if overs.are_even(&evens) {
-                liquids.resize(cells.end, self.liquid_with(overs, &evens, own, cells.start));
+                liquids.resize(cells.end, self.liquid_with(grid, overs, &evens, own, cells.start));
             } else {
-                liquids.extend(cells.map(|cell| self.liquid_with(overs, &evens, own, cell)));
+                liquids.extend(cells.map(|cell| self.liquid_with(grid, overs, &evens, own, cell)));
             }
         }
     }
 }
 
-impl HostGround {
+impl RainOn {
     /// The areas over the terrain at a time; `c` is the weather then.
     pub(super) fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
         let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };

@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    GroundGrid, Hollows, SurfaceClass,
+    Hollows, SurfaceClass,
     class::{CLASSES, SurfaceLook},
     hollows::{PERIOD_M, WAVES, pattern_axes},
     reference::{WATER_OUTSIDE, fresnel_water, normal_quantile, ring_drops_per_m2_s},
+    window::DrawnTerrain,
 };
 use crate::{
     falling::{
@@ -104,8 +105,8 @@ pub(crate) struct WetScene<'a> {
     pub most_cd_m2: f64,
     /// Of the air that carries the rain, (east, north, up), where anything keeps rain off.
     pub wind_m_s: Option<DVec3>,
-    /// The host's terrain, and what turns the host's axes at its origin.
-    pub terrain: Option<(&'a GroundGrid, DMat3)>,
+    /// The host's terrain about the camera.
+    pub terrain: Option<DrawnTerrain>,
     /// Of ground of which nothing else is said.
     pub surface_class: SurfaceClass,
     /// From the axes of the host's image of normals to east, north, up, and what its numbers are multiplied by and added to that.
@@ -245,9 +246,9 @@ impl WetScene<'_> {
 
     /// The rows of the block, the last node, and the size of a cell.
     fn terrain_rows(&self) -> ([[f32; 4]; 3], [f64; 2], f64) {
-        let Some((grid, to_enu)) = &self.terrain else { return ([[0.0; 4]; 3], [1.0; 2], 1.0) };
-        let turned = *to_enu * self.scene.world_to_enu.transpose();
-        let eye = *to_enu * (self.position - grid.origin);
+        let Some(grid) = &self.terrain else { return ([[0.0; 4]; 3], [1.0; 2], 1.0) };
+        let turned = grid.to_enu * self.scene.world_to_enu.transpose();
+        let eye = grid.to_enu * (self.position - grid.origin);
         let row = |i: usize, unit: f64| (turned.row(i).extend(eye[i]) / unit).as_vec4().to_array();
         let last = grid.nodes.map(|n| f64::from(n - 1));
         ([row(0, grid.cell_m), row(1, grid.cell_m), row(2, 1.0)], last, grid.cell_m)

@@ -1,8 +1,13 @@
 //! What a view draws of the water on the ground: nothing while it is dry.
 
+use std::sync::Arc;
+
 use glam::DMat3;
 
-use super::{DropsKept, GroundGrid, GroundUniform, Hollows, SurfaceClass, WetScene};
+use super::{
+    DropsKept, GroundUniform, HeldGround, Hollows, SurfaceClass, WetScene,
+    window::{DrawnTerrain, TerrainWindow},
+};
 use crate::{
     error::Result,
     gpu::Device,
@@ -10,6 +15,7 @@ use crate::{
     scene::WorldKind,
     stage::{Block, Composition, DrawnEffect, Frame, FrameFlags, Shot, Stages, Texture, is_float, rounding, yes},
     weather::SurfaceCover,
+    world::World,
 };
 
 /// Largest number of a half float, with room for what follows.
@@ -20,8 +26,8 @@ pub(crate) struct GroundSeen<'a> {
     /// What weather has done to the ground at the camera.
     pub cover: SurfaceCover,
     pub hollows: &'a Hollows,
-    /// The host's terrain, and what turns the host's axes at its origin.
-    pub terrain: Option<(&'a GroundGrid, DMat3)>,
+    /// The host's terrain about the camera.
+    pub terrain: Option<DrawnTerrain>,
     /// Whether there is water on it.
     pub has_wet_terrain: bool,
     /// Of ground of which nothing else is said.
@@ -36,13 +42,15 @@ pub(crate) struct GroundView {
     has_terrain: bool,
     /// Water and surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
+    window: TerrainWindow,
     drops: DropsKept,
 }
 
 impl GroundView {
     pub fn new(device: &Device) -> Self {
         let buffer = crate::gpu::bind::block(&device.device, "ground", size_of::<GroundUniform>());
-        Self { buffer, block: None, has_terrain: false, views: [None, None], drops: DropsKept::default() }
+        let (window, drops) = (TerrainWindow::default(), DropsKept::default());
+        Self { buffer, block: None, has_terrain: false, views: [None, None], window, drops }
     }
 
     /// Takes what there is of a moment for a frame; `fog_depth` is the fog's optical depth straight up. Says whether there is anything
@@ -67,9 +75,19 @@ impl GroundView {
         Ok(self.block.is_some())
     }
 
-    /// Takes the textures of the host's terrain.
-    pub fn set_terrain(&mut self, views: [Option<wgpu::TextureView>; 2]) {
-        self.views = views;
+    /// Takes the textures of the host's terrain, up to date if any of it is `wanted`: of its tiles about the camera, or of its grid.
+    pub fn take_terrain(
+        &mut self,
+        device: &Arc<Device>,
+        (held, world): (&HeldGround, &World),
+        now: &Moment<'_>,
+        wanted: bool,
+    ) {
+        self.views = match held.shown_tiles(world, now.here.surface.ice) {
+            Some(shown) if wanted => self.window.views(device, now.eye, &shown),
+            Some(_) => [None, None],
+            None => held.views(device, wanted),
+        };
     }
 }
 

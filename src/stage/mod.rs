@@ -28,7 +28,7 @@ pub(crate) use target::{
     Sampling, can_be_apart, can_copy, check_classes, check_color, check_depth, check_mask, check_normals,
     check_written, color_copy, is_copy_of, rounding,
 };
-pub(crate) use uniform::{FlashUniform, FrameUniform, is_float, uniform};
+pub(crate) use uniform::{BOW_ENTRIES, FlashUniform, FrameUniform, is_float, uniform};
 
 use glam::DVec3;
 

@@ -68,7 +68,12 @@ pub(crate) struct FrameUniform {
     /// As `drops`, of flakes.
     pub flakes: [f32; 2],
     pub pad: [f32; 2],
+    /// What bows add to the phase function of drops in the low air, and in columns under rain areas, 1/sr a channel, over the angle.
+    pub bows: [[[f32; 4]; BOW_ENTRIES]; 2],
 }
+
+/// Entries of a table of bows.
+pub(crate) const BOW_ENTRIES: usize = 160;
 
 /// Whether a format holds light and not the steps of a display.
 pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
@@ -132,6 +137,7 @@ pub(crate) fn uniform(
         mean_cloud: [0.0; 4],
         flakes: [0.0; 2],
         pad: [0.0; 2],
+        bows: [[[0.0; 4]; BOW_ENTRIES]; 2],
     }
 }
 
@@ -179,7 +185,9 @@ mod tests {
                 picture,
                 clouds_drawn,
                 clouds_over,
-                mean_cloud
+                mean_cloud,
+                flakes,
+                bows
             ]
         );
         shader::assert_layout!(

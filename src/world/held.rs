@@ -45,4 +45,10 @@ pub(crate) trait HeldEffect {
     fn save(&self, _state: &mut toml::Table) -> Result<()> {
         Ok(())
     }
+
+    /// The same for an effect whose state is that of things in the world. `for_hash`: the state is hashed and never loaded, so hashes
+    /// may stand for large parts of it.
+    fn save_in(&self, _world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
+        self.save(state)
+    }
 }

@@ -6,6 +6,7 @@
 //! machine, without a device and a frame.
 
 mod air;
+mod binary;
 mod held;
 mod kept;
 mod lights;
@@ -26,6 +27,7 @@ use std::{
 use glam::{DMat3, DVec3};
 
 pub(crate) use air::planet_under;
+pub(crate) use binary::{binary_text, text_binary};
 pub(crate) use held::{HeldEffect, Within};
 pub(crate) use kept::KeptScene;
 pub(crate) use lights::color_of;
@@ -45,6 +47,7 @@ use crate::{
     planet::Planet,
     scene::{HostLight, Place, WorldFrame},
     surroundings::{OccluderMaps, Shelter, TerrainHeights, WindTexture},
+    terrain::Terrain,
     weather::{Conditions, Timeline, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
@@ -91,6 +94,8 @@ pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
     /// The host's terrain; whatever holds it saves it.
     pub terrain: Option<Arc<TerrainHeights>>,
+    /// The same in tiles, of which the host keeps the heights; never both.
+    pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
@@ -190,6 +195,7 @@ impl World {
             set: Settings {
                 shelters: Vec::new(),
                 terrain: None,
+                tiles: None,
                 regions: Vec::new(),
                 given_sun: None,
                 given_moon: None,

@@ -155,6 +155,7 @@ impl World {
         let Settings {
             shelters,
             terrain: _,
+            tiles: _,
             regions,
             given_sun,
             given_moon,
@@ -210,6 +211,7 @@ impl World {
         let set = Settings {
             shelters,
             terrain: None,
+            tiles: None,
             regions: saved.areas,
             given_sun,
             given_moon,
@@ -238,6 +240,8 @@ impl World {
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.layers_drifted, &mut other.layers_drifted);
         swap(&mut self.set, &mut other.set);
+        // Tiles are the host's, whatever is loaded.
+        swap(&mut self.set.tiles, &mut other.set.tiles);
         swap(&mut self.exposure, &mut other.beside.exposure);
         if let Some(tone) = &mut other.beside.tone {
             swap(&mut self.tone, tone);

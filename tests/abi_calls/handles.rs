@@ -5,10 +5,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
+    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
+    radiance::*, rain::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*,
+    veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -102,6 +102,23 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_ground_texture", "context", false, |h| unsafe {
             wk_context_get_ground_texture(h.cast(), null_mut())
         }),
+        case("wk_context_set_terrain", "context", false, |h| unsafe { wk_context_set_terrain(h.cast(), null()) }),
+        case("wk_context_set_terrain_tile", "context", false, |h| unsafe {
+            wk_context_set_terrain_tile(h.cast(), null())
+        }),
+        case("wk_context_update_terrain", "context", false, |h| unsafe { wk_context_update_terrain(h.cast(), null()) }),
+        case("wk_context_remove_terrain_tile", "context", false, |h| unsafe {
+            wk_context_remove_terrain_tile(h.cast(), 0, 0)
+        }),
+        case("wk_context_get_terrain_revision", "context", false, |h| unsafe {
+            wk_context_get_terrain_revision(h.cast(), null_mut())
+        }),
+        case("wk_context_get_terrain_points", "context", false, |h| unsafe {
+            wk_context_get_terrain_points(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_terrain_water", "context", false, |h| unsafe {
+            wk_context_get_terrain_water(h.cast(), 0, 0, null_mut(), 0, 0, null_mut())
+        }),
         case("wk_context_set_occluder_maps", "context", false, |h| unsafe {
             wk_context_set_occluder_maps(h.cast(), null(), 0, 0)
         }),
@@ -178,6 +195,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_view_destroy", "view", true, |h| unsafe { wk_view_destroy(h.cast()) }),
         case("wk_view_record", "view", false, |h| unsafe { wk_view_record(h.cast(), null(), 1) }),
         case("wk_view_get_environment", "view", false, |h| unsafe { wk_view_get_environment(h.cast(), null_mut()) }),
+        case("wk_view_get_cloud_shadows", "view", false, |h| unsafe {
+            wk_view_get_cloud_shadows(h.cast(), null_mut())
+        }),
         case("wk_view_get_frame_textures", "view", false, |h| unsafe {
             wk_view_get_frame_textures(h.cast(), null_mut())
         }),
@@ -274,6 +294,7 @@ const WITHOUT: &[&str] = &[
     "wk_utc_from_calendar",
     "wk_get_veil_snippet",
     "wk_get_ground_snippet",
+    "wk_get_cloud_shadow_snippet",
     "wk_set_log_callback",
     "wk_device_create",
     "wk_device_create_for_window",

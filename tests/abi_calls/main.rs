@@ -20,6 +20,7 @@ mod shelters;
 mod sky;
 mod state;
 mod structs;
+mod terrain;
 mod weather;
 mod wind;
 mod world;

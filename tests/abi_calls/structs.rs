@@ -7,10 +7,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*, query::*, rain::*,
-    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
+    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*,
+    query::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -124,6 +124,10 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
+        case("wk_terrain", "terrain", true, move |p| unsafe { wk_context_set_terrain(context, p.cast()) }),
+        case("wk_terrain_cells", "terrain_cells", false, move |p| unsafe {
+            wk_context_update_terrain(context, p.cast())
+        }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_snow", "snow", true, move |p| unsafe { wk_view_set_snow(view, p.cast()) }),
         case("wk_clouds", "clouds", true, move |p| unsafe { wk_view_set_clouds(view, p.cast()) }),
@@ -170,6 +174,7 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_get_ambient_at(context, &ORIGIN, 0.0, p.cast())
         }),
         case("wk_environment", "out_environment", false, move |p| unsafe { wk_view_get_environment(view, p.cast()) }),
+        case("wk_cloud_shadows", "out_shadows", false, move |p| unsafe { wk_view_get_cloud_shadows(view, p.cast()) }),
         case("wk_frame_textures", "out_textures", false, move |p| unsafe {
             wk_view_get_frame_textures(view, p.cast())
         }),
@@ -210,6 +215,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_flash",
     "wk_ground_light",
     "wk_ground_cell",
+    "wk_terrain_point",
     "wk_segment",
     "wk_between",
     "wk_sky_radiance",
@@ -414,8 +420,11 @@ fn snippets_are_texts_and_their_language_is_checked() {
     let mut text = null();
     // SAFETY: live pointers.
     unsafe {
-        for (get, name) in [(wk_get_veil_snippet as Snippet, "welkin_veil("), (wk_get_ground_snippet, "welkin_ground(")]
-        {
+        for (get, name) in [
+            (wk_get_veil_snippet as Snippet, "welkin_veil("),
+            (wk_get_ground_snippet, "welkin_ground("),
+            (wk_get_cloud_shadow_snippet, "welkin_cloud_shadow("),
+        ] {
             for (language, word) in [(WK_SHADING_GLSL, "vec3 "), (WK_SHADING_WGSL, "fn ")] {
                 assert_eq!(get(language, &mut text), WK_OK);
                 let text = std::ffi::CStr::from_ptr(text).to_str().unwrap();

@@ -1,5 +1,6 @@
 //! One small scene through the C functions, for the tests of every kind of host: the same context, camera and picture.
 
+pub mod cloud_shadows;
 pub mod ground;
 pub mod limited;
 pub mod loss;

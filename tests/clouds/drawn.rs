@@ -62,7 +62,7 @@ impl Sky {
 }
 
 /// 95th percentile of the difference of luminance over the second picture's.
-fn p95(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+pub fn p95(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let white = b.iter().map(luminance).sum::<f64>() / b.len() as f64;
     let off = |(a, b): (&[f64; 3], &[f64; 3])| (luminance(a) - luminance(b)).abs() / (luminance(b) + 0.01 * white);
     let mut all: Vec<f64> = a.iter().zip(b).map(off).collect();

@@ -4,9 +4,11 @@ mod asked;
 mod carried;
 mod drawn;
 mod elsewhere;
+mod handed;
 #[path = "../frame/lookup.rs"]
 mod lookup;
 mod plan;
+mod seams;
 mod shadows;
 #[path = "../support/textures.rs"]
 mod textures;

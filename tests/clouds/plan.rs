@@ -62,6 +62,18 @@ fn a_sky_seen_through_a_slit_needs_no_volume_and_one_that_fills_the_picture_does
     assert!(clouds.last().p95 > 0.1 && clouds.work > 0.5 * f64::from(SIZE.0 * SIZE.1), "{clouds:?}");
 }
 
+/// A digger's driver sees the sky over the pit's edge in the upper half of the picture: fair weather stands there as a volume, and where
+/// little is asked of it as a deck.
+#[test]
+fn a_fair_sky_behind_a_diggers_site_is_drawn_as_what_it_is_worth() {
+    let fair = "LOWI 121150Z 00000KT 9999 FEW040 18/12 Q1015";
+    let (clouds, _) = planned(fair, SIZE.1 / 2, 0.02);
+    println!("fair weather over half of the picture: {:?}, p95 {:.3}", clouds.reason, clouds.last().p95);
+    assert_eq!((clouds.reason, clouds.share), (Reason::Needed, 1.0), "{clouds:?}");
+    let (clouds, _) = planned(fair, SIZE.1 / 2, 0.95);
+    assert_eq!((clouds.reason, clouds.rung), (Reason::WithinTolerance, 1), "{clouds:?}");
+}
+
 #[test]
 fn an_overcast_ceiling_is_a_deck_already_and_fog_hides_all_clouds() {
     let (clouds, _) = planned("LOWI 121150Z 00000KT 9999 OVC020 18/12 Q1015", SIZE.1, 0.01);

@@ -12,10 +12,10 @@ use crate::drawn::{SIZE, Sky};
 
 /// Height of the camera that looks straight down at level ground.
 const HEIGHT_M: f64 = 2500.0;
-const SCATTERED: &str = "LOWI 121150Z 00000KT 9999 SCT100 18/12 Q1015";
+pub const SCATTERED: &str = "LOWI 121150Z 00000KT 9999 SCT100 18/12 Q1015";
 
 /// The picture over a ground of this luminance, green, of a frame with these flags.
-fn over_ground(sky: &mut Sky, luminance: f32, flags: FrameFlags) -> Vec<f64> {
+pub fn over_ground(sky: &mut Sky, luminance: f32, flags: FrameFlags) -> Vec<f64> {
     let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
     let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let write = |texture: &wgpu::Texture, texels: &[f32], bytes: u32| {

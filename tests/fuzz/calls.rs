@@ -4,10 +4,10 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*, frame::*, ground::*,
-    ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*, radiance::*, rain::*,
-    report::*, sky::*, snow::*, stars::*, status::*, surface::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
-    wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
+    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
+    radiance::*, rain::*, report::*, sky::*, snow::*, stars::*, status::*, surface::*, terrain::*, texture::*,
+    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::{
@@ -28,6 +28,40 @@ impl From<wk_status> for Answer {
     fn from(status: wk_status) -> Self {
         Self { status, faults: vec![] }
     }
+}
+
+/// Classes of the header, holes, and now and then one beyond them.
+static CLASSES: [u8; 1024] = {
+    let mut classes = [0; 1024];
+    let mut i = 0;
+    while i < 1024 {
+        classes[i] = if i % 61 == 60 { 255 } else { (i % 7) as u8 };
+        i += 1;
+    }
+    classes[1000] = 7;
+    classes
+};
+
+/// Cells of a tile of 32 x 32, mostly of one that may be there and within it.
+fn terrain_cells(d: &mut Dice) -> Struct {
+    let mut cells = Struct::random(d, "wk_terrain_cells", 10);
+    if !d.one_in(10) {
+        cells.set("tile", [d.below(3) as i32 - 1, d.below(3) as i32 - 1]);
+    }
+    if !d.one_in(4) {
+        cells.set("first_cell", [d.below(20) as u32, d.below(20) as u32]);
+        cells.set("cells", [1 + d.below(12) as u32, 1 + d.below(12) as u32]);
+        cells.set("height_stride", 0u32);
+        cells.set("surface_class_stride", 0u32);
+    }
+    let torn = d.one_in(8);
+    let height = |d: &mut Dice| if torn && d.one_in(300) { d.float() as f32 } else { d.unit() as f32 };
+    cells.set_numbers("heights_m", (0..1024).map(|_| height(d)).collect());
+    cells.set("height_count", if d.one_in(10) { d.below(1025) as u32 } else { 1024 });
+    let classes = if d.one_in(2) { 0 } else { d.below(1025) as u32 };
+    cells.set("surface_classes", if classes == 0 { null() } else { CLASSES.as_ptr() });
+    cells.set("surface_class_count", classes);
+    cells
 }
 
 impl Answer {
@@ -473,6 +507,50 @@ pub const CALLS: &[(&str, Call)] = &[
         }
         unsafe { wk_context_set_ground_grid(handle(d, &w.contexts), grid.ptr().cast()) }.into()
     }),
+    ("wk_context_set_terrain", |d, w| {
+        let mut terrain = Struct::random(d, "wk_terrain", 10);
+        if !d.one_in(5) {
+            terrain.set("tile_cells", 32u32);
+            terrain.set("cell_m", 1.0f64);
+        }
+        unsafe { wk_context_set_terrain(handle(d, &w.contexts), terrain.ptr().cast()) }.into()
+    }),
+    ("wk_context_set_terrain_tile", |d, w| {
+        let mut cells = terrain_cells(d);
+        if !d.one_in(5) {
+            cells.set("cells", [0u32, 0]);
+            cells.set("first_cell", [0u32, 0]);
+            cells.set("height_stride", 0u32);
+        }
+        unsafe { wk_context_set_terrain_tile(handle(d, &w.contexts), cells.ptr().cast()) }.into()
+    }),
+    ("wk_context_update_terrain", |d, w| {
+        let mut cells = terrain_cells(d);
+        unsafe { wk_context_update_terrain(handle(d, &w.contexts), cells.ptr().cast()) }.into()
+    }),
+    ("wk_context_remove_terrain_tile", |d, w| {
+        let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
+        unsafe { wk_context_remove_terrain_tile(handle(d, &w.contexts), east, north) }.into()
+    }),
+    ("wk_context_get_terrain_revision", |d, w| {
+        let mut revision = 0;
+        unsafe { wk_context_get_terrain_revision(handle(d, &w.contexts), &mut revision) }.into()
+    }),
+    ("wk_context_get_terrain_points", |d, w| {
+        let places: [_; MOST as usize] = std::array::from_fn(|_| position(d));
+        let mut points = room(unsafe { std::mem::zeroed::<wk_terrain_point>() });
+        let (context, count) = (handle(d, &w.contexts), d.below(MOST as usize + 1) as u32);
+        let size = size_of_element::<wk_terrain_point>(d);
+        unsafe { wk_context_get_terrain_points(context, places.as_ptr(), count, 24, points.as_mut_ptr(), size) }.into()
+    }),
+    ("wk_context_get_terrain_water", |d, w| {
+        let mut cells = vec![unsafe { std::mem::zeroed::<wk_ground_cell>() }; 1024];
+        let (context, mut revision) = (handle(d, &w.contexts), 0);
+        let (most, size) = (d.below(1025) as u32, size_of_element::<wk_ground_cell>(d));
+        let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
+        unsafe { wk_context_get_terrain_water(context, east, north, cells.as_mut_ptr(), most, size, &mut revision) }
+            .into()
+    }),
     ("wk_context_set_cloud_model", |d, w| {
         let model = d.below(3) as u32;
         unsafe { wk_context_set_cloud_model(handle(d, &w.contexts), model) }.into()
@@ -665,6 +743,10 @@ pub const CALLS: &[(&str, Call)] = &[
         let mut text = null();
         unsafe { wk_get_ground_snippet(d.whole() as u32, &mut text) }.into()
     }),
+    ("wk_get_cloud_shadow_snippet", |d, _| {
+        let mut text = null();
+        unsafe { wk_get_cloud_shadow_snippet(d.whole() as u32, &mut text) }.into()
+    }),
     ("wk_surface_create", |d, w| {
         let (device, mut out) = (handle(d, &w.devices), null_mut());
         let mut window = Struct::random(d, "wk_window", 4);
@@ -700,6 +782,10 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_view_get_environment", |d, w| {
         let view = handle(d, &w.views);
         get("wk_environment", |p| unsafe { wk_view_get_environment(view, p.cast()) })
+    }),
+    ("wk_view_get_cloud_shadows", |d, w| {
+        let view = handle(d, &w.views);
+        get("wk_cloud_shadows", |p| unsafe { wk_view_get_cloud_shadows(view, p.cast()) })
     }),
     ("wk_view_get_frame_textures", |d, w| {
         let view = handle(d, &w.views);

@@ -6,6 +6,7 @@
 mod c_scene;
 mod canvas;
 mod capi;
+mod cloud_shadows;
 mod egl;
 mod exercise;
 mod ground;

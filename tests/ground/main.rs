@@ -14,3 +14,4 @@ mod terrain;
 mod texture;
 #[path = "../support/textures.rs"]
 mod textures;
+mod tiles;

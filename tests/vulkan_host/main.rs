@@ -5,6 +5,7 @@
 #[path = "../c_scene/mod.rs"]
 mod c_scene;
 mod capi;
+mod cloud_shadows;
 mod draw;
 mod ground;
 mod host;

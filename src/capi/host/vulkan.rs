@@ -173,14 +173,17 @@ pub(in crate::capi) unsafe fn record(
 }
 
 /// Textures of the view that these stages fill and the host's shaders read.
-fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 3]> {
-    let mut read = [const { None }; 3];
+fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 4]> {
+    let mut read = [const { None }; 4];
     if object.has_veil() && stages.has(Stages::MEDIUM) {
         let veil = view.frame_textures()?;
         (read[0], read[1]) = (Some(veil.light), Some(veil.through));
     }
     if object.has_environment() && stages.has(Stages::BACKGROUND.with(Stages::MEDIUM)) {
         read[2] = Some(view.environment()?.texture);
+    }
+    if object.has_cloud_shadows() {
+        read[3] = Some(view.cloud_shadows()?.texture);
     }
     Ok(read)
 }

@@ -282,3 +282,39 @@ fn over_rough_ground_the_wind_keeps_its_profile_and_smooth_walls_do_not_slow_it(
     println!("comes with {comes:.2} m/s, rough {rough:.2} m/s, smooth {smooth:.2} m/s");
     assert!(rough < smooth && (rough / comes - 1.0).abs() < 0.2, "{rough} {smooth} {comes}");
 }
+
+/// The wind goes round tiles as round a grid of the same heights, and finds what is dug in them.
+#[test]
+fn tiles_stand_in_the_wind_as_a_grid_of_their_heights_does() {
+    use crate::{
+        surroundings::TerrainHeights,
+        terrain::{Rows, Terrain, TerrainCells, TerrainDesc, TileKey},
+    };
+    let hill = |x: i32, y: i32| (25.0 * (-f64::from(x * x + y * y) / 60.0).exp()) as f32;
+    let desc = TerrainDesc { cell_m: 6.0, tile_cells: 32, ..TerrainDesc::default() };
+    let mut tiles = Terrain::new(desc, &WorldFrame::default()).unwrap();
+    for key in [[-1, -1], [0, -1], [-1, 0], [0, 0]].map(|k: [i32; 2]| TileKey::new(k[0], k[1])) {
+        let heights: Vec<f32> = tiles.rect(key).cells().map(|[x, y]| hill(x, y)).collect();
+        tiles.set_tile(&TerrainCells { key, heights_m: Rows::of(&heights), ..TerrainCells::default() }).unwrap();
+    }
+    let heights = (-32..32).flat_map(|y| (-32..32).map(move |x| hill(x, y))).collect();
+    let origin = dvec3(-192.0, -192.0, 0.0);
+    let grid = TerrainHeights::new((origin, DMat3::IDENTITY), 6.0, [64, 64], heights);
+    let speeds = |set: &dyn Fn(&mut World)| {
+        let mut bench = Bench::new(WindFieldMode::Running);
+        bench.world.set.shelters.clear();
+        set(&mut bench.world);
+        bench.to(2.0);
+        bench.flow.live.as_ref().unwrap().field.numbers().flatten().copied().collect::<Vec<f32>>()
+    };
+    let of_tiles = speeds(&|world| world.set.tiles = Some(tiles.clone().into()));
+    let of_grid = speeds(&|world| world.set.terrain = Some(grid.clone().into()));
+    let off = of_tiles.iter().zip(&of_grid).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(off < 1e-3, "{off}");
+    assert_ne!(speeds(&|_| {}), of_grid);
+    let pit = vec![-8.0; 64];
+    let mut dug = tiles.clone();
+    dug.update(&TerrainCells { size: [8, 8], heights_m: Rows::of(&pit), ..TerrainCells::default() }).unwrap();
+    let of_dug = speeds(&|world| world.set.tiles = Some(dug.clone().into()));
+    assert_ne!(of_dug, of_tiles);
+}

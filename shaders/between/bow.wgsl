@@ -1,0 +1,24 @@
+// Rainbow and fogbow in what drops scatter once. The model and the f64 twin are in src/bow.
+//!include "common/frame.wgsl"
+
+// Whether any may show.
+override BOW: bool = false;
+
+// Entries of one table, and the angle between two of them, rad.
+const BOW_ENTRIES: u32 = 160u;
+const BOW_STEP: f32 = 0.0069813170;
+// Which of the two tables: of fog and rain of the weather, and of columns under rain areas.
+const BOW_LOW_AIR: u32 = 0u;
+const BOW_COLUMNS: u32 = 1u;
+
+// What bows add to the phase function, 1/sr, in a direction from the eye. The angle from the point opposite to the light has digits
+// left there only by way of the chord.
+fn bow_phase(table: u32, direction: vec3f, to_light: vec3f) -> vec3f {
+    let place = 2.0 * asin(min(0.5 * length(direction + to_light), 1.0)) / BOW_STEP;
+    if !BOW || place >= f32(BOW_ENTRIES - 1u) {
+        return vec3f(0.0);
+    }
+    let i = u32(place);
+    let first = table * BOW_ENTRIES + i;
+    return mix(frame.bows[first].rgb, frame.bows[first + 1u].rgb, place - f32(i));
+}

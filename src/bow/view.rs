@@ -1,0 +1,64 @@
+//! The bows of a view.
+
+use glam::DVec2;
+
+use super::{
+    drops::{areas, is_lit, is_within, low_air},
+    table::{CLASSES, ENTRIES, STEP_RAD, mixed},
+};
+use crate::{
+    error::Result,
+    moment::Moment,
+    stage::{BOW_ENTRIES, Composition, DrawnEffect, Shot, Stages, yes},
+};
+
+const _: () = assert!(ENTRIES == BOW_ENTRIES);
+
+/// What a view has of bows.
+#[derive(Default)]
+pub(crate) struct BowView {
+    /// What classes of drops take of the light in the low air and in rain areas, where there are any.
+    drops: [Option<[f64; CLASSES]>; 2],
+    is_lit: bool,
+}
+
+impl BowView {
+    /// Finds the drops of a moment.
+    pub fn gather(&mut self, now: &Moment<'_>) {
+        self.is_lit = is_lit(&now.scene);
+        self.drops = [low_air(&now.scene.conditions), areas(now)];
+    }
+
+    fn has_drops(&self) -> bool {
+        self.drops.iter().any(Option::is_some)
+    }
+}
+
+/// Whether a picture looks at any place of a table.
+fn shows(shot: &Shot<'_>) -> bool {
+    let ray = |x: f64, y: f64| shot.rays.view_ray(DVec2::new(x, y)).direction;
+    let middle = ray(0.0, 0.0);
+    let corners = [ray(-1.0, -1.0), ray(1.0, -1.0), ray(-1.0, 1.0), ray(1.0, 1.0)];
+    let half_angle = corners.map(|c| c.angle_between(middle)).into_iter().fold(0.0, f64::max);
+    is_within(middle, half_angle, shot.now.scene.brighter().direction, STEP_RAD * ENTRIES as f64)
+}
+
+impl DrawnEffect for BowView {
+    fn stages(&self) -> Stages {
+        if self.has_drops() && self.is_lit { Stages::MEDIUM } else { Stages(0) }
+    }
+
+    fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
+        let is_shown = self.has_drops() && self.is_lit && shows(shot);
+        to.between_and_veil("BOW", yes(self.has_drops()), yes(is_shown));
+        if is_shown {
+            for (to, shares) in to.block.bows.iter_mut().zip(&self.drops) {
+                let Some(shares) = shares else { continue };
+                for (to, [r, g, b]) in to.iter_mut().zip(mixed(shares)) {
+                    *to = [r, g, b, 0.0].map(|v| v as f32);
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,367 @@
+//! Terrain in tiles
+//!
+//! The host's terrain as a lattice of equal cells, level and aligned to true north at its origin, cut into square tiles
+//! with keys. Each cell has a height and a class of surface, or is a hole. Tiles are added, removed, and changed by
+//! rectangles, in time that grows with the rectangle: a bucket may dig in every frame. Water, the wind field and queries
+//! read the tiles. With WK_GROUND_SIMULATED each cell has water of its own, and hollows join across the borders of
+//! tiles; with WK_GROUND_REPORTED tiles are as wet as level ground. A context has tiles or one wk_ground_grid.
+//!
+//! Heights belong to the host: wk_context_save keeps the water of the tiles, and wk_context_load wants the same tiles set
+//! before. wk_context_set_terrain and the functions of tiles may be called between updates at any time; while steps
+//! remain (WK_PENDING) they act after these.
+
+use std::{ffi::c_void, ptr::null};
+
+use glam::DVec3;
+
+use super::{
+    MAX_BATCH,
+    boundary::guard,
+    conditions::position,
+    context::{ContextObject, wk_context},
+    ground::wk_surface_class,
+    ground_grid::wk_ground_cell,
+    input::{self, Named},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Result, Status},
+    terrain::{MAX_TERRAIN_CELLS, Rows, SurfaceClass, TerrainCells, TerrainDesc, TerrainPoint, TileKey},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_terrain.rs"));
+
+/// In surface_classes of wk_terrain_cells: a cell without ground. Water beside it runs off.
+pub const WK_TERRAIN_HOLE: u32 = 255;
+
+/// The lattice of a terrain in tiles.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_terrain {
+    /// sizeof(wk_terrain) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_TERRAIN.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// The south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin; heights count from its
+    /// own. Default 0, 0, 0.
+    pub origin_m: [f64; 3],
+    /// Distance between cells, m. Range [0.01, 10 000], default 1. Puddles need several cells.
+    pub cell_m: f64,
+    /// Cells along each side of a tile: a power of two from 32 to 1024. Default 256. The tiles of a terrain may have
+    /// 16 777 216 cells together.
+    pub tile_cells: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_terrain {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_TERRAIN,
+        next: null(),
+        origin_m: [0.0, 0.0, 0.0],
+        cell_m: 1.0,
+        tile_cells: 256,
+        reserved0: 0,
+    };
+}
+
+/// Heights and classes of a tile, or of a rectangle of its cells. Cells run from west to east, rows from south to north.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_terrain_cells {
+    /// sizeof(wk_terrain_cells) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_TERRAIN_CELLS.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Key of the tile: how many tiles it lies east and north of the origin, each within 1 000 000; negative to the
+    /// west and south. Default 0, 0.
+    pub tile: [i32; 2],
+    /// The rectangle's south-western cell in the tile, east and north. Default 0, 0.
+    pub first_cell: [u32; 2],
+    /// Cells of the rectangle east and north. Default 0, 0: all of the tile.
+    pub cells: [u32; 2],
+    /// Heights above the terrain's origin, m, within 1e5. Copied by the call. NULL with a count of 0 leaves them as
+    /// they are; a new tile needs them.
+    pub heights_m: *const f32,
+    /// Numbers in heights_m, at least as many as the rectangle reaches over.
+    pub height_count: u32,
+    /// Numbers from the beginning of a row in heights_m to that of the next. Default 0: rows follow without a gap.
+    pub height_stride: u32,
+    /// Class of each cell: a wk_surface_class, 0 to use the context's default, or WK_TERRAIN_HOLE. Copied by the call.
+    /// NULL with a count of 0 leaves them as they are; in a new tile 0.
+    pub surface_classes: *const u8,
+    /// Numbers in surface_classes, at least as many as the rectangle reaches over.
+    pub surface_class_count: u32,
+    /// Numbers from the beginning of a row in surface_classes to that of the next. Default 0: rows follow without a gap.
+    pub surface_class_stride: u32,
+}
+
+impl wk_terrain_cells {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_TERRAIN_CELLS,
+        next: null(),
+        tile: [0, 0],
+        first_cell: [0, 0],
+        cells: [0, 0],
+        heights_m: null(),
+        height_count: 0,
+        height_stride: 0,
+        surface_classes: null(),
+        surface_class_count: 0,
+        surface_class_stride: 0,
+    };
+}
+
+/// The terrain under a place; plain values of a list.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_terrain_point {
+    /// Height of the ground above the terrain's origin, m, linear between cells; 0 where there is none.
+    pub height_m: f64,
+    /// Revision of the nearest cell's tile: the terrain's when it changed last. 0 where there is no ground.
+    pub revision: u64,
+    /// Key of that tile.
+    pub tile: [i32; 2],
+    /// What the nearest cell is made of; WK_SURFACE_CLASS_UNSPECIFIED where nothing is said.
+    pub surface_class: wk_surface_class,
+    /// 1 on the ground of a tile, else 0.
+    pub has_ground: u32,
+}
+
+impl wk_terrain_point {
+    fn of(point: Option<TerrainPoint>) -> Self {
+        let none = Self { height_m: 0.0, revision: 0, tile: [0, 0], surface_class: 0, has_ground: 0 };
+        point.map_or(none, |p| Self {
+            height_m: p.height_m,
+            revision: p.revision,
+            tile: [p.tile.east, p.tile.north],
+            surface_class: p.surface_class as wk_surface_class,
+            has_ground: 1,
+        })
+    }
+}
+
+/// Sets the lattice of a terrain in tiles, still without any, in place of the tiles or the wk_ground_grid before; NULL
+/// leaves no tiles. The lattice that is set already stays with its tiles. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_terrain(context: *mut wk_context, terrain: *const wk_terrain) -> wk_status {
+    guard("wk_context_set_terrain", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        if terrain.is_null() {
+            object.write().set_terrain(None)?;
+            return Ok(Status::Ok);
+        }
+        // SAFETY: the caller's promise about `terrain`.
+        let c = unsafe {
+            let c = layout::read(&"terrain", terrain)?;
+            layout::check_chain(&"terrain", c.next, &[])?;
+            c
+        };
+        let origin = DVec3::from_array(c.origin_m);
+        let desc = TerrainDesc { origin, cell_m: c.cell_m, tile_cells: c.tile_cells };
+        object.write().set_terrain(Some(desc))?;
+        Ok(Status::Ok)
+    })
+}
+
+/// The lists of a rectangle of cells.
+struct CellLists<'a> {
+    cells: wk_terrain_cells,
+    heights_m: &'a [f32],
+    classes: Vec<Option<SurfaceClass>>,
+}
+
+impl CellLists<'_> {
+    /// # Safety
+    /// `cells` is NULL or points to a struct whose lists are as long as it says.
+    unsafe fn read(cells: *const wk_terrain_cells) -> Result<Self> {
+        // SAFETY: the caller's promise.
+        let (c, heights_m, numbers) = unsafe {
+            let c = layout::read(&"terrain_cells", cells)?;
+            layout::check_chain(&"terrain_cells", c.next, &[])?;
+            let heights = Named("terrain_cells.height_count", c.height_count as usize);
+            let classes = Named("terrain_cells.surface_class_count", c.surface_class_count as usize);
+            let heights = input::slice("terrain_cells.heights_m", c.heights_m, heights, MAX_TERRAIN_CELLS)?;
+            (c, heights, input::slice("terrain_cells.surface_classes", c.surface_classes, classes, MAX_TERRAIN_CELLS)?)
+        };
+        let class = |(i, number): (usize, &u8)| match u32::from(*number) {
+            WK_TERRAIN_HOLE => Ok(None),
+            _ => {
+                let name = format!("terrain_cells.surface_classes[{i}]");
+                let known = SurfaceClass::from_number(&name, *number).map(Some);
+                let wanted = "a WK_SURFACE_CLASS_ value, 0 to 6, or WK_TERRAIN_HOLE";
+                known.map_err(|_| Error::range(&name, wanted, *number))
+            }
+        };
+        let classes = numbers.iter().enumerate().map(class).collect::<Result<_>>()?;
+        Ok(Self { cells: c, heights_m, classes })
+    }
+
+    fn terrain_cells(&self) -> TerrainCells<'_> {
+        let c = &self.cells;
+        TerrainCells {
+            key: TileKey::new(c.tile[0], c.tile[1]),
+            first: c.first_cell,
+            size: c.cells,
+            heights_m: Rows { values: self.heights_m, stride: c.height_stride },
+            classes: Rows { values: &self.classes, stride: c.surface_class_stride },
+        }
+    }
+}
+
+fn named(e: Error) -> Error {
+    e.renamed("terrain_cells.heights_m.len", "terrain_cells.height_count")
+        .renamed("terrain_cells.heights_m_stride", "terrain_cells.height_stride")
+        .renamed("terrain_cells.surface_classes.len", "terrain_cells.surface_class_count")
+        .renamed("terrain_cells.surface_classes_stride", "terrain_cells.surface_class_stride")
+}
+
+/// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one
+/// that is there keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
+/// cells than a terrain may have.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_terrain_tile(
+    context: *mut wk_context,
+    terrain_cells: *const wk_terrain_cells,
+) -> wk_status {
+    guard("wk_context_set_terrain_tile", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `terrain_cells`.
+        let lists = unsafe { CellLists::read(terrain_cells)? };
+        object.write().set_terrain_tile(&lists.terrain_cells()).map_err(named)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the
+/// ground lets it: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water that
+/// it touches, not with the tile or the terrain. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: as wk_context_set_terrain_tile, and for the key of no tile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_update_terrain(
+    context: *mut wk_context,
+    terrain_cells: *const wk_terrain_cells,
+) -> wk_status {
+    guard("wk_context_update_terrain", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `terrain_cells`.
+        let lists = unsafe { CellLists::read(terrain_cells)? };
+        object.write().update_terrain(&lists.terrain_cells()).map_err(named)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Takes a tile away with the water on it. Where it was, water of the other tiles runs off.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_remove_terrain_tile(
+    context: *mut wk_context,
+    tile_east: i32,
+    tile_north: i32,
+) -> wk_status {
+    guard("wk_context_remove_terrain_tile", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let key = TileKey::new(tile_east, tile_north);
+        object.write().remove_terrain_tile(key).map_err(|e| e.renamed("tile", "tile_east"))?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets a number that grows whenever the tiles change; 0 without a terrain.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_terrain_revision(
+    context: *const wk_context,
+    out_revision: *mut u64,
+) -> wk_status {
+    guard("wk_context_get_terrain_revision", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let revision = input::out("out_revision", out_revision)?;
+        // SAFETY: `revision` was checked and is the caller's.
+        unsafe { revision.write(object.read().terrain_revision()) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Gets the terrain's tiles under or above places of the host's world, at most wk_caps.max_batch of them. `position_size`
+/// and `point_size` are the bytes from one element to the next: 24 or more, and sizeof(wk_terrain_point) of your header.
+/// Thread: concurrent.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_terrain_points(
+    context: *const wk_context,
+    positions_m: *const [f64; 3],
+    count: u32,
+    position_size: u32,
+    points: *mut wk_terrain_point,
+    point_size: u32,
+) -> wk_status {
+    guard("wk_context_get_terrain_points", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
+        let room = input::Room::new("points", "point_size", points, count, point_size)?;
+        let context = object.read();
+        let answer = |i: usize| {
+            let name = format!("positions_m[{i}]");
+            // SAFETY: `i` is below the count that the caller promises.
+            let at = unsafe { position(&name, places.at(i))? };
+            let point = context.terrain_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", &name))?;
+            Ok(wk_terrain_point::of(point))
+        };
+        let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
+        for (i, point) in answers.iter().enumerate() {
+            // SAFETY: as above.
+            unsafe { room.write(i, point) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
+/// sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on the
+/// terrain changes; with capacity 0 the call returns only this number.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_terrain_water(
+    context: *const wk_context,
+    tile_east: i32,
+    tile_north: i32,
+    cells: *mut wk_ground_cell,
+    capacity: u32,
+    cell_size: u32,
+    out_revision: *mut u64,
+) -> wk_status {
+    guard("wk_context_get_terrain_water", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let room = input::Room::new("cells", "cell_size", cells, capacity, cell_size)?;
+        let revision = input::out("out_revision", out_revision)?;
+        let context = object.read();
+        let water = context.terrain_water(TileKey::new(tile_east, tile_north)).ok_or_else(|| {
+            let got = format!("({tile_east}, {tile_north})");
+            Error::range("tile_east", "with tile_north the key of a tile that was set", got)
+        })?;
+        if capacity > 0 {
+            room.check_capacity("capacity", water.len())?;
+            for (i, cell) in water.enumerate() {
+                // SAFETY: the capacity was checked, and is what the caller promises.
+                unsafe { room.write(i, &wk_ground_cell::of(&cell)) };
+            }
+        }
+        // SAFETY: `revision` was checked and is the caller's.
+        unsafe { revision.write(context.ground_revision()) };
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,84 @@
+//! The host's terrain in tiles.
+
+use glam::DVec3;
+
+use crate::{
+    context::Context,
+    error::Result,
+    ground::GroundCell,
+    terrain::{TerrainCells, TerrainDesc, TerrainPoint, TileKey},
+};
+
+impl Context {
+    /// Sets the lattice of a terrain in tiles, still without any, in place of the terrain before, be that tiles or a grid; `None` leaves
+    /// none. The lattice that is set already stays with its tiles.
+    ///
+    /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
+    /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_terrain(&mut self, desc: Option<TerrainDesc>) -> Result<()> {
+        self.held.ground.set_terrain(&mut self.world, desc)
+    }
+
+    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one that is there
+    /// keeps its water.
+    ///
+    /// # Errors
+    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for more than
+    /// [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
+    pub fn set_terrain_tile(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
+        let waits = self.has_steps_to_do();
+        self.held.ground.set_tile((&mut self.world, waits), cells)
+    }
+
+    /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the ground lets it.
+    /// The time of it grows with the rectangle and with the standing waters that it touches, not with tile or terrain.
+    ///
+    /// # Errors
+    /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
+    pub fn update_terrain(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
+        let waits = self.has_steps_to_do();
+        self.held.ground.update_tile((&mut self.world, waits), cells)
+    }
+
+    /// Takes a tile away, with the water on it. Beside it water runs off.
+    ///
+    /// # Errors
+    /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is not.
+    pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
+        let waits = self.has_steps_to_do();
+        self.held.ground.remove_tile((&mut self.world, waits), key)
+    }
+
+    /// The lattice of the terrain's tiles.
+    pub fn terrain(&self) -> Option<TerrainDesc> {
+        self.world.set.tiles.as_ref().map(|terrain| terrain.desc)
+    }
+
+    /// Keys of the terrain's tiles, by rows from the south.
+    pub fn terrain_tiles(&self) -> impl Iterator<Item = TileKey> + '_ {
+        self.world.set.tiles.iter().flat_map(|terrain| terrain.all().map(|(_, tile)| tile.key))
+    }
+
+    /// A number that grows whenever the tiles change; 0 without a terrain.
+    pub fn terrain_revision(&self) -> u64 {
+        self.world.set.tiles.as_ref().map_or(0, |terrain| terrain.revision)
+    }
+
+    /// Water of each cell of a tile now, or while steps remain at [`Context::state_time_s`], by rows from the south-west; holes are dry.
+    /// `None` for a tile that there is not.
+    pub fn terrain_water(&self, key: TileKey) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
+        self.held.ground.tile_water(&self.world, key)
+    }
+
+    /// The terrain under or above a position; `None` where no tile has ground.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if the position is no place.
+    pub fn terrain_at(&self, position: DVec3) -> Result<Option<TerrainPoint>> {
+        self.world.frame.place_at("position", position)?;
+        Ok(self.world.set.tiles.as_ref().and_then(|terrain| terrain.point_at(position)))
+    }
+}

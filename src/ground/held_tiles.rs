@@ -1,0 +1,209 @@
+//! The host's terrain in tiles, as a context holds it, and the water on it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{
+    GroundWater, SurfaceClass,
+    grid::ABOVE_M,
+    held::{HeldGround, TILES_KEY},
+    host::GroundCell,
+    terrain::CellWater,
+    tiled::{Changed, SavedTiles, TiledStep, TiledWater},
+    water::Forcing,
+    window::{RecentChanges, Shown},
+};
+use crate::{
+    error::{Error, Result, Status},
+    terrain::{CellRect, Terrain, TerrainCells, TerrainDesc, TileKey},
+    weather::Conditions,
+    world::{Within, World},
+};
+
+/// A step of level, open ground, for the tiles beside it.
+#[derive(Clone, Copy)]
+pub(super) struct GroundStep<'a> {
+    pub from_s: f64,
+    pub seconds: f64,
+    pub conditions: &'a Conditions,
+    pub forcing: &'a Forcing,
+    /// Of level ground at its beginning.
+    pub water: &'a GroundWater,
+}
+
+fn without_terrain() -> Error {
+    Error::new(Status::WrongOrder, "tiles come after wk_context_set_terrain: there is no terrain")
+}
+
+impl HeldGround {
+    /// Sets the lattice of a terrain without tiles, or none; see
+    /// [`Context::set_terrain`](crate::context::Context::set_terrain).
+    ///
+    /// # Errors
+    /// As there; nothing changes then.
+    pub fn set_terrain(&mut self, world: &mut World, desc: Option<TerrainDesc>) -> Result<()> {
+        if world.set.tiles.as_ref().map(|t| t.desc) == desc {
+            return Ok(());
+        }
+        let terrain = desc.map(|desc| Terrain::new(desc, &world.frame)).transpose()?;
+        if terrain.is_some() {
+            self.set_grid(world, None)?;
+            world.set.terrain = None;
+        }
+        self.tiled = terrain.as_ref().map(|terrain| Box::new(TiledWater::new(terrain)));
+        self.waiting.clear();
+        self.recent = RecentChanges::default();
+        self.revision += 1;
+        world.set.tiles = terrain.map(Arc::new);
+        Ok(())
+    }
+
+    /// Changes the tiles by `change`, which answers the cells that it touched. `waits`: steps remain of what was set before.
+    fn change(
+        &mut self,
+        (world, waits): (&mut World, bool),
+        is_removal: bool,
+        change: impl FnOnce(&mut Terrain) -> Result<Option<CellRect>>,
+    ) -> Result<()> {
+        let terrain = Arc::make_mut(world.set.tiles.as_mut().ok_or_else(without_terrain)?);
+        let Some(rect) = change(terrain)? else { return Ok(()) };
+        let changed = Changed { revision: terrain.revision, rect, is_removal };
+        self.recent.add(changed);
+        let Some(terrain) = &world.set.tiles else { return Ok(()) };
+        if waits {
+            self.waiting.push((changed, terrain.clone()));
+        } else {
+            self.follow_change(&changed, terrain);
+        }
+        Ok(())
+    }
+
+    /// Lets the water follow a change of its terrain.
+    fn follow_change(&mut self, changed: &Changed, terrain: &Terrain) {
+        if let Some(tiled) = self.tiled.as_mut().filter(|tiled| tiled.is_of(terrain)) {
+            tiled.follow(terrain, changed);
+            self.revision += 1;
+        }
+    }
+
+    /// See [`Context::set_terrain_tile`](crate::context::Context::set_terrain_tile).
+    ///
+    /// # Errors
+    /// As there; nothing changes then.
+    pub fn set_tile(&mut self, on: (&mut World, bool), cells: &TerrainCells<'_>) -> Result<()> {
+        self.change(on, false, |terrain| terrain.set_tile(cells))
+    }
+
+    /// See [`Context::update_terrain`](crate::context::Context::update_terrain).
+    ///
+    /// # Errors
+    /// As there; nothing changes then.
+    pub fn update_tile(&mut self, on: (&mut World, bool), cells: &TerrainCells<'_>) -> Result<()> {
+        self.change(on, false, |terrain| terrain.update(cells))
+    }
+
+    /// See [`Context::remove_terrain_tile`](crate::context::Context::remove_terrain_tile).
+    ///
+    /// # Errors
+    /// As there; nothing changes then.
+    pub fn remove_tile(&mut self, on: (&mut World, bool), key: TileKey) -> Result<()> {
+        self.change(on, true, |terrain| terrain.remove(key).map(Some))
+    }
+
+    /// Lets the water follow the changes that had to wait, each on the terrain as it was then, up to that of the world by now.
+    pub(super) fn follow_late(&mut self, world: &World) {
+        let Some(now) = world.set.tiles.as_ref().filter(|_| !self.waiting.is_empty()) else { return };
+        let count = self.waiting.iter().take_while(|(changed, _)| changed.revision <= now.revision).count();
+        for (changed, terrain) in self.waiting.drain(..count).collect::<Vec<_>>() {
+            self.follow_change(&changed, &terrain);
+        }
+        // Windows have shown the new ground already, with the water of before.
+        self.tiled.iter_mut().for_each(|tiled| tiled.count_version());
+    }
+
+    /// Leads the water on the tiles through a step, or a part of it. Says whether it is done.
+    pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, within: Within) -> Result<bool> {
+        let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
+        if !tiled.is_of(terrain) {
+            return Ok(true);
+        }
+        let step = TiledStep {
+            world,
+            terrain,
+            middle_s: step.from_s + 0.5 * step.seconds,
+            seconds: step.seconds,
+            conditions: step.conditions,
+            forcing: step.forcing,
+            water: step.water,
+        };
+        let stepped = tiled.step(&step, Some(within))?;
+        self.revision += u64::from(stepped.is_some_and(|s| s.changes));
+        Ok(stepped.is_some())
+    }
+
+    /// Water of level ground, as it lies on tiles that have none of their own yet.
+    pub(super) fn even_water(&self, world: &World) -> GroundWater {
+        self.water(world).unwrap_or_else(|| GroundWater::of_cover(&world.timeline.at(world.time_s).surface))
+    }
+
+    /// What a tile's cell at a place is made of; none off the tiles.
+    pub(super) fn tile_class_at(&self, world: &World, position: DVec3) -> Option<SurfaceClass> {
+        let terrain = world.set.tiles.as_ref()?;
+        let (_, height) = terrain.cells_at(position);
+        let point = terrain.point_at(position)?;
+        (height < point.height_m + ABOVE_M).then_some(point.surface_class)
+    }
+
+    /// Water at a place on the tiles, and the share of them under standing water; none elsewhere.
+    pub(super) fn tiles_at(&self, world: &World, position: DVec3) -> Option<(CellWater, f64)> {
+        let (terrain, tiled) = (world.set.tiles.as_ref()?, self.tiled.as_ref()?);
+        if !tiled.is_of(terrain) {
+            return None;
+        }
+        self.tile_class_at(world, position)?;
+        let (cells, _) = terrain.cells_at(position);
+        Some((tiled.between(terrain, cells, &self.even_water(world))?, tiled.puddles()))
+    }
+
+    /// What a view's window draws from, if there are tiles.
+    pub(super) fn shown_tiles<'a>(&'a self, world: &'a World, ice: f64) -> Option<Shown<'a>> {
+        let terrain = world.set.tiles.as_deref()?;
+        let water = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;
+        Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, recent: &self.recent })
+    }
+
+    /// Water of each cell of a tile.
+    pub fn tile_water<'a>(
+        &'a self,
+        world: &'a World,
+        key: TileKey,
+    ) -> Option<impl ExactSizeIterator<Item = GroundCell> + 'a> {
+        let terrain = world.set.tiles.as_ref()?;
+        let slot = terrain.slot(key)?;
+        let tiled = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;
+        let (tile, even) = (terrain.tile(slot), self.even_water(world));
+        let ice = world.timeline.at(world.time_s).surface.ice as f32;
+        Some((0..tile.heights_m.len()).map(move |cell| {
+            if !tile.has_ground(cell) {
+                return GroundCell::default();
+            }
+            let c = tiled.cell(terrain, terrain.joined(slot, cell), &even);
+            GroundCell {
+                film_mm: c.film_mm as f32,
+                soaked: c.soaked as f32,
+                standing_mm: c.standing_mm.max(0.0) as f32,
+                ice,
+            }
+        }))
+    }
+
+    /// Adds the water on the tiles to a saved state. `for_hash`: the film and pores of each tile by their hash alone.
+    pub(super) fn save_tiles(&self, world: &World, for_hash: bool, table: &mut toml::Table) -> Result<()> {
+        let (Some(terrain), Some(tiled)) = (&world.set.tiles, &self.tiled) else { return Ok(()) };
+        let saved = toml::Value::try_from(SavedTiles::of(tiled, terrain, for_hash));
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        table.insert(TILES_KEY.into(), saved.map_err(written)?);
+        Ok(())
+    }
+}

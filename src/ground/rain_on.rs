@@ -1,0 +1,289 @@
+//! What falls on the cells of a grid: past standing boxes, under rain areas, and what of it is ice.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{
+    GroundWater,
+    grid::CellGrid,
+    host_rain::{AreasOverGrid, Part, liquid},
+    terrain::RUN,
+    water::Forcing,
+};
+use crate::{
+    falling::{drops::factor_in, sizes::DropSizes},
+    surroundings::{Shelter, shelter::sheltered},
+    weather::{Conditions, Falling, cover_under_rain},
+};
+
+/// So far above the ground is what counts as its surface, m.
+const SURFACE_M: f64 = 0.02;
+
+/// How many thirds of the rain the boxes keep off each cell.
+#[derive(Default)]
+struct Shadow {
+    made_for: Option<([f64; 3], DVec2, Vec<Shelter>)>,
+    /// Empty where nothing is kept off anywhere.
+    thirds: Vec<u8>,
+}
+
+impl Shadow {
+    fn share(&self, cell: usize) -> f64 {
+        self.thirds.get(cell).map_or(1.0, |t| f64::from(3 - t) / 3.0)
+    }
+}
+
+/// Share of open ground under ice, and what the boxes keep off of freezing rain: by the weather of the moment.
+#[derive(Default)]
+struct Glaze {
+    ice: f64,
+    shadow: Shadow,
+}
+
+/// Where a grid lies under the sky, and what falls on its cells.
+pub(super) struct RainOn {
+    /// Turns the host's axes; the altitude of the height that the grid's heights count from, m.
+    pub to_enu: DMat3,
+    pub altitude_m: f64,
+    /// Where the grid lies, and each run of its cells.
+    pub whole: Part,
+    pub runs: Vec<Part>,
+    /// Lowest and highest node.
+    range_m: (f64, f64),
+    shadow: Shadow,
+    glaze: Glaze,
+    /// What falls in this step, mm: on every cell before boxes, or else on each.
+    even_mm: Option<f64>,
+    rates: Vec<f64>,
+}
+
+impl RainOn {
+    pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (DMat3, f64)) -> Self {
+        let (whole, runs) = Part::whole_and_runs(grid, (&to_enu, altitude_m));
+        Self {
+            to_enu,
+            altitude_m,
+            whole,
+            runs,
+            range_m: grid.range(),
+            shadow: Shadow::default(),
+            glaze: Glaze::default(),
+            even_mm: Some(0.0),
+            rates: Vec::new(),
+        }
+    }
+
+    /// Takes other heights of some cells: by their runs, the lowest and highest as far as they reach now.
+    pub fn heights_changed(&mut self, grid: &CellGrid<'_>, runs: impl Iterator<Item = usize>) {
+        for run in runs {
+            let cells = run * RUN..((run + 1) * RUN).min(grid.len());
+            let part = Part::new(grid, (&self.to_enu, self.altitude_m), cells.clone());
+            for height in &grid.heights_m[cells] {
+                let height = f64::from(*height);
+                self.range_m = (self.range_m.0.min(height), self.range_m.1.max(height));
+            }
+            self.whole.reach_over(&part);
+            self.runs[run] = part;
+        }
+        self.shadow.made_for = None;
+        self.glaze.shadow.made_for = None;
+    }
+
+    /// Finds what the standing boxes keep off, and says whether that may be something else than before. `falls_m_s`: of the drops
+    /// in the middle of each third of the water; `wind` of the air, east and north.
+    fn shade(
+        &self,
+        grid: &CellGrid<'_>,
+        shadow: &mut Shadow,
+        falls_m_s: [f64; 3],
+        wind: DVec2,
+        shelters: &[Shelter],
+    ) -> bool {
+        let standing = || shelters.iter().filter(|s| s.stands());
+        if let Some((falls, blown, list)) = &shadow.made_for
+            && (*falls, *blown) == (falls_m_s, wind)
+            && list.iter().eq(standing())
+        {
+            return false;
+        }
+        shadow.thirds.clear();
+        if standing().next().is_some() {
+            shadow.thirds.resize(grid.len(), 0);
+            for fall in falls_m_s {
+                self.shade_third(grid, &mut shadow.thirds, wind.extend(-fall), standing());
+            }
+        }
+        let mut list = shadow.made_for.take().map_or(Vec::new(), |made| made.2);
+        list.clear();
+        list.extend(standing());
+        shadow.made_for = Some((falls_m_s, wind, list));
+        true
+    }
+
+    /// Finds what the standing boxes keep off of the rain that falls under the weather `c`.
+    fn shade_rain(&mut self, grid: &CellGrid<'_>, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) {
+        let mut shadow = std::mem::take(&mut self.shadow);
+        let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+        self.shade(grid, &mut shadow, self.falls_m_s(c, overs), wind, shelters);
+        self.shadow = shadow;
+    }
+
+    /// Takes the ice from the weather, what freezing rain leaves where it gets to. Says whether any of it may have changed.
+    pub fn ice_over(
+        &mut self,
+        grid: &CellGrid<'_>,
+        c: &Conditions,
+        overs: &AreasOverGrid,
+        shelters: &[Shelter],
+    ) -> bool {
+        let mut glaze = std::mem::take(&mut self.glaze);
+        let mut changed = glaze.ice != c.surface.ice;
+        glaze.ice = c.surface.ice;
+        if glaze.ice > 0.0 && c.precipitation.freezing * liquid(&c.precipitation) > 0.0 {
+            let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+            changed |= self.shade(grid, &mut glaze.shadow, self.falls_m_s(c, overs), wind, shelters);
+        } else {
+            changed |= glaze.shadow.made_for.is_some() && glaze.ice > 0.0;
+            glaze.shadow = Shadow::default();
+        }
+        self.glaze = glaze;
+        changed
+    }
+
+    /// Share of a cell under ice.
+    pub fn ice(&self, cell: usize) -> f32 {
+        (self.glaze.ice * self.glaze.shadow.share(cell)) as f32
+    }
+
+    fn shade_third<'a>(
+        &self,
+        grid: &CellGrid<'_>,
+        thirds: &mut [u8],
+        velocity: DVec3,
+        shelters: impl Iterator<Item = &'a Shelter> + Clone,
+    ) {
+        let in_world = self.to_enu.transpose() * velocity;
+        let columns = grid.nodes[0] as usize;
+        // Each box is asked where its shadow may lie; a cell counts once.
+        for (i, shelter) in shelters.clone().enumerate() {
+            let Some([x, y]) = self.shadow_within(grid, shelter, velocity) else { continue };
+            for (row, column) in (y[0]..=y[1]).flat_map(|row| (x[0]..=x[1]).map(move |column| (row, column))) {
+                let cell = row * columns + column;
+                let p = grid.node(cell, &self.to_enu) + self.to_enu.transpose() * (DVec3::Z * SURFACE_M);
+                if sheltered(shelter, p, in_world) && !shelters.clone().take(i).any(|s| sheltered(s, p, in_world)) {
+                    thirds[cell] += 1;
+                }
+            }
+        }
+    }
+
+    /// First and last column and row in which the shadow of a box may lie.
+    fn shadow_within(&self, grid: &CellGrid<'_>, shelter: &Shelter, velocity: DVec3) -> Option<[[usize; 2]; 2]> {
+        let center = self.to_enu * (shelter.center_m - grid.origin);
+        let radius = shelter.half_size_m.length();
+        let after = |height: f64| ((center.z + radius - height) / -velocity.z).max(0.0);
+        let ends = [0.0, after(self.range_m.0)].map(|t| center.truncate() + velocity.truncate() * t);
+        let (low, high) = (ends[0].min(ends[1]) - radius, ends[0].max(ends[1]) + radius);
+        if center.z + radius < self.range_m.0 {
+            return None;
+        }
+        let part = |low: f64, high: f64, nodes: u32| {
+            let last = f64::from(nodes - 1);
+            let (first, end) = ((low / grid.cell_m).ceil().max(0.0), (high / grid.cell_m).floor().min(last));
+            (first <= end).then_some([first as usize, end as usize])
+        };
+        Some([part(low.x, high.x, grid.nodes[0])?, part(low.y, high.y, grid.nodes[1])?])
+    }
+
+    /// Fall speeds of thirds of the heaviest rain over the grid; without rain, of steady rain.
+    fn falls_m_s(&self, c: &Conditions, overs: &AreasOverGrid) -> [f64; 3] {
+        let mut heaviest = c.precipitation;
+        for over in overs.all().filter(|over| over.reaches) {
+            if liquid(&over.shaft.falling) > liquid(&heaviest) {
+                heaviest = over.shaft.falling;
+            }
+        }
+        if liquid(&heaviest) <= 0.0 {
+            heaviest.rain_mm_h = 3.0;
+        }
+        DropSizes::new(&heaviest, factor_in(&c.air, self.altitude_m)).thirds_m_s()
+    }
+
+    /// Whether any cell is under ice.
+    pub fn is_iced(&self) -> bool {
+        self.glaze.ice > 0.0
+    }
+
+    /// Finds what falls on each cell in a step of so many seconds, under the weather in its middle.
+    pub fn fall(
+        &mut self,
+        grid: &CellGrid<'_>,
+        (c, forcing, seconds): (&Conditions, &Forcing, f64),
+        overs: &AreasOverGrid,
+        shelters: &[Shelter],
+    ) {
+        self.shade_rain(grid, c, overs, shelters);
+        let own = liquid(&c.precipitation);
+        let liquid_stays = 1.0 - c.precipitation.freezing;
+        // What melts falls everywhere alike.
+        let melting = forcing.liquid_mm_h - own * liquid_stays;
+        let hours = seconds / 3600.0;
+        let fallen_mm = |liquid: f64| (liquid * liquid_stays + melting) * hours;
+        if overs.even() {
+            self.even_mm = Some(fallen_mm(self.liquid(grid, overs, own, 0)));
+        } else {
+            let mut rates = std::mem::take(&mut self.rates);
+            self.liquids(grid, overs, own, &mut rates);
+            rates.iter_mut().enumerate().for_each(|(cell, rate)| *rate = fallen_mm(*rate) * self.shadow.share(cell));
+            (self.even_mm, self.rates) = (None, rates);
+        }
+    }
+
+    /// Whether anything falls on a run of cells in the step of [`Self::fall`].
+    pub fn rains_on(&self, run: usize) -> bool {
+        match self.even_mm {
+            Some(mm) => mm != 0.0,
+            None => self.rates[run * RUN..].iter().take(RUN).any(|mm| *mm != 0.0),
+        }
+    }
+
+    /// What falls on a cell in the step of [`Self::fall`], mm.
+    pub fn fallen_mm(&self, cell: usize) -> f64 {
+        match self.even_mm {
+            Some(mm) => mm * self.shadow.share(cell),
+            None => self.rates[cell],
+        }
+    }
+
+    /// The water of each cell where it begins: what the weather says of all the ground, where it gets to.
+    pub fn first_water(
+        &mut self,
+        grid: &CellGrid<'_>,
+        (c, water): (&Conditions, &GroundWater),
+        overs: &AreasOverGrid,
+        shelters: &[Shelter],
+    ) -> Vec<GroundWater> {
+        self.shade_rain(grid, c, overs, shelters);
+        let own = liquid(&c.precipitation);
+        let kept = |liquid: f64| {
+            let falling = Falling { rain_mm_h: liquid, drizzle_mm_h: 0.0, ..c.precipitation };
+            let (wetness, puddles) = cover_under_rain(&falling, c.air.relative_humidity);
+            let dry = 1.0 - c.surface.ice;
+            let cover = crate::weather::SurfaceCover { wetness: wetness * dry, puddles: puddles * dry, ..c.surface };
+            GroundWater::of_cover(&cover).max(water)
+        };
+        let mut last = (f64::NAN, *water);
+        let at = |cell: usize| {
+            let liquid = self.liquid(grid, overs, own, cell);
+            if liquid != last.0 {
+                last = (liquid, if overs.all().next().is_some() && liquid != own { kept(liquid) } else { *water });
+            }
+            let share = self.shadow.share(cell);
+            GroundWater {
+                film_mm: last.1.film_mm * share,
+                soaked_mm: last.1.soaked_mm * share,
+                hollows_mm: last.1.hollows_mm * share,
+            }
+        };
+        (0..grid.len()).map(at).collect()
+    }
+}

@@ -1,0 +1,147 @@
+//! Where the run-off of each cell of a tile ends: in a pit, or over the border of its block in the next one.
+//!
+//! Run-off takes the steepest of the eight ways down, as on a single grid. Its way is looked up within blocks of 32 x 32 cells: a change of
+//! the ground is followed by the blocks that it touches, however far the water from them runs.
+
+use crate::terrain::{AROUND, CellId, CellRect, Terrain, TileKey};
+
+/// Cells along a side of a block; tiles are multiples of it.
+const BLOCK: usize = 32;
+/// Of a cell whose way is not known yet.
+const UNKNOWN: u16 = u16::MAX;
+
+/// Where run-off ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sink {
+    /// In a cell that has no lower neighbour.
+    Pit(CellId),
+    /// On a cell of another block, from where it goes on.
+    On(CellId),
+    /// Beside a hole or the end of the terrain: it leaves.
+    Out,
+}
+
+/// What a block's cells drain to, and what has come there in this step, mm times cells.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Block {
+    pub sinks: Vec<Sink>,
+    pub inflow: Vec<f64>,
+    pub gets: bool,
+}
+
+/// The sinks of a tile's cells.
+#[derive(Clone, Debug)]
+pub(super) struct Drains {
+    bits: u32,
+    of_cell: Vec<u16>,
+    pub blocks: Vec<Block>,
+}
+
+/// Heights go first, then places from the south-west: no two cells are equally high.
+pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
+    let (low, high) = (terrain.height(a), terrain.height(b));
+    if low != high {
+        return low < high;
+    }
+    let ([ax, ay], [bx, by]) = (terrain.place(a), terrain.place(b));
+    (ay, ax) < (by, bx)
+}
+
+/// The steepest way down.
+fn below(terrain: &Terrain, cell: CellId) -> Sink {
+    let height = f64::from(terrain.height(cell));
+    let (mut steepest, mut down) = (f64::NEG_INFINITY, Sink::Pit(cell));
+    for (near, [dx, dy]) in terrain.around(cell).into_iter().zip(AROUND) {
+        let Some(near) = near else { return Sink::Out };
+        if is_lower(terrain, near, cell) {
+            let way = if dx != 0 && dy != 0 { std::f64::consts::SQRT_2 } else { 1.0 };
+            let slope = (height - f64::from(terrain.height(near))) / way;
+            if slope > steepest {
+                (steepest, down) = (slope, Sink::On(near));
+            }
+        }
+    }
+    down
+}
+
+impl Drains {
+    /// Of a tile, still unknown.
+    pub fn new(terrain: &Terrain) -> Self {
+        let side = terrain.side();
+        let blocks = (side / BLOCK) * (side / BLOCK);
+        Self {
+            bits: side.trailing_zeros(),
+            of_cell: vec![UNKNOWN; side * side],
+            blocks: vec![Block::default(); blocks],
+        }
+    }
+
+    fn block_of(&self, cell: usize) -> usize {
+        let side = 1 << self.bits;
+        let (x, y) = (cell % side, cell / side);
+        (y / BLOCK) * (side / BLOCK) + x / BLOCK
+    }
+
+    /// Finds the ways of the blocks of a tile that a rectangle touches.
+    pub fn find(&mut self, terrain: &Terrain, (slot, key): (u32, TileKey), rect: CellRect) {
+        let own = terrain.rect(key);
+        let Some(part) = own.meets(rect) else { return };
+        let blocks = |i: usize| {
+            let at = |v: i32| (v - own.low[i]) as usize / BLOCK;
+            at(part.low[i])..=at(part.high[i] - 1)
+        };
+        for (x, y) in blocks(1).flat_map(|y| blocks(0).map(move |x| (x, y))) {
+            self.find_block(terrain, slot, [x, y]);
+        }
+    }
+
+    fn find_block(&mut self, terrain: &Terrain, slot: u32, [x, y]: [usize; 2]) {
+        let side = 1 << self.bits;
+        let first = y * BLOCK * side + x * BLOCK;
+        let cells = (0..BLOCK * BLOCK).map(|i| first + (i / BLOCK) * side + i % BLOCK);
+        let number = self.block_of(first);
+        let mut sinks: Vec<Sink> = Vec::new();
+        cells.clone().for_each(|cell| self.of_cell[cell] = UNKNOWN);
+        let mut way = Vec::new();
+        for cell in cells {
+            way.clear();
+            let mut at = cell;
+            let found = loop {
+                if self.of_cell[at] != UNKNOWN {
+                    break self.of_cell[at];
+                }
+                way.push(at);
+                let sink = below(terrain, terrain.joined(slot, at));
+                if let Sink::On(next) = sink
+                    && let (tile, next) = terrain.split(next)
+                    && tile == slot as usize
+                    && self.block_of(next) == number
+                {
+                    at = next;
+                    continue;
+                }
+                let known = sinks.iter().position(|s| *s == sink);
+                break known.unwrap_or_else(|| {
+                    sinks.push(sink);
+                    sinks.len() - 1
+                }) as u16;
+            };
+            way.iter().for_each(|cell| self.of_cell[*cell] = found);
+        }
+        let inflow = vec![0.0; sinks.len()];
+        self.blocks[number] = Block { sinks, inflow, gets: false };
+    }
+
+    /// Where the run-off of a cell ends.
+    pub fn sink(&self, cell: usize) -> Sink {
+        self.blocks[self.block_of(cell)].sinks[usize::from(self.of_cell[cell])]
+    }
+
+    /// Adds to what runs off a cell in this step.
+    pub fn add(&mut self, cell: usize, water: f64) {
+        let block = self.block_of(cell);
+        let block = &mut self.blocks[block];
+        block.inflow[usize::from(self.of_cell[cell])] += water;
+        block.gets = true;
+    }
+}

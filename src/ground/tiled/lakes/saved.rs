@@ -1,0 +1,71 @@
+//! Standing water as it is saved, and back.
+
+use super::{Lakes, PitBelow};
+use crate::terrain::{CellId, Terrain};
+
+/// A hollow's tree, to be saved: pits, and after every two trees that they are one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) enum Branch {
+    Pit(CellId),
+    Joined,
+}
+
+impl Lakes {
+    /// Each water as it is saved: its tree and what it holds.
+    pub fn saved(&self) -> impl Iterator<Item = (Vec<Branch>, f64)> {
+        self.lakes.iter().flatten().map(|l| {
+            let mut branches = Vec::new();
+            let mut next = vec![(l.hollow, false)];
+            while let Some((hollow, is_done)) = next.pop() {
+                let Some(h) = self.hollows[hollow as usize].as_ref() else { continue };
+                match h.parts {
+                    Some(_) if is_done => branches.push(Branch::Joined),
+                    Some([a, b]) => next.extend([(hollow, true), (b, false), (a, false)]),
+                    None => branches.extend(h.cells.first().map(|pit| Branch::Pit(*pit))),
+                }
+            }
+            (branches, l.held)
+        })
+    }
+
+    /// Restores a water that was saved. Says whether it can be one of this terrain.
+    pub fn restore(&mut self, terrain: &Terrain, below: PitBelow<'_>, branches: &[Branch], held: f64) -> bool {
+        let mut stack: Vec<u32> = Vec::new();
+        for branch in branches {
+            match branch {
+                Branch::Pit(pit) => {
+                    let (slot, at) = terrain.split(*pit);
+                    if below(*pit) != Some(*pit) || self.lake_of(slot, at).is_some() {
+                        return false;
+                    }
+                    stack.push(self.lake_at(terrain, *pit));
+                }
+                Branch::Joined => {
+                    let (Some(b), Some(a)) = (stack.pop(), stack.pop()) else { return false };
+                    let brim = [a, b].map(|lake| self.fill(terrain, lake, f64::MAX));
+                    let to = |s: &Self, lake: u32| {
+                        let pit = s.spills_to(lake).and_then(below)?;
+                        let (slot, at) = terrain.split(pit);
+                        s.lake_of(slot, at)
+                    };
+                    if brim.contains(&0.0) || to(self, a) != Some(b) || to(self, b) != Some(a) {
+                        return false;
+                    }
+                    stack.push(self.join(terrain, a, b));
+                }
+            }
+        }
+        let [lake] = stack[..] else { return false };
+        let base = self.of(lake).map_or(f64::NAN, |(l, _)| l.held);
+        let more = held - base;
+        if !(held > 0.0 && more >= 0.0) || self.fill(terrain, lake, more) > 0.0 {
+            return false;
+        }
+        // Not by adding up: what was held to the bit.
+        let level = self.of(lake).map_or(0.0, |(_, h)| h.level(held).0);
+        if let Some(l) = self.lakes[lake as usize].as_mut() {
+            (l.held, l.level_mm) = (held, level);
+        }
+        true
+    }
+}

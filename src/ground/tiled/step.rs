@@ -1,0 +1,146 @@
+//! A step of the water on all tiles, in parts where it takes long.
+
+use super::{TiledWater, drains::Sink, pit_below, pour_all, tile::cells_of};
+use crate::{
+    error::Result,
+    ground::{
+        GroundWater,
+        terrain::Flows,
+        water::{Forcing, Step},
+    },
+    terrain::{CellId, Terrain, TileKey},
+    weather::Conditions,
+    world::{Within, World},
+};
+
+/// What acts on the ground in a step.
+#[derive(Clone, Copy)]
+pub(in super::super) struct TiledStep<'a> {
+    pub world: &'a World,
+    pub terrain: &'a Terrain,
+    /// Simulation time in its middle, and its length, s.
+    pub middle_s: f64,
+    pub seconds: f64,
+    /// The weather in its middle, and what it does to the ground.
+    pub conditions: &'a Conditions,
+    pub forcing: &'a Forcing,
+    /// Of level, open ground at its beginning.
+    pub water: &'a GroundWater,
+}
+
+/// A step of which some tiles are done.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StepInParts {
+    /// The last tile that is done.
+    last: Option<TileKey>,
+    flows: Flows,
+    changes: bool,
+}
+
+/// What a step brought and took, and whether any water is other than before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in super::super) struct Stepped {
+    pub flows: Flows,
+    pub changes: bool,
+}
+
+impl TiledWater {
+    /// Leads the water through a step, or a part of it until the time is over: one tile at least. None while tiles remain.
+    pub fn step(&mut self, now: &TiledStep<'_>, within: Option<Within>) -> Result<Option<Stepped>> {
+        let mut part = self.part.take().unwrap_or_default();
+        let step = Step::new(now.forcing, now.seconds);
+        let keys = std::mem::take(&mut self.keys);
+        let done = part.last;
+        let mut left = keys.iter().skip_while(|(key, _)| done.is_some_and(|last| **key <= last));
+        let mut led = Ok(());
+        for (key, slot) in left.by_ref() {
+            led = self.step_tile(*slot, now, &step, &mut part);
+            if led.is_err() {
+                break;
+            }
+            part.last = Some(*key);
+            if within.is_some_and(|w| w.begun.elapsed() >= w.most) {
+                break;
+            }
+        }
+        let remain = left.next().is_some() || led.is_err();
+        self.keys = keys;
+        if remain {
+            self.part = Some(part);
+            return led.map(|()| None);
+        }
+        let dry = self.lakes.count == 0;
+        self.finish(now.terrain, &step, &mut part.flows);
+        self.version.1 += 1;
+        Ok(Some(Stepped { flows: part.flows, changes: part.changes || !dry || self.lakes.count > 0 }))
+    }
+
+    fn step_tile(&mut self, slot: u32, now: &TiledStep<'_>, step: &Step, part: &mut StepInParts) -> Result<()> {
+        let Some(tile) = self.tiles[slot as usize].as_mut() else { return Ok(()) };
+        let quiet = now.forcing.liquid_mm_h <= 0.0 && now.world.set.regions.is_empty();
+        if quiet && tile.begun && !tile.is_awake() {
+            return Ok(());
+        }
+        let data = now.terrain.tile(slot);
+        let cells = cells_of(now.terrain, data);
+        let shelters = &now.world.set.shelters;
+        let overs = tile.rain.overs(now.world, now.middle_s, now.conditions)?;
+        if !tile.begun {
+            let water = tile.rain.first_water(&cells, (now.conditions, now.water), &overs, shelters);
+            // What it begins with counts as fallen.
+            part.flows.rain += tile.begin(data, &water);
+            part.changes = true;
+        }
+        let rains = overs.rain(now.forcing);
+        if rains {
+            tile.rain.fall(&cells, (now.conditions, now.forcing, now.seconds), &overs, shelters);
+        }
+        part.changes |= rains || tile.is_awake();
+        let flows = tile.step(data, (slot as usize, &self.lakes), step, rains);
+        part.flows.rain += flows.rain;
+        part.flows.evaporated += flows.evaporated;
+        Ok(())
+    }
+
+    /// Brings what ran off into its pits, and lowers what stands.
+    fn finish(&mut self, terrain: &Terrain, step: &Step, flows: &mut Flows) {
+        let came = self.gather(terrain, flows);
+        flows.drained += pour_all((&self.tiles, &mut self.lakes), terrain, came);
+        if self.lakes.count > 0 {
+            let sinks = step.evaporated_mm + step.leaked_mm;
+            let mut bared = Vec::new();
+            let gone = self.lakes.sink(terrain, sinks, &mut bared);
+            flows.evaporated += gone * step.evaporated_mm / sinks;
+            flows.leaked += gone * step.leaked_mm / sinks;
+            bared.into_iter().for_each(|cell| self.wake(terrain, cell));
+        }
+        (self.covered, self.cells) =
+            (self.lakes.covered(), (terrain.all().len() * terrain.side() * terrain.side()) as f64);
+    }
+
+    /// What ran off in this step by the pits that it comes to.
+    fn gather(&mut self, terrain: &Terrain, flows: &mut Flows) -> Vec<(CellId, f64)> {
+        let mut ends: Vec<(Sink, f64)> = Vec::new();
+        for slot in self.keys.values() {
+            let Some(tile) = self.tiles[*slot as usize].as_mut() else { continue };
+            for block in tile.drains.blocks.iter_mut().filter(|b| b.gets) {
+                block.gets = false;
+                let found = block.sinks.iter().zip(&mut block.inflow).filter(|(_, water)| **water > 0.0);
+                ends.extend(found.map(|(sink, water)| (*sink, std::mem::take(water))));
+            }
+        }
+        let mut came = Vec::with_capacity(ends.len());
+        for (sink, water) in ends {
+            let pit = match sink {
+                Sink::Pit(pit) => Some(pit),
+                Sink::On(cell) => pit_below(&self.tiles, terrain, cell),
+                Sink::Out => None,
+            };
+            match pit {
+                Some(pit) => came.push((pit, water)),
+                None => flows.drained += water,
+            }
+        }
+        came
+    }
+}

@@ -1,0 +1,251 @@
+//! The part of a terrain of tiles about a camera as textures, for the surface pass: what a grid has in [`super::texture`].
+//!
+//! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of cells of 1 m reaches
+//! 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is filled and uploaded: all of it where the
+//! window moves or water is other than before, else the rectangles of the ground that changed.
+
+use std::collections::VecDeque;
+
+use glam::{DMat3, DVec3};
+use half::f16;
+
+use super::{
+    GroundGrid, GroundWater,
+    tiled::{Changed, TiledWater},
+};
+use crate::{
+    gpu::Device,
+    terrain::{CellRect, Terrain},
+};
+
+/// Cells along a side of a window, and by how many it moves.
+const WINDOW: i32 = 512;
+const STEP: i32 = 64;
+/// In the place of a hole's height, m: no surface lies there.
+const NOWHERE_M: f32 = 1e6;
+/// Depth of water where none stands, mm.
+const BARE_MM: f64 = -50.0;
+/// Changes that are remembered: a window that has seen none of them is filled anew.
+const REMEMBERED: usize = 256;
+
+/// The nodes of a terrain that a frame draws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DrawnTerrain {
+    /// The first node at the height that heights count from, in the host's world.
+    pub origin: DVec3,
+    /// Turns the host's axes at the origin of the terrain.
+    pub to_enu: DMat3,
+    pub cell_m: f64,
+    /// East and north.
+    pub nodes: [u32; 2],
+}
+
+impl DrawnTerrain {
+    pub fn of_grid(grid: &GroundGrid, to_enu: DMat3) -> Self {
+        Self { origin: grid.origin, to_enu, cell_m: grid.cell_m, nodes: grid.nodes }
+    }
+
+    /// The window about a camera.
+    pub fn window(terrain: &Terrain, eye: DVec3) -> Option<Self> {
+        let low = window(terrain, eye)?.low;
+        let plan = DVec3::new(f64::from(low[0]), f64::from(low[1]), 0.0) * terrain.desc.cell_m;
+        let origin = terrain.desc.origin + terrain.to_enu.transpose() * plan;
+        Some(Self { origin, to_enu: terrain.to_enu, cell_m: terrain.desc.cell_m, nodes: [WINDOW as u32; 2] })
+    }
+}
+
+/// The cells of the window about a camera, if any tile reaches into it.
+fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
+    let (cells, _) = terrain.cells_at(eye);
+    if !cells.is_finite() || cells.abs().max_element() > f64::from(1 << 29) {
+        return None;
+    }
+    let low = [cells.x, cells.y].map(|v| (v / f64::from(STEP)).floor() as i32 * STEP + STEP / 2 - WINDOW / 2);
+    let rect = CellRect { low, high: low.map(|v| v + WINDOW) };
+    terrain.keys_within(rect).any(|key| terrain.slot(key).is_some()).then_some(rect)
+}
+
+/// Changes of the ground that windows may not have seen yet.
+#[derive(Default)]
+pub(super) struct RecentChanges(VecDeque<Changed>);
+
+impl RecentChanges {
+    pub fn add(&mut self, change: Changed) {
+        if self.0.len() == REMEMBERED {
+            self.0.pop_front();
+        }
+        self.0.push_back(change);
+    }
+
+    /// What has changed since a revision; none if that is forgotten.
+    fn since(&self, revision: u64, now: u64) -> Option<impl Iterator<Item = CellRect> + '_> {
+        let known = revision == now || self.0.front().is_some_and(|c| c.revision <= revision + 1);
+        known.then(|| self.0.iter().filter(move |c| c.revision > revision).map(|c| c.rect))
+    }
+}
+
+/// What a window shows.
+#[derive(Clone, Copy)]
+pub(super) struct Shown<'a> {
+    pub terrain: &'a Terrain,
+    pub water: &'a TiledWater,
+    /// Of level ground, for tiles without water of their own, and the share of the ground under ice.
+    pub even: GroundWater,
+    pub ice: f32,
+    pub recent: &'a RecentChanges,
+}
+
+/// Of what the textures are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Filled {
+    rect: CellRect,
+    id: u64,
+    revision: u64,
+    water: (u64, u64),
+    even: GroundWater,
+    ice: f32,
+}
+
+/// The textures of a view's window.
+#[derive(Default)]
+pub(crate) struct TerrainWindow {
+    textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
+    filled: Option<Filled>,
+    water: Vec<[u16; 4]>,
+    surface: Vec<[f32; 4]>,
+}
+
+impl TerrainWindow {
+    /// Water and surface about a camera, up to date.
+    pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
+        let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
+        let terrain = shown.terrain;
+        let now = Filled {
+            rect,
+            id: terrain.id,
+            revision: terrain.revision,
+            water: shown.water.version(),
+            even: shown.even,
+            ice: shown.ice,
+        };
+        let before = self.filled.filter(|f| f.rect == rect && f.id == now.id);
+        let changed: Option<Vec<CellRect>> =
+            before.and_then(|f| Some(shown.recent.since(f.revision, now.revision)?.collect()));
+        let is_wet_anew = before.is_none_or(|f| (f.water, f.even, f.ice) != (now.water, now.even, now.ice));
+        match changed {
+            Some(changed) => changed.iter().for_each(|c| self.fill(device, shown, (rect, c.grown(1)), [true, true])),
+            None => self.fill(device, shown, (rect, rect), [true, false]),
+        }
+        if is_wet_anew {
+            self.fill(device, shown, (rect, rect), [false, true]);
+        }
+        self.filled = Some(now);
+        self.textures.as_ref().map_or([None, None], |t| t.1.clone().map(Some))
+    }
+
+    /// Fills and uploads a part of a window: the surface, the water, or both.
+    fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), which: [bool; 2]) {
+        let Some(part) = window.meets(part) else { return };
+        self.read(shown, part, which);
+        let (textures, _) = self.textures.get_or_insert_with(|| made(device));
+        let extent = [0, 1].map(|i| (part.high[i] - part.low[i]) as u32);
+        let at = [0, 1].map(|i| (part.low[i] - window.low[i]) as u32);
+        let write = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
+            let to = wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: at[0], y: at[1], z: 0 },
+                ..texture.as_image_copy()
+            };
+            let rows =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * extent[0]), rows_per_image: None };
+            let size = wgpu::Extent3d { width: extent[0], height: extent[1], depth_or_array_layers: 1 };
+            device.queue.write_texture(to, bytes, rows, size);
+        };
+        if which[0] {
+            write(&textures[1], bytemuck::cast_slice(&self.surface), 16);
+        }
+        if which[1] {
+            write(&textures[0], bytemuck::cast_slice(&self.water), 8);
+        }
+    }
+
+    /// Reads the texels of a part of the terrain, by rows.
+    fn read(&mut self, shown: &Shown<'_>, part: CellRect, [surface, water]: [bool; 2]) {
+        let width = (part.high[0] - part.low[0]) as usize;
+        let count = width * (part.high[1] - part.low[1]) as usize;
+        self.surface.clear();
+        self.water.clear();
+        if surface {
+            self.surface.resize(count, [0.0, 0.0, NOWHERE_M, 0.0]);
+        }
+        if water {
+            self.water.resize(count, half4([0.0, 0.0, BARE_MM as f32, 0.0]));
+        }
+        let terrain = shown.terrain;
+        for key in terrain.keys_within(part) {
+            let (Some(slot), Some(own)) = (terrain.slot(key), terrain.rect(key).meets(part)) else { continue };
+            let tile = terrain.tile(slot);
+            for place in own.cells() {
+                let cell = terrain.in_tile(place);
+                if !tile.has_ground(cell) {
+                    continue;
+                }
+                let to = (place[1] - part.low[1]) as usize * width + (place[0] - part.low[0]) as usize;
+                if surface {
+                    let [east, north] = slope(terrain, place, tile.heights_m[cell]);
+                    self.surface[to] = [east, north, tile.heights_m[cell], f32::from(tile.class(cell) as u8)];
+                }
+                if water {
+                    let id = terrain.joined(slot, cell);
+                    let c = shown.water.cell(terrain, id, &shown.even);
+                    let standing = if c.standing_mm > BARE_MM { c.standing_mm } else { shore(shown, id) };
+                    self.water[to] = half4([c.film_mm as f32, c.soaked as f32, standing as f32, shown.ice]);
+                }
+            }
+        }
+    }
+}
+
+/// How far the highest water beside a cell lies below it, mm, negative; so that a shore between two cells lies where it should.
+fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
+    if !shown.water.has_lakes_near(shown.terrain, cell) {
+        return BARE_MM;
+    }
+    let own = f64::from(shown.terrain.height(cell)) * 1e3;
+    let beside =
+        shown.terrain.around(cell).into_iter().flatten().filter_map(|near| shown.water.level_mm(shown.terrain, near));
+    beside.fold(BARE_MM, |highest, level| highest.max(level - own)).min(0.0)
+}
+
+/// Rise over run to the east and the north: over both neighbours, where one is no ground over the other.
+fn slope(terrain: &Terrain, [x, y]: [i32; 2], own: f32) -> [f32; 2] {
+    let height = |at: [i32; 2]| terrain.cell_at(at).map(|cell| terrain.height(cell));
+    [[1, 0], [0, 1]].map(|[dx, dy]| {
+        let (before, after) = (height([x - dx, y - dy]), height([x + dx, y + dy]));
+        let cells = f32::from(u8::from(before.is_some()) + u8::from(after.is_some())).max(1.0);
+        (after.unwrap_or(own) - before.unwrap_or(own)) / (cells * terrain.desc.cell_m as f32)
+    })
+}
+
+fn half4(values: [f32; 4]) -> [u16; 4] {
+    values.map(|v| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits())
+}
+
+/// Textures of a window, still empty, and their views.
+fn made(device: &Device) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
+    use wgpu::{TextureFormat as F, TextureUsages as U};
+    let texture = |label, format| {
+        device.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: WINDOW as u32, height: WINDOW as u32, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: U::TEXTURE_BINDING | U::COPY_DST,
+            view_formats: &[],
+        })
+    };
+    let both = [texture("window water", F::Rgba16Float), texture("window surface", F::Rgba32Float)];
+    let views = [0, 1].map(|i| both[i].create_view(&Default::default()));
+    (both, views)
+}

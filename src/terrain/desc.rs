@@ -1,0 +1,233 @@
+//! What a host says of its terrain, and what of that is refused.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::SurfaceClass;
+use crate::error::{Error, Result, check_range};
+
+/// Most cells that the tiles of a terrain may have together.
+pub const MAX_TERRAIN_CELLS: usize = 4096 * 4096;
+/// Smallest and largest tile, cells along a side.
+const TILE_CELLS: [u32; 2] = [32, 1024];
+/// Farthest tile from the origin, tiles.
+const FARTHEST: i32 = 1_000_000;
+/// Largest height above or below the origin, m.
+const MOST_M: f32 = 1e5;
+
+/// The lattice of a terrain: level and aligned to true north at its origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TerrainDesc {
+    /// The south-western cell of tile (0, 0), in the host's world; its height is what all heights count from.
+    pub origin: DVec3,
+    /// From cell to cell, m, \[0.01, 10 000\].
+    pub cell_m: f64,
+    /// Cells along each side of a tile: a power of two from 32 to 1024.
+    pub tile_cells: u32,
+}
+
+impl Default for TerrainDesc {
+    fn default() -> Self {
+        Self { origin: DVec3::ZERO, cell_m: 1.0, tile_cells: 256 }
+    }
+}
+
+impl TerrainDesc {
+    /// Refuses what is no lattice, by name.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`].
+    pub fn validate(&self) -> Result<()> {
+        if !(self.origin.is_finite() && self.origin.length() <= 1e12) {
+            return Err(Error::range("terrain.origin_m", "finite and within 1e12 m", self.origin));
+        }
+        check_range("terrain.cell_m", self.cell_m, 0.01, 1e4, "m")?;
+        let [least, most] = TILE_CELLS;
+        if !((least..=most).contains(&self.tile_cells) && self.tile_cells.is_power_of_two()) {
+            let wanted = format!("a power of two from {least} to {most}");
+            return Err(Error::range("terrain.tile_cells", &wanted, self.tile_cells));
+        }
+        Ok(())
+    }
+
+    /// Most tiles of this size that a terrain may have.
+    pub fn most_tiles(&self) -> usize {
+        MAX_TERRAIN_CELLS / (self.tile_cells as usize * self.tile_cells as usize)
+    }
+}
+
+/// Which tile of the lattice: tiles east and north of the origin, each within 1 000 000. Keys go by rows from the south.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct TileKey {
+    /// Tiles to the east; negative to the west.
+    pub east: i32,
+    /// Tiles to the north; negative to the south.
+    pub north: i32,
+}
+
+impl TileKey {
+    /// The tile that lies so many tiles east and north.
+    pub fn new(east: i32, north: i32) -> Self {
+        Self { east, north }
+    }
+
+    /// Refuses one that lies too far away.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming `param`.
+    pub(crate) fn validate(self, param: &str) -> Result<()> {
+        for (i, v) in [self.east, self.north].into_iter().enumerate() {
+            let far = f64::from(FARTHEST);
+            check_range(&format!("{param}[{i}]"), f64::from(v), -far, far, "")?;
+        }
+        Ok(())
+    }
+}
+
+impl Ord for TileKey {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.north, self.east).cmp(&(other.north, other.east))
+    }
+}
+
+impl PartialOrd for TileKey {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Values of a rectangle of cells: rows from south to north, in each from west to east.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rows<'a, T> {
+    /// The values, row after row.
+    pub values: &'a [T],
+    /// From the beginning of a row to that of the next, values; 0: rows follow each other without a gap.
+    pub stride: u32,
+}
+
+impl<T> Default for Rows<'_, T> {
+    fn default() -> Self {
+        Self { values: &[], stride: 0 }
+    }
+}
+
+impl<'a, T: Copy> Rows<'a, T> {
+    /// Rows without a gap.
+    pub fn of(values: &'a [T]) -> Self {
+        Self { values, stride: 0 }
+    }
+
+    fn stride(&self, width: u32) -> usize {
+        if self.stride == 0 { width as usize } else { self.stride as usize }
+    }
+
+    /// One row of the rectangle, and the place of its first value in the list.
+    pub(crate) fn row(&self, row: u32, width: u32) -> (usize, &'a [T]) {
+        let first = row as usize * self.stride(width);
+        (first, &self.values[first..first + width as usize])
+    }
+
+    fn check(&self, name: &str, size: [u32; 2]) -> Result<()> {
+        if self.stride != 0 && self.stride < size[0] {
+            let wanted = format!("0, or at least {}, the width of the rectangle", size[0]);
+            return Err(Error::range(&format!("terrain_cells.{name}_stride"), &wanted, self.stride));
+        }
+        let needed = (size[1] as usize - 1) * self.stride(size[0]) + size[0] as usize;
+        if self.values.len() < needed {
+            let wanted = format!("at least {needed} for a rectangle of {} x {}", size[0], size[1]);
+            return Err(Error::range(&format!("terrain_cells.{name}.len"), &wanted, self.values.len()));
+        }
+        Ok(())
+    }
+}
+
+/// Heights and classes of a rectangle of cells of one tile.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct TerrainCells<'a> {
+    /// The tile.
+    pub key: TileKey,
+    /// The rectangle's south-western cell in the tile, east and north.
+    pub first: [u32; 2],
+    /// Cells of the rectangle east and north; (0, 0) stands for the whole tile.
+    pub size: [u32; 2],
+    /// Heights above the terrain's origin, m, within 1e5. Empty in an update: they stay.
+    pub heights_m: Rows<'a, f32>,
+    /// What the cells are made of, `None` for a hole. Empty: in an update they stay, in a new tile nothing is said of any.
+    pub classes: Rows<'a, Option<SurfaceClass>>,
+}
+
+impl TerrainCells<'_> {
+    /// Size in cells of a tile with so many along a side.
+    pub(crate) fn size_in(&self, tile_cells: u32) -> [u32; 2] {
+        if self.size == [0, 0] { [tile_cells; 2] } else { self.size }
+    }
+
+    pub(crate) fn check(&self, tile_cells: u32) -> Result<()> {
+        self.key.validate("terrain_cells.tile")?;
+        let size = self.size_in(tile_cells);
+        for i in [0, 1] {
+            let fits = size[i] >= 1 && u64::from(self.first[i]) + u64::from(size[i]) <= u64::from(tile_cells);
+            if !fits {
+                let wanted = format!("at least one cell, and within the tile's {tile_cells} with first_cell[{i}]");
+                let got = format!("{} from {}", size[i], self.first[i]);
+                return Err(Error::range(&format!("terrain_cells.cells[{i}]"), &wanted, got));
+            }
+        }
+        if !self.heights_m.values.is_empty() {
+            self.heights_m.check("heights_m", size)?;
+        }
+        if !self.classes.values.is_empty() {
+            self.classes.check("surface_classes", size)?;
+        }
+        self.check_heights(size)
+    }
+
+    fn check_heights(&self, size: [u32; 2]) -> Result<()> {
+        if self.heights_m.values.is_empty() {
+            return Ok(());
+        }
+        for row in 0..size[1] {
+            let (first, heights) = self.heights_m.row(row, size[0]);
+            if let Some(i) = heights.iter().position(|h| h.is_nan() || h.abs() > MOST_M) {
+                let name = format!("terrain_cells.heights_m[{}]", first + i);
+                return Err(Error::range(&name, &format!("finite and within {MOST_M} m"), heights[i]));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A rectangle of cells, counted from the terrain's origin: from `low` up to but without `high`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CellRect {
+    pub low: [i32; 2],
+    pub high: [i32; 2],
+}
+
+impl CellRect {
+    /// With so many cells more on each side.
+    pub fn grown(self, by: i32) -> Self {
+        Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
+    }
+
+    /// What holds both.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            low: [0, 1].map(|i| self.low[i].min(other.low[i])),
+            high: [0, 1].map(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    /// What two have in common, if anything.
+    pub fn meets(self, other: Self) -> Option<Self> {
+        let low = [0, 1].map(|i| self.low[i].max(other.low[i]));
+        let high = [0, 1].map(|i| self.high[i].min(other.high[i]));
+        (low[0] < high[0] && low[1] < high[1]).then_some(Self { low, high })
+    }
+
+    /// All cells of it, by rows.
+    pub fn cells(self) -> impl Iterator<Item = [i32; 2]> {
+        (self.low[1]..self.high[1]).flat_map(move |y| (self.low[0]..self.high[0]).map(move |x| [x, y]))
+    }
+}

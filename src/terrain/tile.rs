@@ -1,0 +1,90 @@
+//! One tile: heights, classes, and a hash that a change of some cells keeps up to date.
+
+use super::{HOLE, SurfaceClass, TerrainCells, TileKey};
+
+/// The heights and classes of a tile's cells.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tile {
+    pub key: TileKey,
+    /// Above the terrain's origin, m, by rows from the south-west; of holes too.
+    pub heights_m: Vec<f32>,
+    /// Numbers of classes, or [`HOLE`]; empty where nothing is said of any cell.
+    classes: Vec<u8>,
+    /// Of the terrain when this tile changed last.
+    pub revision: u64,
+    /// The same for tiles with the same cells: the sum of its cells' hashes.
+    pub hash: u64,
+}
+
+/// Spreads the bits of a number over all of a word (the finalizer of splitmix64, Steele, Lea and Flood 2014).
+pub(super) fn mixed(v: u64) -> u64 {
+    let v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    v ^ (v >> 31)
+}
+
+impl Tile {
+    /// A level one at height 0, of `tile_cells` along a side, of which nothing is said.
+    pub fn level(key: TileKey, tile_cells: u32) -> Self {
+        let count = tile_cells as usize * tile_cells as usize;
+        let mut tile = Self { key, heights_m: vec![0.0; count], classes: Vec::new(), revision: 0, hash: 0 };
+        tile.hash = (0..count).fold(0, |sum, i| sum.wrapping_add(tile.cell_hash(i)));
+        tile
+    }
+
+    /// Without cells, in the place of one that was taken away.
+    pub fn none() -> Self {
+        Self { key: TileKey::default(), heights_m: Vec::new(), classes: Vec::new(), revision: 0, hash: 0 }
+    }
+
+    fn cell_hash(&self, cell: usize) -> u64 {
+        let class = u64::from(self.class_number(cell));
+        // -0 and 0 are the same height.
+        let height = u64::from((self.heights_m[cell] + 0.0).to_bits());
+        mixed(mixed(cell as u64) ^ (class << 32 | height))
+    }
+
+    /// The number of a cell's class, or [`HOLE`].
+    pub fn class_number(&self, cell: usize) -> u8 {
+        self.classes.get(cell).copied().unwrap_or(0)
+    }
+
+    /// Whether there is ground.
+    pub fn has_ground(&self, cell: usize) -> bool {
+        self.class_number(cell) != HOLE
+    }
+
+    /// What a cell is made of; unspecified for a hole.
+    pub fn class(&self, cell: usize) -> SurfaceClass {
+        let number = usize::from(self.class_number(cell));
+        SurfaceClass::ALL.get(number).copied().unwrap_or_default()
+    }
+
+    /// Takes the values of a rectangle that was checked. Says whether any is new.
+    pub fn take(&mut self, cells: &TerrainCells<'_>, tile_cells: u32) -> bool {
+        let before = self.hash;
+        let size = cells.size_in(tile_cells);
+        if !cells.classes.values.is_empty() && self.classes.is_empty() {
+            self.classes = vec![0; self.heights_m.len()];
+        }
+        for row in 0..size[1] {
+            let first = (cells.first[1] + row) as usize * tile_cells as usize + cells.first[0] as usize;
+            for cell in first..first + size[0] as usize {
+                self.hash = self.hash.wrapping_sub(self.cell_hash(cell));
+            }
+            if !cells.heights_m.values.is_empty() {
+                let heights = cells.heights_m.row(row, size[0]).1;
+                self.heights_m[first..first + heights.len()].copy_from_slice(heights);
+            }
+            if !cells.classes.values.is_empty() {
+                let classes = cells.classes.row(row, size[0]).1;
+                let number = |c: &Option<SurfaceClass>| c.map_or(HOLE, |c| c as u8);
+                self.classes[first..].iter_mut().zip(classes).for_each(|(to, c)| *to = number(c));
+            }
+            for cell in first..first + size[0] as usize {
+                self.hash = self.hash.wrapping_add(self.cell_hash(cell));
+            }
+        }
+        self.hash != before
+    }
+}

@@ -1,0 +1,341 @@
+//! The tiles of a terrain: found by key, by place and by number.
+
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering::Relaxed},
+    },
+};
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{CellRect, MAX_TERRAIN_CELLS, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey, tile::mixed};
+use crate::{
+    error::{Error, Result},
+    scene::WorldFrame,
+};
+
+/// A cell of the terrain by number: that of its tile's place in the list, then its place in the tile.
+pub(crate) type CellId = u32;
+
+/// The eight cells about a cell, east and north of it.
+pub(crate) const AROUND: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// The terrain at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TerrainPoint {
+    /// Height of the ground above the terrain's origin, m, linear between cells.
+    pub height_m: f64,
+    /// What the nearest cell is made of.
+    pub surface_class: SurfaceClass,
+    /// The tile of the nearest cell, and its revision.
+    pub tile: TileKey,
+    /// [`Terrain`'s](crate::context::Context::terrain_revision) revision when that tile changed last.
+    pub revision: u64,
+}
+
+/// The host's terrain. A copy shares its tiles.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Terrain {
+    /// No other terrain has this number but copies of this one.
+    pub id: u64,
+    pub desc: TerrainDesc,
+    /// Turns the host's axes at the origin to east, north, up.
+    pub to_enu: DMat3,
+    /// Altitude of the origin, m.
+    pub altitude_m: f64,
+    /// Binary digits of a tile's cells along a side.
+    bits: u32,
+    /// By number; those that are in no `slots` are empty.
+    tiles: Vec<Arc<Tile>>,
+    slots: BTreeMap<TileKey, u32>,
+    /// What all tiles lie within.
+    bounds: Option<CellRect>,
+    /// Grows with every change.
+    pub revision: u64,
+    /// The same for the same tiles.
+    pub hash: u64,
+}
+
+fn hash_of(tile: &Tile) -> u64 {
+    let key = u64::from(tile.key.east as u32) << 32 | u64::from(tile.key.north as u32);
+    mixed(tile.hash ^ mixed(key))
+}
+
+impl Terrain {
+    /// Without tiles.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field.
+    pub fn new(desc: TerrainDesc, world: &WorldFrame) -> Result<Self> {
+        desc.validate()?;
+        let frame = world.place_at("terrain.origin_m", desc.origin)?;
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Ok(Self {
+            id: NEXT.fetch_add(1, Relaxed),
+            desc,
+            to_enu: frame.world_to_enu,
+            altitude_m: frame.place.altitude_m,
+            bits: desc.tile_cells.trailing_zeros(),
+            tiles: Vec::new(),
+            slots: BTreeMap::new(),
+            bounds: None,
+            revision: 1,
+            hash: 0,
+        })
+    }
+
+    /// Cells along a side of a tile.
+    pub fn side(&self) -> usize {
+        self.desc.tile_cells as usize
+    }
+
+    /// All tiles by their keys, with their numbers.
+    pub fn all(&self) -> impl ExactSizeIterator<Item = (u32, &Tile)> {
+        self.slots.values().map(|slot| (*slot, self.tile(*slot)))
+    }
+
+    /// A tile by its number.
+    pub fn tile(&self, slot: u32) -> &Tile {
+        &self.tiles[slot as usize]
+    }
+
+    /// The number of a tile.
+    pub fn slot(&self, key: TileKey) -> Option<u32> {
+        self.slots.get(&key).copied()
+    }
+
+    /// The cells of a tile, as they lie on the lattice.
+    pub fn rect(&self, key: TileKey) -> CellRect {
+        let low = [key.east, key.north].map(|k| k << self.bits);
+        CellRect { low, high: low.map(|v| v + (1 << self.bits)) }
+    }
+
+    /// Keys of the tiles that a rectangle touches, whether there are any.
+    pub fn keys_within(&self, rect: CellRect) -> impl Iterator<Item = TileKey> + use<> {
+        let bits = self.bits;
+        let along = move |i: usize| (rect.low[i] >> bits)..=((rect.high[i] - 1) >> bits);
+        along(1).flat_map(move |north| along(0).map(move |east| TileKey { east, north }))
+    }
+
+    /// Where a place of the lattice lies in its tile.
+    pub fn in_tile(&self, [x, y]: [i32; 2]) -> usize {
+        let mask = (1 << self.bits) - 1;
+        ((y & mask) as usize) << self.bits | (x & mask) as usize
+    }
+
+    /// The place on the lattice of a cell of a tile.
+    pub fn place_in(&self, key: TileKey, cell: usize) -> [i32; 2] {
+        let low = self.rect(key).low;
+        let mask = (1usize << self.bits) - 1;
+        [low[0] + (cell & mask) as i32, low[1] + (cell >> self.bits) as i32]
+    }
+
+    /// The first cell of a tile, at height 0, in the host's world.
+    pub fn origin_of(&self, key: TileKey) -> DVec3 {
+        let low = self.rect(key).low;
+        let plan = DVec3::new(f64::from(low[0]), f64::from(low[1]), 0.0) * self.desc.cell_m;
+        self.desc.origin + self.to_enu.transpose() * plan
+    }
+
+    /// Puts a tile where there was none, or other cells into the one that is there. Answers the cells that may have changed.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_tile(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
+        let side = self.desc.tile_cells;
+        cells.check(side)?;
+        if cells.size_in(side) != [side; 2] {
+            let wanted = format!("the whole tile, {side} x {side}, or 0 x 0 for it");
+            let got = format!("{} x {}", cells.size[0], cells.size[1]);
+            return Err(Error::range("terrain_cells.cells", &wanted, got));
+        }
+        if cells.heights_m.values.is_empty() {
+            return Err(Error::range("terrain_cells.heights_m.len", &format!("{}, one a cell", side * side), 0));
+        }
+        if self.slot(cells.key).is_some() {
+            return Ok(self.take(cells));
+        }
+        if self.slots.len() >= self.desc.most_tiles() {
+            let most = self.desc.most_tiles();
+            let wanted = format!("one of at most {most} tiles of {side} x {side}, {MAX_TERRAIN_CELLS} cells");
+            return Err(Error::range("terrain_cells.tile", &wanted, "one more"));
+        }
+        let mut tile = Tile::level(cells.key, side);
+        tile.take(cells, side);
+        self.revision += 1;
+        tile.revision = self.revision;
+        self.hash = self.hash.wrapping_add(hash_of(&tile));
+        let free = self.tiles.iter().position(|t| t.heights_m.is_empty()).unwrap_or(self.tiles.len());
+        if free == self.tiles.len() {
+            self.tiles.push(Arc::new(tile));
+        } else {
+            self.tiles[free] = Arc::new(tile);
+        }
+        self.slots.insert(cells.key, free as u32);
+        let rect = self.rect(cells.key);
+        self.bounds = Some(self.bounds.map_or(rect, |b| b.with(rect)));
+        Ok(Some(rect))
+    }
+
+    /// Puts other cells into a part of a tile. Answers the cells that may have changed.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn update(&mut self, cells: &TerrainCells<'_>) -> Result<Option<CellRect>> {
+        cells.check(self.desc.tile_cells)?;
+        self.known(cells.key)?;
+        Ok(self.take(cells))
+    }
+
+    /// The number of a tile that there must be.
+    fn known(&self, key: TileKey) -> Result<u32> {
+        self.slot(key).ok_or_else(|| {
+            let got = format!("({}, {})", key.east, key.north);
+            Error::range("terrain_cells.tile", "the key of a tile that was set", got)
+        })
+    }
+
+    fn take(&mut self, cells: &TerrainCells<'_>) -> Option<CellRect> {
+        let slot = self.slot(cells.key)? as usize;
+        let tile = Arc::make_mut(&mut self.tiles[slot]);
+        let before = hash_of(tile);
+        if !tile.take(cells, self.desc.tile_cells) {
+            return None;
+        }
+        self.revision += 1;
+        tile.revision = self.revision;
+        self.hash = self.hash.wrapping_sub(before).wrapping_add(hash_of(tile));
+        let corner = self.rect(cells.key).low;
+        let low = [0, 1].map(|i| corner[i] + cells.first[i] as i32);
+        let size = cells.size_in(self.desc.tile_cells);
+        Some(CellRect { low, high: [0, 1].map(|i| low[i] + size[i] as i32) })
+    }
+
+    /// Takes a tile away. Answers the cells that it had.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if there is none.
+    pub fn remove(&mut self, key: TileKey) -> Result<CellRect> {
+        let slot = self.known(key).map_err(|e| e.renamed("terrain_cells.tile", "tile"))?;
+        let tile = std::mem::replace(&mut self.tiles[slot as usize], Arc::new(Tile::none()));
+        self.hash = self.hash.wrapping_sub(hash_of(&tile));
+        self.slots.remove(&key);
+        self.bounds = self.slots.keys().map(|key| self.rect(*key)).reduce(CellRect::with);
+        self.revision += 1;
+        Ok(self.rect(key))
+    }
+
+    /// The cell at a place of the lattice, if there is ground.
+    pub fn cell_at(&self, [x, y]: [i32; 2]) -> Option<CellId> {
+        let slot = self.slot(TileKey::new(x >> self.bits, y >> self.bits))?;
+        let cell = self.in_tile([x, y]);
+        self.tile(slot).has_ground(cell).then(|| self.joined(slot, cell))
+    }
+
+    /// Number of a cell's tile, and its place in it.
+    pub fn split(&self, id: CellId) -> (usize, usize) {
+        ((id >> (2 * self.bits)) as usize, (id & ((1 << (2 * self.bits)) - 1)) as usize)
+    }
+
+    /// The cell of a tile's number at a place in the tile.
+    pub fn joined(&self, slot: u32, cell: usize) -> CellId {
+        slot << (2 * self.bits) | cell as u32
+    }
+
+    /// Where a cell lies on the lattice.
+    pub fn place(&self, id: CellId) -> [i32; 2] {
+        let (slot, cell) = self.split(id);
+        self.place_in(self.tile(slot as u32).key, cell)
+    }
+
+    /// Height of a cell above the origin, m.
+    pub fn height(&self, id: CellId) -> f32 {
+        let (slot, cell) = self.split(id);
+        self.tile(slot as u32).heights_m[cell]
+    }
+
+    /// Whether a cell has neighbours in other tiles.
+    pub fn is_at_border(&self, id: CellId) -> bool {
+        let mask = (1usize << self.bits) - 1;
+        let cell = self.split(id).1;
+        [cell & mask, cell >> self.bits].iter().any(|v| *v == 0 || *v == mask)
+    }
+
+    /// The eight cells about one in the order of [`AROUND`], in whatever tiles they lie; none where there is no ground.
+    pub fn around(&self, id: CellId) -> [Option<CellId>; 8] {
+        let (slot, cell) = self.split(id);
+        let mask = (1usize << self.bits) - 1;
+        let (x, y) = (cell & mask, cell >> self.bits);
+        if x > 0 && y > 0 && x < mask && y < mask {
+            let tile = self.tile(slot as u32);
+            return AROUND.map(|[dx, dy]| {
+                let step = dx + (dy << self.bits);
+                tile.has_ground(cell.wrapping_add_signed(step as isize)).then(|| id.wrapping_add_signed(step))
+            });
+        }
+        let at = self.place(id);
+        AROUND.map(|[dx, dy]| self.cell_at([at[0] + dx, at[1] + dy]))
+    }
+
+    /// `position` of the host's world in cells east and north of the origin, and its height over it.
+    pub fn cells_at(&self, position: DVec3) -> (DVec2, f64) {
+        let p = self.to_enu * (position - self.desc.origin);
+        (p.truncate() / self.desc.cell_m, p.z)
+    }
+
+    /// The cells about a place and their shares: four where there is ground all round. None where the nearest is no ground.
+    pub fn about(&self, cells: DVec2) -> Option<impl Iterator<Item = (CellId, f64)> + Clone + use<>> {
+        if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
+            return None;
+        }
+        let low = cells.floor();
+        let part = cells - low;
+        let corner = [low.x as i32, low.y as i32];
+        let found = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|bit: [i32; 2]| {
+            let share = |i: usize| if bit[i] == 1 { part[i] } else { 1.0 - part[i] };
+            (self.cell_at([corner[0] + bit[0], corner[1] + bit[1]]), share(0) * share(1))
+        });
+        let nearest = usize::from(part.x >= 0.5) + 2 * usize::from(part.y >= 0.5);
+        found[nearest].0?;
+        let all: f64 = found.iter().filter(|f| f.0.is_some()).map(|f| f.1).sum();
+        Some(found.into_iter().filter_map(move |(cell, share)| Some((cell?, share / all))))
+    }
+
+    /// Height of the ground at a place in cells east and north of the origin, m; none where there is no ground.
+    pub fn height_at(&self, cells: DVec2) -> Option<f64> {
+        Some(self.about(cells)?.map(|(cell, share)| share * f64::from(self.height(cell))).sum())
+    }
+
+    /// The same at a place in metres, for what flows over the ground: beyond the tiles that lie farthest out as at their border.
+    pub fn height_near(&self, place_m: DVec2) -> Option<f64> {
+        let all = self.bounds?;
+        let end = |v: [i32; 2], off: i32| DVec2::new(f64::from(v[0] - off), f64::from(v[1] - off));
+        self.height_at((place_m / self.desc.cell_m).clamp(end(all.low, 0), end(all.high, 1)))
+    }
+
+    /// The terrain at a place of the host's world.
+    pub fn point_at(&self, position: DVec3) -> Option<TerrainPoint> {
+        let (cells, _) = self.cells_at(position);
+        let about = self.about(cells)?;
+        let height_m = about.clone().map(|(cell, share)| share * f64::from(self.height(cell))).sum();
+        let nearest = about.max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let (slot, cell) = self.split(nearest);
+        let tile = self.tile(slot as u32);
+        Some(TerrainPoint { height_m, surface_class: tile.class(cell), tile: tile.key, revision: tile.revision })
+    }
+
+    /// A number that is the same for the same tiles about a rectangle in metres east and north of the origin.
+    pub fn hash_within(&self, low_m: DVec2, high_m: DVec2) -> u64 {
+        let tile_m = self.desc.cell_m * f64::from(self.desc.tile_cells);
+        // The tiles beside it too: heights go linearly between cells.
+        let (low, high) = ((low_m / tile_m).floor() - 1.0, (high_m / tile_m).floor() + 1.0);
+        let inside = |k: &TileKey| {
+            let at = DVec2::new(f64::from(k.east), f64::from(k.north));
+            at.cmpge(low).all() && at.cmple(high).all()
+        };
+        let tiles = self.all().filter(|(_, tile)| inside(&tile.key));
+        tiles.fold(0, |sum: u64, (_, tile)| sum.wrapping_add(hash_of(tile)))
+    }
+}
