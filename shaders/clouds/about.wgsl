@@ -6,9 +6,10 @@
 const SUN_STEPS: u32 = 5u;
 const SUN_FRAYED: u32 = 3u;
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
-// Slope of the map and of the solid noise by which rays skip, a distance from cloud to cloud: steeper places are too small to be missed.
+// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip: steeper places are too small to
+// be missed.
 const MAP_SKIP: f32 = 6.0;
-const SOLID_SKIP: f32 = 8.0;
+const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.
 struct CloudHere {
@@ -20,25 +21,38 @@ struct CloudHere {
     extinction: f32,
     // As `gap`, frayed.
     frayed_gap: f32,
+    // Excess at which the place reaches the layer's top.
+    dome: f32,
 }
 
 fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
-    let over = cloud_strength(layer, at.level) - layer.shape.x;
+    let over = cloud_over(layer, at);
     let frays = cloud_frays(layer, at);
-    let excess = over - cloud_dome(layer, at.height);
-    // Rounded bases only take away.
-    let gap = layer.shape.y * at.height * at.height - over;
-    return CloudHere(gap, over + frays, cloud_extinction(layer, excess + frays), gap - frays);
+    let excess = over - cloud_dome(layer, over, at.height);
+    let dome = cloud_dome_over(layer, over);
+    // Rounded bases only take away, and an anvil may lie above.
+    let gap = min(dome * at.height * at.height, layer.lean.z) - over;
+    return CloudHere(gap, over + frays, cloud_extinction(layer, excess + frays), gap - frays, dome);
 }
 
 // Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than map, noise and dome
 // do, and noise adds no more than it can.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
-    let level = layer.size.z * length(direction.xy);
-    let dome = 2.0 * layer.shape.y * height * layer.size.y * max(-direction.z, 0.0);
+    let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
+    let level = layer.size.z * (length(direction.xy) + leaning);
+    let dome = 2.0 * here.dome * height * layer.size.y * max(-direction.z, 0.0);
     let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (MAP_SKIP * level + dome + 1e-6);
-    let by_noise = here.frayed_gap / (MAP_SKIP * level + dome + SOLID_SKIP * layer.shape.z * layer.size.z);
+    let by_noise = here.frayed_gap / (MAP_SKIP * level + dome + SOLID_SKIP * layer.shape.z * layer.medium.w);
     return max(by_map, by_noise);
+}
+
+// Farthest that a ray is followed through a layer, m, and length over which clouds fade before it: cut off, a cloud would show a flat face.
+const CLOUD_FARTHEST: f32 = 60.0e3;
+const CLOUD_FADES: f32 = 15.0e3;
+
+// What is left of clouds so far within a layer, of 1.
+fn cloud_fades(within: f32) -> f32 {
+    return clamp((CLOUD_FARTHEST - within) / CLOUD_FADES, 0.0, 1.0);
 }
 
 // Altitude at a distance along a ray.
@@ -78,13 +92,15 @@ fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
         let end = min(SUN_WAY[i] / layer.size.z, way);
         let t = 0.5 * (gone + end);
         let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
-        let excess = cloud_strength(layer, p.level) - layer.shape.x - cloud_dome(layer, p.height) + cloud_frays(layer, p);
+        let over = cloud_over(layer, p);
+        let excess = over - cloud_dome(layer, over, p.height) + cloud_frays(layer, p);
         depth += clamp(excess * layer.shape.w, 0.0, 1.0) * (end - gone);
         gone = end;
     }
     for (var i = SUN_FRAYED; i < SUN_STEPS && gone < way; i++) {
         let end = min(SUN_WAY[i] / layer.size.z, way);
-        let over = cloud_strength(layer, at.level + clouds.to_sun.xy * 0.5 * (gone + end)) - layer.shape.x;
+        let t = 0.5 * (gone + end);
+        let over = cloud_over(layer, CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t));
         depth += cloud_stretch(layer, over, at.height + rise * gone, rise, end - gone);
         gone = end;
     }

@@ -21,6 +21,12 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     return 0.0;
 }
 
+const CLOUD_FARTHEST: f32 = 1.0e9;
+
+fn cloud_fades(within: f32) -> f32 {
+    return 1.0;
+}
+
 fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     let at = box_origin + direction * t;
     return CloudPlace(at.xy, at.z * layer.size.y);

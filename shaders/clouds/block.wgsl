@@ -17,8 +17,13 @@ struct CloudLayer {
     above: vec4f,
     // Radiance of ground and lower clouds below it; scaled width of a cloud from side to side.
     below: vec4f,
-    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a volume.
+    // Index of the medium that it is made of; scaled extinction over extinction; how much of the layer is drawn as a volume; 1/side of the
+    // solid noise, 1/m.
     medium: vec4f,
+    // To a pattern that is not drawn out along the wind: xx, xy and yy; how domes of heaps grow with their place's excess.
+    stretch: vec4f,
+    // How far the top lies downwind of the base (east, north), m; least excess with an anvil over it; length of the first two.
+    lean: vec4f,
 }
 
 struct CloudMedium {

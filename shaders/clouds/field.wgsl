@@ -8,7 +8,6 @@
 const MAP_CELLS: f32 = 16.0;
 const SECOND_PERIOD: f32 = 1.618034;
 const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
-const SOLID_CELLS: f32 = 1.5;
 // Its mean, and one over the range of nearly all of it.
 const SOLID_MEAN: f32 = 0.47;
 const SOLID_GAIN: f32 = 2.2;
@@ -23,7 +22,30 @@ struct CloudPlace {
     height: f32,
 }
 
-// The map's number.
+// Heights between which an anvil is whole, and over which its faces fade.
+const ANVIL: vec2f = vec2f(0.84, 0.95);
+const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
+// How much smoother an anvil is than its towers.
+const ANVIL_SMOOTHER: f32 = 0.65;
+
+// A place as the pattern has it: what is above the base leans, and is drawn out along the wind.
+fn cloud_upright(layer: CloudLayer, at: CloudPlace) -> vec2f {
+    let level = at.level - layer.lean.xy * (at.height * at.height);
+    return vec2f(dot(layer.stretch.xy, level), dot(layer.stretch.yz, level));
+}
+
+// Excess over the threshold, neither frayed nor under a dome.
+fn cloud_over(layer: CloudLayer, at: CloudPlace) -> f32 {
+    return cloud_strength(layer, cloud_upright(layer, at)) - layer.shape.x;
+}
+
+// Excess at which a place of this excess reaches the layer's top.
+fn cloud_dome_over(layer: CloudLayer, excess: f32) -> f32 {
+    let e = max(excess, 0.0);
+    return layer.shape.y * sqrt(1.0 + layer.stretch.w * e * e);
+}
+
+// The map's number at a place of the pattern.
 fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     let cell = level * layer.size.z / MAP_CELLS;
     let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
@@ -34,17 +56,19 @@ fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     return ((first.x + second.y) * (1.0 - c) + (first.z + second.w) * c) * scale;
 }
 
-// Excess that a place needs at a height: a flat base with round edges, and a dome.
-fn cloud_dome(layer: CloudLayer, height: f32) -> f32 {
+// Excess that a place of this excess needs at a height: a flat base with round edges, and a dome or an anvil.
+fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let edge = max(1.0 - height / 0.08, 0.0);
-    return layer.shape.y * height * height + 0.25 * edge * edge;
+    let off = max(vec2f(ANVIL.x - height, height - ANVIL.y), vec2f(0.0)) / ANVIL_FACES;
+    return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge, layer.lean.z + 3.0 * dot(off, off));
 }
 
 // What the solid noise adds to the excess.
 fn cloud_frays(layer: CloudLayer, at: CloudPlace) -> f32 {
-    let scale = layer.size.z / SOLID_CELLS;
-    let solid = vec3f(at.level * scale, at.height / layer.size.y * scale) + layer.solid.xyz;
-    return layer.shape.z * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, 0.0).r - SOLID_MEAN);
+    let solid = vec3f(cloud_upright(layer, at), at.height / layer.size.y) * layer.medium.w + layer.solid.xyz;
+    let within = clamp((at.height - ANVIL.x) / 0.14 + 1.0, 0.0, 1.0);
+    let smooth_share = 1.0 - ANVIL_SMOOTHER * within * clamp(-layer.lean.z / 0.2, 0.0, 1.0);
+    return layer.shape.z * smooth_share * SOLID_GAIN * (textureSampleLevel(cloud_solid, cloud_sampler, solid, 0.0).r - SOLID_MEAN);
 }
 
 // Extinction, 1/m, of a frayed excess over threshold and dome.
@@ -54,16 +78,21 @@ fn cloud_extinction(layer: CloudLayer, excess: f32) -> f32 {
 
 // Height of full extinction below a height in a column of this excess, of 1.
 fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
-    let d = max(layer.shape.y, 1e-3);
+    let d = max(cloud_dome_over(layer, excess), 1e-3);
     let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));
     let x = clamp(height, ends.x, ends.y);
     let ramp = (excess - d * vec2f(x * x, ends.x * ends.x) / 3.0) * vec2f(x, ends.x) * layer.shape.w;
-    return min(height, ends.x) + max(ramp.x - ramp.y, 0.0);
+    // What of an anvil lies above the dome.
+    let lowest = clamp(ends.y, ANVIL.x, ANVIL.y);
+    let anvil = clamp((excess - layer.lean.z) * layer.shape.w, 0.0, 1.0) * (clamp(height, lowest, ANVIL.y) - lowest);
+    return min(height, ends.x) + max(ramp.x - ramp.y, 0.0) + anvil;
 }
 
 // Metres of full extinction above and below a place of this excess over the threshold, and level to the edge of its cloud.
 fn cloud_about(layer: CloudLayer, excess: f32, height: f32) -> vec3f {
     let below = cloud_filled(layer, excess, height);
     let above = cloud_filled(layer, excess, 1.0) - below;
-    return vec3f(vec2f(above, below) / layer.size.y, max(excess, 0.0) / (MAP_SLOPE * layer.size.z));
+    // An anvil reaches further than its tower.
+    let beyond = select(0.0, min(layer.lean.z, 0.0), height > ANVIL.x - 0.5 * ANVIL_FACES.x);
+    return vec3f(vec2f(above, below) / layer.size.y, max(excess - beyond, 0.0) / (MAP_SLOPE * layer.size.z));
 }

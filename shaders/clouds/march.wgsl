@@ -66,6 +66,7 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
             t = gone + jitter * step;
             at = cloud_place(layer, direction, t);
             here = cloud_here(layer, at);
+            here.extinction *= cloud_fades(t - first);
             gone += select(max(step, cloud_skip(layer, here, at.height, direction)), step, here.extinction > 0.0);
             tried++;
         }
@@ -116,7 +117,7 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
             if last <= first || seen.transmittance < CLOUD_LEAST {
                 continue;
             }
-            let behind = cloud_layer_along(layer, direction, first, min(last, first + 60.0e3), seen, jitter);
+            let behind = cloud_layer_along(layer, direction, first, min(last, first + CLOUD_FARTHEST), seen, jitter);
             seen = cloud_part(seen, behind, layer.medium.z);
         }
     }

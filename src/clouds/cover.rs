@@ -68,7 +68,9 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
 
 /// Mean cover seen from `places` places many clouds apart.
 pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
-    let far = 37.0 * field.shape.scale_m;
+    // Fibres are many clouds long.
+    let drawn_out = field.shape.stretch.determinant().recip();
+    let far = 37.0 * field.shape.scale_m * drawn_out;
     let place = |i: usize| DVec2::new(far * i as f64, 0.618_034 * far * ((i * i) % 101) as f64);
     let hides = HIDES[usize::from(is_ice)];
     (0..places).map(|i| seen_from(field, place(i), hides)).sum::<f64>() / places as f64

@@ -7,7 +7,11 @@
 //! The two sheets glide against each other, which makes clouds form and dissolve, without end and as a function of time alone.
 //!
 //! Of a place with the excess e = z - threshold and the height h, 0 at the base to 1 at the top, the extinction is that of the layer times
-//! (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1.
+//! (e - dome(h) + rough (noise - 1/2)) / soft, held between 0 and 1. Over heaps the dome grows
+//! with e, so that no top is cut flat.
+//!
+//! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from them. Cumulonimbus has an
+//! anvil, a sheet below the layer's top about its towers ([`anvil_needs`]).
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -21,8 +25,6 @@ pub const MAP_CELLS: f64 = 16.0;
 pub(super) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
 pub(super) const SECOND_TURN_RAD: f64 = 0.9;
 pub(super) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
-/// Cells of cloud along the side of the solid noise.
-pub const SOLID_CELLS: f64 = 1.5;
 /// Mean of the solid noise, and one over the range of nearly all of it.
 const SOLID_MEAN: f64 = 0.47;
 const SOLID_GAIN: f64 = 2.2;
@@ -51,6 +53,16 @@ pub struct Shape {
     pub soft: f64,
     /// Share of the map's cellular pattern, 0 to 1.
     pub cellular: f64,
+    /// Side of the solid noise, m.
+    pub solid_m: f64,
+    /// How domes of heaps grow with the excess e of their place, by sqrt(1 + held e^2), so that none reaches far above the layer.
+    pub held: f64,
+    /// Least excess of a place that has an anvil over it; [`NO_ANVIL`] without.
+    pub anvil: f64,
+    /// From places (east, north) to those of a pattern that is not drawn out along the wind.
+    pub stretch: DMat2,
+    /// How far the layer's top lies downwind of its base (east, north), m.
+    pub lean_m: DVec2,
     /// How far the wind has carried the layer (east, north), m.
     pub drift_m: DVec2,
     /// How far the second sheet has glided against the first, in cells.
@@ -110,17 +122,46 @@ pub struct Field<'a> {
     pub solid: &'a Solid,
 }
 
-/// Excess that a place needs at a height, 0 at the base to 1 at the top: a flat base with round edges, and a dome.
-pub fn dome(shape: &Shape, height: f64) -> f64 {
+/// [`Shape::anvil`] of a layer without.
+pub const NO_ANVIL: f64 = 1e3;
+/// Heights between which an anvil is whole, and over which its faces fade.
+pub(super) const ANVIL: [f64; 2] = [0.84, 0.95];
+const ANVIL_FACES: [f64; 2] = [0.2, 0.05];
+/// How much smoother an anvil is than its towers.
+const ANVIL_SMOOTHER: f64 = 0.65;
+
+/// Excess that a place needs at a height for the anvil there.
+fn anvil_needs(shape: &Shape, height: f64) -> f64 {
+    let below = (ANVIL[0] - height).max(0.0) / ANVIL_FACES[0];
+    let above = (height - ANVIL[1]).max(0.0) / ANVIL_FACES[1];
+    shape.anvil + 3.0 * (below * below + above * above)
+}
+
+/// How far edges fray at a height, of 1: less in an anvil.
+fn smooth(shape: &Shape, height: f64) -> f64 {
+    let within = ((height - ANVIL[0]) / 0.14 + 1.0).clamp(0.0, 1.0);
+    1.0 - ANVIL_SMOOTHER * within * (-shape.anvil / 0.2).clamp(0.0, 1.0)
+}
+
+impl Shape {
+    /// Excess at which a place of this excess reaches the layer's top.
+    pub(super) fn dome_over(&self, excess: f64) -> f64 {
+        let e = excess.max(0.0);
+        self.dome * (1.0 + self.held * e * e).sqrt()
+    }
+}
+
+/// Excess that a place of this excess needs at a height, 0 at the base to 1 at the top: a flat base with round edges, and a dome or an anvil.
+pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
     let edge = (1.0 - height / 0.08).max(0.0);
-    shape.dome * height * height + 0.25 * edge * edge
+    (shape.dome_over(excess) * height * height + 0.25 * edge * edge).min(anvil_needs(shape, height))
 }
 
 impl Field<'_> {
     /// The map's number at a place, m east and north of the world's origin.
     pub fn strength(&self, place_m: DVec2) -> f64 {
         let s = &self.shape;
-        let cell = (place_m - s.drift_m) / s.scale_m;
+        let cell = s.stretch * (place_m - s.drift_m) / s.scale_m;
         let first = self.map.at(cell / MAP_CELLS);
         let turned = DMat2::from_angle(SECOND_TURN_RAD) * (cell - s.evolution);
         let second = self.map.at(turned / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET);
@@ -129,11 +170,25 @@ impl Field<'_> {
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
+    /// A place of the layer as its pattern has it: what is above the base leans.
+    pub(super) fn upright(&self, position_m: DVec3) -> DVec2 {
+        let s = &self.shape;
+        let height = (position_m.z - s.base_m) / s.thickness_m;
+        position_m.truncate() - s.lean_m * (height * height)
+    }
+
+    /// Excess over the threshold at a place, neither frayed nor under a dome.
+    pub(super) fn over(&self, position_m: DVec3) -> f64 {
+        let s = &self.shape;
+        self.strength(self.upright(position_m)) - s.threshold
+    }
+
     /// What the solid noise adds to the excess at a place.
     pub(super) fn frays(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
-        let at = (position_m - s.drift_m.extend(s.base_m)) / (s.scale_m * SOLID_CELLS);
-        s.rough * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
+        let level = s.stretch * (self.upright(position_m) - s.drift_m);
+        let at = level.extend(position_m.z - s.base_m) / s.solid_m;
+        s.rough * smooth(s, (position_m.z - s.base_m) / s.thickness_m) * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
     }
 
     /// Extinction, 1/m, of a frayed excess over threshold and dome.
@@ -148,7 +203,8 @@ impl Field<'_> {
         if !(0.0..=1.0).contains(&height) {
             return 0.0;
         }
-        let excess = self.strength(position_m.truncate()) - s.threshold - dome(s, height);
+        let over = self.over(position_m);
+        let excess = over - dome(s, over, height);
         if excess < -MOST_FRAYED * s.rough {
             return 0.0;
         }
@@ -172,19 +228,24 @@ pub struct About {
 
 /// Height, of 1, of full extinction below a height in a column of this excess.
 pub(super) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
-    let d = shape.dome.max(1e-3);
+    let d = shape.dome_over(excess).max(1e-3);
     let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);
     let (full, end) = (reach(excess - shape.soft), reach(excess));
     let ramp = |x: f64| (excess - d * x * x / 3.0) * x / shape.soft;
-    height.min(full) + (ramp(height.clamp(full, end)) - ramp(full)).max(0.0)
+    // What of an anvil lies above the dome.
+    let from = end.clamp(ANVIL[0], ANVIL[1]);
+    let anvil = ((excess - shape.anvil) / shape.soft).clamp(0.0, 1.0) * (height.clamp(from, ANVIL[1]) - from);
+    height.min(full) + (ramp(height.clamp(full, end)) - ramp(full)).max(0.0) + anvil
 }
 
 /// The cloud about a place of this excess (over the threshold alone) and height, frayed edges left out.
 pub fn about(shape: &Shape, excess: f64, height: f64) -> About {
     let below = filled_below(shape, excess, height);
+    // An anvil reaches further than its tower.
+    let beyond = if height > ANVIL[0] - 0.5 * ANVIL_FACES[0] { shape.anvil.min(0.0) } else { 0.0 };
     About {
         above_m: (filled_below(shape, excess, 1.0) - below) * shape.thickness_m,
         below_m: below * shape.thickness_m,
-        edge_m: excess.max(0.0) / MAP_SLOPE * shape.scale_m,
+        edge_m: (excess - beyond).max(0.0) / MAP_SLOPE * shape.scale_m,
     }
 }

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     field::{Field, Shape, about, dome},
@@ -24,12 +24,14 @@ const STEP_ANGLE: f64 = 0.002;
 const LEAST: f64 = 0.001;
 /// Farthest that a ray is followed through a layer, m.
 const FARTHEST_M: f64 = 60e3;
+/// Length over which clouds fade before it, m: cut off, a cloud would show a flat face.
+const FADES_M: f64 = 15e3;
 /// Ends of the stretches of the way to the sun, in distances from cloud to cloud. On the first of them edges are frayed.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 const SUN_FRAYED: usize = 3;
-/// Slope of the map and of the solid noise by which rays skip, a distance from cloud to cloud.
+/// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip.
 const MAP_SKIP: f64 = 6.0;
-const SOLID_SKIP: f64 = 8.0;
+const SOLID_SKIP: f64 = 12.0;
 
 /// What a ray sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,9 +180,10 @@ impl<'a> CloudRays<'a> {
             let t = gone + 0.5 * step;
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;
-            let over = of.field.strength(position_m.truncate()) - s.threshold;
+            let over = of.field.over(position_m);
             let frays = of.field.frays(position_m);
-            let extinction = of.field.dense(over - dome(s, height) + frays) * of.scale;
+            let fades = ((first + FARTHEST_M - t) / FADES_M).clamp(0.0, 1.0);
+            let extinction = of.field.dense(over - dome(s, over, height) + frays) * of.scale * fades;
             if extinction <= 0.0 {
                 gone += step.max(skip(s, [over, frays], height, d));
                 continue;
@@ -228,11 +231,13 @@ impl<'a> CloudRays<'a> {
 
 /// Distance along a ray from a place outside of clouds within which there is none, m: `cloud_skip`.
 fn skip(s: &Shape, [over, frays]: [f64; 2], height: f64, d: DVec3) -> f64 {
-    let gap = s.dome * height * height - over;
-    let level = d.truncate().length() / s.scale_m;
-    let round = 2.0 * s.dome * height / s.thickness_m * (-d.z).max(0.0);
+    let domed = s.dome_over(over);
+    let gap = (domed * height * height).min(s.anvil) - over;
+    let leaning = 2.0 * s.lean_m.length() / s.thickness_m * d.z.abs();
+    let level = (d.truncate().length() + leaning) / s.scale_m;
+    let round = 2.0 * domed * height / s.thickness_m * (-d.z).max(0.0);
     let by_map = (gap - super::field::MOST_FRAYED * s.rough) / (MAP_SKIP * level + round + 1e-6);
-    let by_noise = (gap - frays) / (MAP_SKIP * level + round + SOLID_SKIP * s.rough / s.scale_m);
+    let by_noise = (gap - frays) / (MAP_SKIP * level + round + SOLID_SKIP * s.rough / s.solid_m);
     by_map.max(by_noise)
 }
 
@@ -250,11 +255,12 @@ impl AtPlace<'_> {
                 break;
             }
             let t = 0.5 * (gone + end);
-            let at: DVec2 = self.position_m.truncate() + to_sun.truncate() * t;
-            let over = field.strength(at) - s.threshold;
+            let height = self.height + rise * t;
+            let at = self.position_m.truncate() + to_sun.truncate() * t;
+            let at = at.extend(s.base_m + height * s.thickness_m);
+            let over = field.over(at);
             if i < SUN_FRAYED {
-                let height = self.height + rise * t;
-                let excess = over - dome(s, height) + field.frays(at.extend(s.base_m + height * s.thickness_m));
+                let excess = over - dome(s, over, height) + field.frays(at);
                 depth += (excess / s.soft).clamp(0.0, 1.0) * (end - gone);
             } else {
                 depth += stretch(s, over, [self.height + rise * gone, rise], end - gone);

@@ -124,7 +124,7 @@ impl Overhead {
     /// How far the wind has carried the lowest layer since these were the drifts, m east and north.
     pub fn carried_since(&self, before: &LayerDrifts) -> DVec2 {
         let Layer { slot, shape, .. } = &self.layers[0];
-        (self.drifts.slots[*slot].way - before.slots[*slot].way) * shape.scale_m
+        shape.stretch.inverse() * (self.drifts.slots[*slot].way - before.slots[*slot].way) * shape.scale_m
     }
 
     /// Whether some of it leaves gaps.

@@ -4,12 +4,12 @@ use glam::DVec2;
 
 use super::{
     cover::threshold,
-    field::{Shape, filled_below},
+    field::{NO_ANVIL, Shape, filled_below},
 };
 use crate::{
     chance::normal_quantile,
     weather::{CloudSlab, Conditions},
-    wind::LayerDrift,
+    wind::{LayerDrift, stretch, stretch_toward},
 };
 
 fn mix(a: f64, b: f64, t: f64) -> f64 {
@@ -18,6 +18,18 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
 
 /// Number of the map at which a cloud reaches the layer's top, at least: one place of seventy. Where more did, tops would be cut flat.
 const HIGHEST: f64 = 2.2;
+/// The same of cumulonimbus: its towers spread where they reach the top.
+const HIGHEST_OF_TOWERS: f64 = 1.2;
+
+/// Cells of cloud along the side of the solid noise, and of fibres.
+const SOLID_CELLS: f64 = 1.5;
+const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
+/// Distance from cloud to cloud up to which heads grow with their clouds, m.
+const HEADS_AS_CLOUDS_M: f64 = 1000.0;
+/// Excess over the threshold from which on a cumulonimbus has an anvil over it.
+const ANVIL_BEYOND: f64 = -0.2;
+/// How far the top of fibres lies downwind of their base, in thicknesses: crystals fall into slower air for some kilometres (Heymsfield 1975).
+const LEAN: f64 = 3.0;
 
 /// Columns whose mean stands for all.
 const COLUMNS: usize = 32;
@@ -38,7 +50,7 @@ impl Shape {
     pub(crate) fn new(c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
         Self {
             base_m: c.air.station_altitude_m + slab.base_m,
-            drift_m: drift.way * slab.scale_m,
+            drift_m: stretch(slab).inverse() * drift.way * slab.scale_m,
             evolution: DVec2::new(0.8, 0.6) * drift.lives,
             ..Self::still(slab, threshold(slab))
         }
@@ -47,17 +59,29 @@ impl Shape {
     /// Of a layer in still air over the sea, cut out of the map by a threshold.
     pub(super) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
-        let sheet = mix(mix(0.35, 1.4, slab.cellular), 1.5, heaps);
+        // 0 for fair-weather heaps, 1 for cumulonimbus.
+        let tall = (2.0 * slab.convection - 1.0).max(0.0);
+        let sheet = mix(mix(0.35, 1.4, slab.cellular), mix(1.5, 0.2, tall), heaps);
+        let dome = mix(sheet, 0.4, slab.fibre).max(mix(HIGHEST, HIGHEST_OF_TOWERS, tall) - threshold);
+        // Sheets whose cells are a little heaped keep their tops.
+        let piled = ((heaps - 0.3) / 0.7).max(0.0);
+        // Heads of towers are not as much larger than those of small heaps as the towers are.
+        let finer = (slab.scale_m / HEADS_AS_CLOUDS_M).max(1.0).powf(-0.6 * piled);
         let shape = Self {
             base_m: slab.base_m,
             thickness_m: slab.thickness_m,
             scale_m: slab.scale_m,
             extinction_per_m: slab.optical_depth / slab.thickness_m,
             threshold,
-            dome: mix(sheet, 0.4, slab.fibre).max(HIGHEST - threshold),
-            rough: mix(mix(mix(0.35, 0.5, slab.cellular), 0.9, heaps), 0.8, slab.fibre),
+            dome,
+            rough: mix(mix(mix(0.35, 0.5, slab.cellular), 0.9 * finer * mix(1.0, 0.7, tall), heaps), 1.2, slab.fibre),
             soft: mix(mix(mix(0.3, 0.12, heaps), 0.8, slab.cellular), 1.2, slab.fibre),
             cellular: slab.cellular,
+            solid_m: mix(SOLID_CELLS, SOLID_CELLS_OF_FIBRES, slab.fibre) * finer * slab.scale_m,
+            held: 1.4 * piled / (dome * dome),
+            anvil: (ANVIL_BEYOND + 20.0 * (1.0 - slab.convection)).min(NO_ANVIL),
+            stretch: stretch(slab),
+            lean_m: stretch_toward(slab) * (LEAN * slab.fibre * slab.thickness_m),
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
         };
@@ -96,5 +120,52 @@ mod tests {
                 assert!((mean - 1.0).abs() < 0.2, "{kind:?} at {cover}: {mean}");
             }
         }
+    }
+
+    /// Share of 4000 places of a layer that have cloud at a height, 0 to 1.
+    fn share_at(field: &crate::clouds::field::Field<'_>, height: f64) -> f64 {
+        let s = &field.shape;
+        let place = |i: usize| DVec2::new((i % 63) as f64 * 0.7135, (i / 63) as f64 * 0.6131) * s.scale_m;
+        let is_cloud = |i: &usize| {
+            field.extinction_per_m(place(*i).extend(s.base_m + height * s.thickness_m)) > 0.1 * s.extinction_per_m
+        };
+        (0..4000).filter(is_cloud).count() as f64 / 4000.0
+    }
+
+    #[test]
+    fn thunderclouds_have_anvils_and_no_heap_is_cut_flat() {
+        let grown = (Map::new(3), Solid::new(3).unwrap());
+        let at = |kind, cover, height| {
+            let slab = typical(kind, cover).unwrap();
+            share_at(&field(&slab, &grown, threshold(&slab)), height)
+        };
+        for cover in [0.1, 0.3] {
+            let [tower, anvil, above] = [0.5, 0.9, 0.995].map(|h| at(CloudKind::Cumulonimbus, cover, h));
+            println!(
+                "cumulonimbus at {cover}: cloud over {tower:.3} half-way up, {anvil:.3} in the anvil, {above:.3} at the top"
+            );
+            assert!(anvil > 1.2 * tower && tower > 0.005 && above < 0.5 * anvil, "{tower} {anvil} {above}");
+        }
+        for kind in [CloudKind::Cumulus, CloudKind::ToweringCumulus] {
+            let [low, top] = [0.2, 0.99].map(|h| at(kind, 0.5, h));
+            println!("{kind:?}: cloud over {low:.3} low down, {top:.4} at the layer's top");
+            assert!(top < 0.02 * low, "{kind:?}: {low} {top}");
+        }
+    }
+
+    #[test]
+    fn ice_is_drawn_out_along_the_wind() {
+        let grown = (Map::new(3), Solid::new(3).unwrap());
+        let off = |kind, along: DVec2| {
+            let slab = crate::weather::CloudSlab { wind_m_s: [0.0, 30.0], ..typical(kind, 0.5).unwrap() };
+            let field = field(&slab, &grown, threshold(&slab));
+            let place = |i: usize| DVec2::new((i % 63) as f64 * 0.7135, (i / 63) as f64 * 0.6131) * slab.scale_m;
+            let one = |i: usize| (field.strength(place(i)) - field.strength(place(i) + along * slab.scale_m)).abs();
+            (0..2000).map(one).sum::<f64>() / 2000.0
+        };
+        let ratio = |kind| off(kind, DVec2::X * 0.2) / off(kind, DVec2::Y * 0.2);
+        let [fibres, heaps] = [CloudKind::Cirrus, CloudKind::Cumulus].map(ratio);
+        println!("change across the wind over that along it: cirrus {fibres:.2}, cumulus {heaps:.2}");
+        assert!(fibres > 2.5 && (0.8..1.25).contains(&heaps), "{fibres} {heaps}");
     }
 }

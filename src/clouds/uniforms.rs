@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat2, DVec2};
 
 use super::{
-    field::{MAP_CELLS, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD, SOLID_CELLS, Shape},
+    field::{MAP_CELLS, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD, Shape},
     transport::Scattering,
 };
 
@@ -23,6 +23,8 @@ pub(super) struct LayerUniform {
     pub above: [f32; 4],
     pub below: [f32; 4],
     pub medium: [f32; 4],
+    pub stretch: [f32; 4],
+    pub lean: [f32; 4],
 }
 
 /// One medium.
@@ -100,11 +102,12 @@ impl LayerUniform {
     /// `share` of it is drawn as a volume, the rest as a deck.
     pub fn new(s: &Shape, share: f64, place_m: DVec2, light: &LayerLight, medium: (usize, &Scattering)) -> Self {
         // Positions in periods, reduced in f64: metres of a far origin have no digits left in f32.
-        let cell = (place_m - s.drift_m) / s.scale_m;
+        let level = s.stretch * (place_m - s.drift_m);
+        let cell = level / s.scale_m;
         let first = cell / MAP_CELLS;
         let second =
             DMat2::from_angle(SECOND_TURN_RAD) * (cell - s.evolution) / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET;
-        let solid = cell / SOLID_CELLS;
+        let solid = level / s.solid_m;
         let [first, second, solid] = [first, second, solid].map(|v| [v.x, v.y].map(|v| v.rem_euclid(1.0) as f32));
         let scaled = medium.1.scale();
         let width = WIDTH_CELLS * s.scale_m * s.extinction_per_m * scaled;
@@ -116,7 +119,9 @@ impl LayerUniform {
             sun: padded(light.sun, 0.0),
             above: padded(light.above, 0.0),
             below: padded(light.below, width),
-            medium: [medium.0 as f32, scaled as f32, share as f32, 0.0],
+            medium: [medium.0 as f32, scaled as f32, share as f32, 1.0 / s.solid_m as f32],
+            stretch: [s.stretch.x_axis.x, s.stretch.x_axis.y, s.stretch.y_axis.y, s.held].map(|v| v as f32),
+            lean: [s.lean_m.x, s.lean_m.y, s.anvil, s.lean_m.length()].map(|v| v as f32),
         }
     }
 }

@@ -68,25 +68,26 @@ fn lists_have_a_limit_and_a_stride() {
 
 #[test]
 fn a_layer_has_a_wind_a_spacing_and_a_life_of_its_own() {
+    const WIND: wk_cloud_layer_has_flags = WK_CLOUD_LAYER_HAS_WIND;
+    type Change = fn(&mut wk_cloud_layer);
     let world = World::new();
-    let set_layer = |change: &dyn Fn(&mut wk_cloud_layer)| {
+    let set_layer = |change: Change| {
         let mut layer = wk_cloud_layer { cover: 0.5, base_m: 900.0, ..init("wk_cloud_layer") };
         change(&mut layer);
         set(&world, |w| (w.clouds, w.cloud_count) = (&raw const layer, 1))
     };
-    let wind = WK_CLOUD_LAYER_HAS_WIND;
     assert_eq!(
-        set_layer(&|l| (l.has, l.wind_m_s, l.wind_from_deg, l.spacing_m, l.life_s) = (wind, 30.0, 10.0, 4e3, 600.0)).0,
+        set_layer(|l| (l.has, l.wind_m_s, l.wind_from_deg, l.spacing_m, l.life_s) = (WIND, 30.0, 10.0, 4e3, 600.0)).0,
         WK_OK
     );
-    assert_eq!(set_layer(&|l| l.wind_m_s = 1e9).0, WK_OK, "a field whose bit is clear is not looked at");
-    let cases: [(&str, &dyn Fn(&mut wk_cloud_layer)); 6] = [
-        ("weather.clouds[0].wind_m_s must be in [0, 150] m/s, got -1", &|l| (l.has, l.wind_m_s) = (wind, -1.0)),
-        ("weather.clouds[0].wind_from_deg must be in [0, 360] degrees", &|l| (l.has, l.wind_from_deg) = (wind, 400.0)),
-        ("weather.clouds[0].spacing_m must be finite and in [50, 200000], got NaN", &|l| l.spacing_m = f64::NAN),
-        ("weather.clouds[0].life_s must be in [60, 1000000] s", &|l| l.life_s = 59.0),
-        ("weather.clouds[0].cover must be in [0, 1]", &|l| l.cover = 1.01),
-        ("weather.clouds[0].kind must be one of WK_CLOUD_UNKNOWN, ", &|l| l.kind = 12),
+    assert_eq!(set_layer(|l| l.wind_m_s = 1e9).0, WK_OK, "a field whose bit is clear is not looked at");
+    let cases: [(&str, Change); 6] = [
+        ("weather.clouds[0].wind_m_s must be in [0, 150] m/s, got -1", |l| (l.has, l.wind_m_s) = (WIND, -1.0)),
+        ("weather.clouds[0].wind_from_deg must be in [0, 360] degrees", |l| (l.has, l.wind_from_deg) = (WIND, 400.0)),
+        ("weather.clouds[0].spacing_m must be finite and in [50, 200000], got NaN", |l| l.spacing_m = f64::NAN),
+        ("weather.clouds[0].life_s must be in [60, 1000000] s", |l| l.life_s = 59.0),
+        ("weather.clouds[0].cover must be in [0, 1]", |l| l.cover = 1.01),
+        ("weather.clouds[0].kind must be one of WK_CLOUD_UNKNOWN, ", |l| l.kind = 12),
     ];
     for (want, change) in cases {
         let (status, text) = set_layer(change);

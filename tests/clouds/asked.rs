@@ -6,7 +6,7 @@ use welkin::{
     frame::FrameFlags,
     light::luminance,
     scene::Camera,
-    weather::{CloudKind, CloudLayer, Weather},
+    weather::{CloudKind, CloudLayer, LayerWind, Weather},
 };
 
 use crate::drawn::{BROKEN, CLOSED, SIZE, Sky};
@@ -86,8 +86,28 @@ fn a_cloud_between_two_places_takes_the_light() {
     let (below, above) = (DVec3::Z * 800.0, DVec3::Z * 2500.0);
     let through = |sky: &Sky, from, to| sky.context.between(from, to, 0.0).unwrap().transmittance[1];
     assert!(through(&volume, below, above) < 1e-6);
-    assert_eq!(through(&volume, below, above), through(&volume, above, below));
+    let back = through(&volume, above, below) / through(&volume, below, above);
+    assert!((back - 1.0).abs() < 1e-9, "{back}: the same steps, summed from the other end");
     // A deck is in the sky alone, and says nothing of places.
     assert!(through(&deck, below, above) > 0.5);
     assert_eq!(through(&volume, DVec3::Z, below), through(&deck, DVec3::Z, below), "below all clouds");
+}
+
+/// The pictures' fibres and anvils are those of the questions: both sides know the same shapes.
+#[test]
+fn fibres_and_anvils_are_asked_as_they_are_drawn() {
+    for (kind, base_m, height_m) in [(CloudKind::Cirrus, 9000.0, 2.0), (CloudKind::Cumulonimbus, 1000.0, 5000.0)] {
+        let mut sky = Sky::new(BROKEN, CloudModel::Volume);
+        let wind = Some(LayerWind { speed_m_s: 25.0, from_deg: 240.0 });
+        let layer = CloudLayer { wind, ..CloudLayer::of(kind, 0.5, base_m) };
+        sky.context.set_weather(&Weather { clouds: vec![layer], ..Weather::default() }, 0.0, 0.0).unwrap();
+        let mut off: Vec<f64> = (0..2)
+            .flat_map(|i| drawn_over_asked(&mut sky, DVec3::new(1.0, f64::from(i) * 2.0 - 1.0, 0.4), height_m))
+            .map(|ratio| (ratio - 1.0).abs())
+            .collect();
+        off.sort_by(f64::total_cmp);
+        let [half, most] = [50, 75].map(|percent| off[off.len() * percent / 100]);
+        println!("{kind:?}: pictures off by {half:.4} in the median, {most:.3} at 75 %");
+        assert!(half < 0.02 && most < 0.08, "{kind:?}: {half} {most}");
+    }
 }

@@ -90,7 +90,9 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
         let down = look(eye, azimuth, -elevation, 0.02);
         write_depth(&sky, &depth, &down);
         let water = luminance(&sky.draw(down, Some(&depth), &[Stages::SURFACE])[middle]);
-        let over = luminance(&sky.draw(look(eye, azimuth, elevation, 0.02), None, &SKY)[middle]);
+        // The mean over as much of the sky as a texel of 1.5 degrees shows.
+        let patch = sky.draw(look(eye, azimuth, elevation, 0.026), None, &SKY);
+        let over = patch.iter().map(luminance).sum::<f64>() / patch.len() as f64;
         mirrored.push(water / fresnel_water(elevation.to_radians().sin()));
         seen.push(over);
     }
