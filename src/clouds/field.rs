@@ -11,7 +11,7 @@
 //! with e, so that no top is cut flat.
 //!
 //! Ice is drawn out along the wind that carries it, and leans with height: heads stand downwind of what falls from them. Cumulonimbus has an
-//! anvil, a sheet below the layer's top about its towers ([`anvil_needs`]).
+//! anvil, a sheet below the layer's top about its towers (`anvil_needs`).
 
 use glam::{DMat2, DVec2, DVec3};
 
