@@ -84,8 +84,12 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     let depth = crate::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let middle = (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
     let (mut mirrored, mut seen) = (Vec::new(), Vec::new());
-    for i in 0..48 {
-        let azimuth = 7.5 * f64::from(i);
+    let sun = sky.context.light_at(puddle, sky.context.time_s()).unwrap().sun.apparent;
+    for azimuth in (0..48).map(|i| 7.5 * f64::from(i)) {
+        // The sun is mirrored as a lamp, and its disc is in the picture alone.
+        if direction(azimuth, elevation).angle_between(sun) < 0.1 {
+            continue;
+        }
         let eye = puddle - direction(azimuth, -elevation);
         let down = look(eye, azimuth, -elevation, 0.02);
         write_depth(&sky, &depth, &down);
