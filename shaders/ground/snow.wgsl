@@ -1,5 +1,6 @@
 // Lying snow on the surface that a pixel shows: where it covers the ground, and the light that it sends. How deep it lies is led on the
 // CPU (src/snowpack); cover_of of src/snowpack/laws.rs is `snow_amount`'s twin.
+//!include "between/sky.wgsl"
 //!include "ground/binding.wgsl"
 //!include "ground/hollows.wgsl"
 

@@ -146,7 +146,8 @@ fn a_fence_casts_its_lee_drift() {
     let mut land = flat([80, 5], 1.0);
     land.obstacles_m = (0..land.len()).map(|c| if c % 80 == 30 { 2.0 } else { 0.0 }).collect();
     let lies = along(&land, 14.0, -6.0, 12);
-    let lee: f64 = lies[31..55].iter().sum::<f64>() / 24.0;
+    // Most of the drift of a solid fence lies within some seven heights behind it.
+    let lee: f64 = lies[31..46].iter().sum::<f64>() / 15.0;
     let far = lies[70];
     println!("fence of 2 m, 12 h of 14 m/s: lee {lee:.1} kg/m^2, before {:.1}, far {far:.1}", lies[25]);
     assert!(lee > 1.5 * far && lee > 1.5 * lies[25], "{lies:?}");
