@@ -64,6 +64,22 @@ fn terrain_cells(d: &mut Dice) -> Struct {
     cells
 }
 
+/// A context, mostly one with a tile (0, 0) of flat ground: random calls alone seldom meet a tile that stands.
+fn tiled(d: &mut Dice, contexts: &[*mut wk_context]) -> *mut wk_context {
+    let context = handle(d, contexts);
+    if !d.one_in(3) && contexts.contains(&context) {
+        let (mut terrain, mut tile) = (Struct::plain("wk_terrain"), Struct::plain("wk_terrain_cells"));
+        terrain.set("tile_cells", 32u32);
+        tile.set_numbers("heights_m", vec![1.0; 1024]);
+        tile.set("height_count", 1024u32);
+        unsafe {
+            wk_context_set_terrain(context, terrain.ptr().cast());
+            wk_context_set_terrain_tile(context, tile.ptr().cast());
+        }
+    }
+    context
+}
+
 impl Answer {
     fn of(status: wk_status, out: &Struct) -> Self {
         let faults = if status == WK_OK { out.not_finite() } else { vec![] };
@@ -534,11 +550,11 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
     ("wk_context_update_terrain", |d, w| {
         let mut cells = terrain_cells(d);
-        unsafe { wk_context_update_terrain(handle(d, &w.contexts), cells.ptr().cast()) }.into()
+        unsafe { wk_context_update_terrain(tiled(d, &w.contexts), cells.ptr().cast()) }.into()
     }),
     ("wk_context_remove_terrain_tile", |d, w| {
         let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
-        unsafe { wk_context_remove_terrain_tile(handle(d, &w.contexts), east, north) }.into()
+        unsafe { wk_context_remove_terrain_tile(tiled(d, &w.contexts), east, north) }.into()
     }),
     ("wk_context_get_terrain_revision", |d, w| {
         let mut revision = 0;
@@ -553,8 +569,9 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
     ("wk_context_get_terrain_water", |d, w| {
         let mut cells = vec![unsafe { std::mem::zeroed::<wk_ground_cell>() }; 1024];
-        let (context, mut revision) = (handle(d, &w.contexts), 0);
-        let (most, size) = (d.below(1025) as u32, size_of_element::<wk_ground_cell>(d));
+        let (context, mut revision) = (tiled(d, &w.contexts), 0);
+        let most = if d.one_in(2) { 1024 } else { d.below(1025) as u32 };
+        let size = size_of_element::<wk_ground_cell>(d);
         let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
         unsafe { wk_context_get_terrain_water(context, east, north, cells.as_mut_ptr(), most, size, &mut revision) }
             .into()
