@@ -13,9 +13,10 @@
 //! work out for their own light; columns under rain areas likewise. It follows that clouds, air and fog dim it as all else there.
 //!
 //! *Drops*: rain by its sizes ([`crate::falling::sizes`]), fog by droplets of 15 micrometres on the mean, whose bow is white and wide. Snow,
-//! hail and dust make none. *Settings*: none. *Cost*: one look-up a pixel, and nothing where no drops stand in direct light or the picture
-//! does not look at the bows. *Error*: within 0.2 degrees and 15 % of Mie's theory. Drops count as spheres: those beyond 1 mm are flat in
-//! nature and leave the top of a bow fainter. The light is that under the mean of clouds; none of it is in the cube map, where no fog is.
+//! hail and dust make none. *Settings*: none. *Cost*: one look-up a pixel, and nothing where no drops stand in direct light. The table
+//! is worked out for pictures that look at the bows. *Error*: within 0.2 degrees and 15 % of Mie's theory. Drops count as spheres: those
+//! beyond 1 mm are flat in nature and leave the top of a bow fainter. The light is that under the mean of clouds; none of it is in the
+//! cube map, where no fog is.
 //!
 //! No `passes.rs`: it draws in the composition. No `candidates.rs`: there is one way, too cheap to be left out. No `held.rs`: no state.
 

@@ -49,9 +49,10 @@ impl DrawnEffect for BowView {
     }
 
     fn compose(&mut self, shot: &Shot<'_>, to: &mut Composition) -> Result<()> {
-        let is_shown = self.has_drops() && self.is_lit && shows(shot);
-        to.between_and_veil("BOW", yes(self.has_drops()), yes(is_shown));
-        if is_shown {
+        // Not by where the picture looks: a pipeline of its own would be made when the camera turns to a bow, and that frame be late.
+        let is_lit = self.has_drops() && self.is_lit;
+        to.between_and_veil("BOW", yes(self.has_drops()), yes(is_lit));
+        if is_lit && shows(shot) {
             for (to, shares) in to.block.bows.iter_mut().zip(&self.drops) {
                 let Some(shares) = shares else { continue };
                 for (to, [r, g, b]) in to.iter_mut().zip(mixed(shares)) {
