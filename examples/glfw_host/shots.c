@@ -53,7 +53,6 @@ static bool clear(demo *d, int hour)
 }
 
 static bool noon(demo *d) { return clear(d, 0); }
-static bool low_sun(demo *d) { return clear(d, 1) && sun_at(d, 292, 9); }
 
 /* Some minutes before the hour at which the disc touches the hills. */
 static bool sunset(demo *d)
@@ -217,6 +216,16 @@ static bool snow(demo *d, double rate_mm_h, double temperature_c, double visibil
 }
 
 static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3, 650, 0.6); }
+
+static bool white_morning(demo *d)
+{
+    wk_weather w = weather_here(40e3, 0.7);
+    wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.3, 1500.0);
+    w.surface_snow_depth_m = 0.03;
+    w.temperature_c = -6.0;
+    return sun_at(d, 150, 14) && set(d, &w, &heaps);
+}
+
 static bool snowstorm(demo *d) { return sun_at(d, 200, 20) && snow(d, 4.0, -6.0, 250, 16.0); }
 
 static bool wet_road(demo *d)
@@ -373,7 +382,6 @@ static bool with_wipers(demo *d, double time_s)
 
 const shot SHOTS[] = {
     {"noon", "Noon", HILLSIDE, noon, WORLD, NULL},
-    {"low_sun", "Low sun", HILLSIDE, low_sun, WORLD, NULL},
     {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
     {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
     {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
@@ -398,6 +406,7 @@ const shot SHOTS[] = {
     {"rainbow", "Rainbow", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 12.0, 60.0, rainbow, WORLD, NULL},
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
     {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL},
+    {"white_morning", "3 cm of snow on the ground", ROADSIDE(1.0), white_morning, WORLD, NULL},
     {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
     {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},
