@@ -6,30 +6,31 @@ use super::table::{CLASSES, RAIN_EDGES_MM, Table, mixed};
 use crate::{
     falling::{FallingLayer, drops::factor_in, sizes::DropSizes},
     moment::{GroundLight, Light, Moment, Scene},
-    weather::{Conditions, smoothstep},
+    weather::{Conditions, Falling, smoothstep},
 };
 
 /// Direct light over all light on level ground below which no bow shows.
 const LEAST_DIRECT: f64 = 1e-3;
 
-/// Adds what classes of rain take of the light, 1/m.
-fn add_rain(classes: &mut [f64; CLASSES], sizes: &DropSizes) {
-    for (class, edges) in classes[1..].iter_mut().zip(RAIN_EDGES_MM.windows(2)) {
-        *class += sizes.extinction_between_per_m(edges[0], edges[1]);
-    }
+/// What classes of drops take of the light in rain, 1/m, where drops fall faster by a factor.
+pub(super) fn in_rain(falling: &Falling, factor: f64) -> [f64; CLASSES] {
+    let sizes = DropSizes::new(falling, factor);
+    let rain = |i: usize| sizes.extinction_between_per_m(RAIN_EDGES_MM[i - 1], RAIN_EDGES_MM[i]);
+    std::array::from_fn(|i| if i == 0 { 0.0 } else { rain(i) })
 }
 
 /// The bows of a weather's low air, of all that takes its light; `None` where there are no drops.
 pub(crate) fn in_low_air(c: &Conditions) -> Option<Table> {
-    low_air(c).map(|shares| mixed(&shares))
+    low_air(c, in_rain).map(|shares| mixed(&shares))
 }
 
-/// What each class of drops takes of the light in a weather's low air, fog and what falls together, over all that is taken.
-pub(super) fn low_air(c: &Conditions) -> Option<[f64; CLASSES]> {
+/// What each class of drops takes of the light in a weather's low air, fog and what falls together, over all that is taken. `rain`:
+/// [`in_rain`], or what remembers it.
+pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let falling = FallingLayer::new(c);
     if falling.liquid_per_m > 0.0 {
-        add_rain(&mut classes, &DropSizes::new(&c.precipitation, factor_in(&c.air, c.air.station_altitude_m)));
+        classes = rain(&c.precipitation, factor_in(&c.air, c.air.station_altitude_m));
         let all: f64 = classes.iter().sum();
         classes.iter_mut().for_each(|v| *v *= falling.liquid_per_m / all.max(f64::MIN_POSITIVE));
     }
@@ -41,11 +42,13 @@ pub(super) fn low_air(c: &Conditions) -> Option<[f64; CLASSES]> {
 }
 
 /// The same of the rain areas' drops on the mean; `None` without any.
-pub(super) fn areas(now: &Moment<'_>) -> Option<[f64; CLASSES]> {
+pub(super) fn areas(now: &Moment<'_>, mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES]) -> Option<[f64; CLASSES]> {
     let mut classes = [0.0; CLASSES];
     let factor = factor_in(&now.here.air, now.here.air.station_altitude_m);
     for region in now.weather.regions {
-        add_rain(&mut classes, &DropSizes::new(&region.area.falling(), factor));
+        for (all, class) in classes.iter_mut().zip(rain(&region.area.falling(), factor)) {
+            *all += class;
+        }
     }
     let all: f64 = classes.iter().sum();
     (all > 0.0).then(|| classes.map(|v| v / all))

@@ -3,13 +3,15 @@
 use glam::DVec2;
 
 use super::{
-    drops::{areas, is_lit, is_within, low_air},
+    drops::{areas, in_rain, is_lit, is_within, low_air},
     table::{CLASSES, ENTRIES, STEP_RAD, mixed},
 };
 use crate::{
     error::Result,
+    gpu::recent::Recent,
     moment::Moment,
     stage::{BOW_ENTRIES, Composition, DrawnEffect, Shot, Stages, yes},
+    weather::Falling,
 };
 
 const _: () = assert!(ENTRIES == BOW_ENTRIES);
@@ -20,13 +22,21 @@ pub(crate) struct BowView {
     /// What classes of drops take of the light in the low air and in rain areas, where there are any.
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
+    /// Of rates that fell in the last frames, and the tables of shares: both are sums that most frames have in common.
+    rains: Recent<(Falling, f64), [f64; CLASSES], RAINS>,
+    tables: Recent<[f64; CLASSES], [[f32; 4]; ENTRIES], 2>,
 }
+
+/// Rates that are remembered: of the low air and of some areas.
+const RAINS: usize = 8;
 
 impl BowView {
     /// Finds the drops of a moment.
     pub fn gather(&mut self, now: &Moment<'_>) {
         self.is_lit = is_lit(&now.scene);
-        self.drops = [low_air(&now.scene.conditions), areas(now)];
+        let mut rain =
+            |falling: &Falling, factor| self.rains.get_or_put(&(*falling, factor), || in_rain(falling, factor));
+        self.drops = [low_air(&now.scene.conditions, &mut rain), areas(now, &mut rain)];
     }
 
     fn has_drops(&self) -> bool {
@@ -55,9 +65,8 @@ impl DrawnEffect for BowView {
         if is_lit && shows(shot) {
             for (to, shares) in to.block.bows.iter_mut().zip(&self.drops) {
                 let Some(shares) = shares else { continue };
-                for (to, [r, g, b]) in to.iter_mut().zip(mixed(shares)) {
-                    *to = [r, g, b, 0.0].map(|v| v as f32);
-                }
+                let padded = || mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32));
+                *to = self.tables.get_or_put(shares, padded);
             }
         }
         Ok(())

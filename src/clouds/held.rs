@@ -115,7 +115,7 @@ impl HeldClouds {
     /// # Errors
     /// As [`Solid::new`].
     pub fn rays(&self, seed: u64, scene: &Scene, drifts: &LayerDrifts, radius_m: f64) -> Result<Option<CloudRays<'_>>> {
-        let Some(overhead) = Overhead::new(self.model, scene, drifts) else { return Ok(None) };
+        let Some(overhead) = Overhead::new(self.model, scene, drifts, Shape::of) else { return Ok(None) };
         Ok(Some(CloudRays::new(&overhead, self.grown(seed)?, scene, radius_m.min(1e9))))
     }
 }

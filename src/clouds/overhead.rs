@@ -77,25 +77,30 @@ fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
 
 impl Overhead {
     /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume or there
-    /// are no clouds.
-    pub fn new(model: CloudModel, scene: &Scene, drifts: &LayerDrifts) -> Option<Self> {
+    /// are no clouds. `still`: [`Shape::of`], or what remembers it.
+    pub fn new(
+        model: CloudModel,
+        scene: &Scene,
+        drifts: &LayerDrifts,
+        mut still: impl FnMut(&CloudSlab) -> Shape,
+    ) -> Option<Self> {
         let slots = || scene.conditions.clouds.iter().enumerate().filter(|(_, s)| s.cover > 0.0);
         let slabs = || slots().map(|(_, slab)| slab);
-        if model == CloudModel::Deck || slabs().next().is_none() {
+        if model == CloudModel::Deck {
             return None;
         }
         let (station_m, above_m) = (scene.conditions.air.station_altitude_m, scene.place.altitude_m);
         let is_above = |s: &CloudSlab| station_m + s.base_m > above_m;
         // What is above a deck is hidden by it.
         let share = slabs().find(|s| is_above(s)).map_or(1.0, |lowest| volume_share(scene, lowest));
-        let layer = |(slot, slab): (usize, &CloudSlab)| Layer {
-            shape: Shape::new(&scene.conditions, slab, &drifts.slots[slot]),
+        let mut layer = |(slot, slab): (usize, &CloudSlab)| Layer {
+            shape: still(slab).carried(&scene.conditions, slab, &drifts.slots[slot]),
             slab: *slab,
             slot,
             share: if is_above(slab) { share } else { 1.0 },
         };
         let mut overhead = Self {
-            layers: [layer((0, &CloudSlab::NONE)); LAYERS],
+            layers: [layer(slots().next()?); LAYERS],
             has_deck: share < 1.0,
             count: 0,
             drawn: 0,

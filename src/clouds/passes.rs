@@ -311,26 +311,27 @@ impl CloudPasses {
         })
     }
 
-    /// The group of what shadows fall on, with the map brought up to the frame; of nothing where there are none.
+    /// The group of what shadows fall on, with the map brought up to the frame, and the passes that took; of nothing where there are none.
     fn shade(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         layout: &wgpu::BindGroupLayout,
         (shaded, past): (Option<&Shaded<'_>>, Past),
-    ) -> Result<wgpu::BindGroup> {
+    ) -> Result<(wgpu::BindGroup, u32)> {
         if shaded.is_some() && self.shadows.is_none() {
             let map = ShadowMap::new(device, &self.tables, &self.block, &ShadowMap::texture(device))?;
             (self.shadows, self.shaded) = (Some(map), None);
         }
-        if let (Some(of), Some(shadows)) = (shaded, &mut self.shadows) {
-            shadows.draw(device, encoder, &of.lie, past);
-        }
+        let passes = match (shaded, &mut self.shadows) {
+            (Some(of), Some(shadows)) => shadows.draw(device, encoder, &of.lie, past),
+            _ => 0,
+        };
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
         if let Some((made, group)) = &self.shaded
             && *made == key
         {
-            return Ok(group.clone());
+            return Ok((group.clone(), passes));
         }
         let depth = shaded.map(|of| of.depth.view());
         let map = self.shadows.as_ref().filter(|_| shaded.is_some());
@@ -345,7 +346,7 @@ impl CloudPasses {
             ],
         });
         self.shaded = Some((key, group.clone()));
-        Ok(group)
+        Ok((group, passes))
     }
 
     /// The texture of the map of shadows, if there is one.
@@ -382,9 +383,9 @@ impl CloudPasses {
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
         let group = self.march_group(device, &pipelines.march_layouts[0], of);
-        let mut passes = 0;
+        let (mut passes, mut of_shadows) = (0, 0);
         if of.wanted.march || of.wanted.resolve {
-            passes += self.draw_picture(device, encoder, of, (&mut pipelines, &mut picture), &group)?;
+            (passes, of_shadows) = self.draw_picture(device, encoder, of, (&mut pipelines, &mut picture), &group)?;
         }
         let made = &picture.whole[picture.newest].texture;
         if let Some(behind) = of.behind {
@@ -397,16 +398,16 @@ impl CloudPasses {
                 none => none.insert(Round::new(device, &[march, sky])?),
             };
             if of.wanted.round {
-                passes += round.draw(encoder, &[&group, of.sky.1], of.around, of.past);
+                passes += round.draw(encoder, &[&group, of.sky.1], of.around, (of.past, of_shadows > 0));
             }
             // The pass over the picture has cleared what lies below it.
             round.copy(encoder, made, picture.of.0.1);
         }
         (self.picture, self.pipelines) = (Some(picture), Some(pipelines));
-        Ok(passes)
+        Ok(passes + of_shadows)
     }
 
-    /// Marches a frame's pixels, and makes the picture of them.
+    /// Marches a frame's pixels, and makes the picture of them. Answers the passes that took, and those of the map of shadows.
     fn draw_picture(
         &mut self,
         device: &Device,
@@ -414,7 +415,7 @@ impl CloudPasses {
         of: &CloudFrame<'_>,
         (pipelines, picture): (&mut Pipelines, &mut Picture),
         group: &wgpu::BindGroup,
-    ) -> Result<u32> {
+    ) -> Result<(u32, u32)> {
         let has_history = of.picture.exposed > 0.0;
         let has_shadows = of.shaded.is_some();
         let is_multisampled = has_shadows && of.is_multisampled;
@@ -422,12 +423,12 @@ impl CloudPasses {
         let resolve = pipelines.resolve(device, kind)?;
         device.queue.write_buffer(&self.picture_block, 0, bytemuck::bytes_of(&of.picture));
         let layout = &pipelines.shadow_layouts[usize::from(is_multisampled)];
-        let shaded = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
+        let (shaded, of_shadows) = self.shade(device, encoder, layout, (of.shaded.as_ref(), of.past))?;
         let groups = match &picture.groups {
             Some(groups) => groups.clone(),
             None => self.picture_groups(device, &pipelines.picture_layout, of.frame, picture),
         };
-        let mut passes = 1 + u32::from(has_shadows);
+        let mut passes = 1;
         if of.wanted.march {
             let [seen, reach] = &picture.marched;
             run(encoder, (&[seen, reach], None), &pipelines.march.1, &[group, of.sky.1]);
@@ -443,7 +444,7 @@ impl CloudPasses {
         run(encoder, (&[seen, reach], Some(picture.of.0)), &resolve, &[&groups[1 + (1 - made)], &shaded]);
         picture.newest = made;
         picture.groups = Some(groups);
-        Ok(passes)
+        Ok((passes, of_shadows))
     }
 }
 

@@ -16,8 +16,8 @@ use crate::{
 
 /// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
 pub(super) const SIDE: u32 = 96;
-/// Rows that a frame makes anew: all of them in 16 frames.
-const ROWS: u32 = 6;
+/// Rows that every second frame makes anew: all of them in 16 frames.
+const ROWS: u32 = 12;
 /// The camera's way between two frames, m, and the change of exposure after which nothing holds.
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
@@ -36,6 +36,8 @@ pub(super) struct Round {
     pipeline: wgpu::RenderPipeline,
     around: Option<Around>,
     rows: Rows,
+    /// The last frame made some rows.
+    made_some: bool,
 }
 
 impl Round {
@@ -62,24 +64,27 @@ impl Round {
             texture,
             around: None,
             rows: Rows::default(),
+            made_some: false,
         })
     }
 
     /// Bytes of GPU memory.
     pub const BYTES: u64 = 8 * SIDE as u64 * SIDE as u64;
 
-    /// Makes some rows anew, or all of them; answers the passes that it took.
+    /// Makes some rows anew, or all of them, unless another map has its turn; answers the passes that it took.
     pub fn draw(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         groups: &[&wgpu::BindGroup],
         here: Around,
-        past: Past,
+        (past, waits): (Past, bool),
     ) -> u32 {
         let rests = self.around == Some(here);
         let holds = self.around.is_some_and(|before| past == Past::Kept && !here.leaps_from(&before));
         self.around = Some(here);
-        let Some((first, count)) = self.rows.due(SIDE, ROWS, rests, holds) else { return 0 };
+        let due = self.rows.due((SIDE, ROWS), [rests, holds, waits || self.made_some]);
+        self.made_some = due.is_some();
+        let Some((first, count)) = due else { return 0 };
         rows::draw(encoder, &self.view, (SIDE, first, count), &self.pipeline, groups);
         1
     }

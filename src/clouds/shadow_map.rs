@@ -30,8 +30,8 @@ const TEXELS: u32 = 512;
 const TEXEL_M: f64 = 40.0;
 /// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
 const COARSE: u32 = 64;
-/// Rows that a frame makes anew: a whole map within a second of frames, in which clouds change by a thousandth of their life.
-const ROWS: u32 = 8;
+/// Rows that every second frame makes anew: a whole map within a second of frames, in which clouds change by a thousandth of their life.
+const ROWS: u32 = 16;
 /// The same while some of the map is coarse: in sixteen frames none is, as none of the picture is old.
 const ROWS_OF_NEW: u32 = 32;
 /// Sines of the light's elevation between which shadows begin to be told apart.
@@ -102,6 +102,8 @@ pub(super) struct ShadowMap {
     rows: Rows,
     /// Rows that are still those of the coarse map.
     coarse_rows: u32,
+    /// The last frame made some rows.
+    made_some: bool,
 }
 
 /// The coarse map, the pass that makes it and the one that spreads it over the map.
@@ -234,6 +236,7 @@ impl ShadowMap {
             standing: None,
             rows: Rows::default(),
             coarse_rows: 0,
+            made_some: false,
         })
     }
 
@@ -241,8 +244,8 @@ impl ShadowMap {
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
     /// Makes some rows anew, and before them the whole map coarsely where nothing of it holds any more or the picture is cut; where a
-    /// frame is a pure function of view and time, all rows.
-    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) {
+    /// frame is a pure function of view and time, all rows. Every second frame makes none where it need not; answers the passes that it took.
+    pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) -> u32 {
         let here = lie.standing;
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&lie.uniform()));
         let rests = past != Past::Cut && self.standing == Some(here);
@@ -253,7 +256,10 @@ impl ShadowMap {
             self.coarse_rows = TEXELS;
         }
         let most = if self.coarse_rows > 0 { ROWS_OF_NEW } else { ROWS };
-        let Some((first, count)) = self.rows.due(TEXELS, most, rests, past != Past::None) else { return };
+        let waits = self.made_some && self.coarse_rows == 0;
+        let due = self.rows.due((TEXELS, most), [rests, past != Past::None, waits]);
+        self.made_some = due.is_some();
+        let Some((first, count)) = due else { return 0 };
         self.coarse_rows = self.coarse_rows.saturating_sub(count);
         if begins {
             let coarse = &self.coarse;
@@ -261,6 +267,7 @@ impl ShadowMap {
             rows::draw(encoder, &self.view, (TEXELS, 0, TEXELS), &coarse.spread, &[&coarse.group]);
         }
         rows::draw(encoder, &self.view, (TEXELS, first, count), &self.pipeline, &[&self.clouds]);
+        1 + 2 * u32::from(begins)
     }
 }
 

@@ -48,15 +48,25 @@ fn filled_share(of: &Shape) -> f64 {
 impl Shape {
     /// Of a layer that has come so far.
     pub(crate) fn new(c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
+        Self::of(slab).carried(c, slab, drift)
+    }
+
+    /// Of a layer in still air over the sea.
+    pub(super) fn of(slab: &CloudSlab) -> Self {
+        Self::still(slab, threshold(slab))
+    }
+
+    /// The same over a station, once it has come so far.
+    pub(super) fn carried(self, c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
         Self {
             base_m: c.air.station_altitude_m + slab.base_m,
             drift_m: stretch(slab).inverse() * drift.way * slab.scale_m,
             evolution: DVec2::new(0.8, 0.6) * drift.lives,
-            ..Self::still(slab, threshold(slab))
+            ..self
         }
     }
 
-    /// Of a layer in still air over the sea, cut out of the map by a threshold.
+    /// The same, cut out of the map by a threshold.
     pub(super) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
         // 0 for fair-weather heaps, 1 for cumulonimbus.

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec2, DVec3};
 use super::{
     CloudModel, CloudSettings,
     candidates::{CLOUDS, clouds_work},
+    field::Shape,
     handed::{CloudShadows, Handed},
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
@@ -15,9 +16,10 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::Device,
+    gpu::{Device, recent::Recent},
     moment::{Moment, Scene},
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Sampling, Shot, Stages, Texture, yes},
+    weather::CloudSlab,
     wind::LayerDrifts,
 };
 
@@ -51,6 +53,8 @@ struct Made {
 pub(crate) struct CloudsView {
     pub settings: CloudSettings,
     overhead: Option<Overhead>,
+    /// Of the layers, which most frames have in common with the last one.
+    shapes: Recent<CloudSlab, Shape, LAYERS>,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
     made: Option<Made>,
@@ -70,7 +74,8 @@ impl CloudsView {
     /// # Errors
     /// For a time that the weather does not know.
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
-        let overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?);
+        let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
+        let overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still);
         self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;

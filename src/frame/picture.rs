@@ -8,15 +8,19 @@ use crate::{
 };
 
 /// The textures of one bind group: it is made anew only when the host hands over others.
-#[derive(PartialEq)]
 pub(super) struct Bound {
     color: KeptLayer,
     depth: Option<KeptLayer>,
     mask: Option<KeptLayer>,
     surface_classes: Option<KeptLayer>,
     normals: Option<KeptLayer>,
-    own: [Option<wgpu::TextureView>; 4],
+    own: Own,
+    /// The group of the effects' textures before these: an effect may draw into two in turns.
+    before: Option<(Own, wgpu::BindGroup)>,
 }
+
+/// Textures of the effects.
+type Own = [Option<wgpu::TextureView>; 4];
 
 impl View {
     /// Bytes of GPU memory the view holds for itself.
@@ -74,17 +78,28 @@ impl View {
     /// Makes the bind group anew if the host's textures are others than last time.
     pub(super) fn bind(&mut self, shot: &Shot<'_>, composition: &Composition) -> Result<()> {
         let (frame, color, own) = (shot.frame, shot.color, &composition.textures);
-        let same = self.bound.as_ref().is_some_and(|(b, ..)| {
+        let of_host = |b: &Bound| {
             color == b.color
                 && is_kept(frame.depth_layer(), b.depth.as_ref())
                 && is_kept(frame.mask_layer(), b.mask.as_ref())
                 && is_kept(frame.classes_layer(), b.surface_classes.as_ref())
                 && is_kept(frame.normals_layer(), b.normals.as_ref())
-                && b.own == *own
-        });
-        if same {
-            return Ok(());
+        };
+        let mut before = None;
+        if let Some((bound, group, _)) = self.bound.as_mut().filter(|(b, ..)| of_host(b)) {
+            if bound.own == *own {
+                return Ok(());
+            }
+            let last = (std::mem::replace(&mut bound.own, own.clone()), group.clone());
+            match bound.before.replace(last) {
+                Some((known, made)) if known == *own => {
+                    *group = made;
+                    return Ok(());
+                }
+                _ => before = bound.before.take(),
+            }
         }
+        self.bound = None;
         let Some(copy) = &self.copy else { return Ok(()) };
         let made = self.composite.lock()?.bind(&self.device, &self.uniform, copy, frame, composition);
         let Some(group) = made else { return Ok(()) };
@@ -97,6 +112,7 @@ impl View {
             surface_classes: kept(frame.classes_layer()),
             normals: kept(frame.normals_layer()),
             own: own.clone(),
+            before,
         };
         self.bound = Some((bound, group, target));
         Ok(())

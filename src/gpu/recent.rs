@@ -15,6 +15,12 @@ struct Held<K, V> {
     used: u64,
 }
 
+impl<K, V, const MOST: usize> Default for Recent<K, V, MOST> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<K, V, const MOST: usize> Recent<K, V, MOST> {
     pub const fn new() -> Self {
         Self { all: Vec::new(), uses: 0 }
@@ -36,6 +42,17 @@ impl<K, V, const MOST: usize> Recent<K, V, MOST> {
         };
         self.all[at].used = self.uses;
         Ok(&self.all[at].value)
+    }
+
+    /// The same of what is copied, and made without fail.
+    pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
+    where
+        K: Copy + PartialEq,
+        V: Copy,
+    {
+        let made = self.get_or_make(|known| known == key, || Ok::<_, std::convert::Infallible>((*key, make())));
+        let Ok(value) = made;
+        *value
     }
 
     /// Puts it into free room, or into that of what was not used for longest.

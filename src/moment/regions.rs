@@ -12,7 +12,7 @@ use crate::{
     },
     scene::WorldFrame,
     weather::{Conditions, Falling, Timeline, timeline::MAX_TIME_S},
-    wind::{Carrying, LayerDrifts, WindOver},
+    wind::{Blowing, Carrying, LayerDrifts, WindOver},
 };
 
 /// A region with rain of its own, and what is known of it.
@@ -67,6 +67,15 @@ impl<'a> WeatherOver<'a> {
     pub fn carrying_until(&self, time_s: f64) -> Result<Carrying<'a>> {
         self.check_time(time_s)?;
         Ok(self.wind.carrying_until(time_s))
+    }
+
+    /// The wind at a moment.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn wind_at(&self, time_s: f64) -> Result<Blowing> {
+        self.check_time(time_s)?;
+        Ok(self.wind.at(time_s))
     }
 
     /// How far the wind has carried the layers of cloud, up to a moment.

@@ -33,7 +33,12 @@ impl<'a> WindOver<'a> {
 
     /// The wind that carries the air, up to a moment.
     pub fn carrying_until(self, time_s: f64) -> Carrying<'a> {
-        Carrying { over: self, time_s, now: self.at(time_s) }
+        self.carrying_as(time_s, self.at(time_s))
+    }
+
+    /// The same, where the wind at the moment is known.
+    pub fn carrying_as(self, time_s: f64, now: Blowing) -> Carrying<'a> {
+        Carrying { over: self, time_s, now }
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{GivenDirection, NightSettings, World};
-use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions};
+use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions, wind::Blowing};
 
 /// A scene with the weather at its place, and all that they follow from.
 #[derive(Clone, Copy)]
@@ -12,6 +12,8 @@ pub(crate) struct KeptScene {
     pub scene: Scene,
     /// The weather at the camera, with what falls in its region.
     pub here: Conditions,
+    /// The wind, if the scene asked for it.
+    pub wind: Option<Blowing>,
     /// How many scenes have been worked out in this place.
     #[cfg(test)]
     pub count: u64,
@@ -62,7 +64,7 @@ impl World {
         if let Some(known) = kept.as_deref().filter(|known| known.from == from) {
             return Ok(*known);
         }
-        let scene = self.scene_named(name, eye, self.time_s)?;
+        let (scene, wind) = self.scene_and_wind(name, eye, self.time_s)?;
         let here = self.over().at_place(eye, self.time_s, scene.conditions);
         #[cfg(test)]
         let count = kept.as_ref().map_or(0, |before| before.count) + 1;
@@ -70,6 +72,7 @@ impl World {
             from,
             scene,
             here,
+            wind,
             #[cfg(test)]
             count,
         };

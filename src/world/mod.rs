@@ -307,8 +307,9 @@ impl World {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
     pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<Moment<'_>> {
-        let KeptScene { scene, here, .. } = self.scene_kept(name, eye, kept)?;
+        let KeptScene { scene, here, wind, .. } = self.scene_kept(name, eye, kept)?;
         let weather = self.over();
+        let carried = wind.map(|now| weather.wind.carrying_as(self.time_s, now));
         Ok(Moment {
             eye,
             time_s: self.time_s,
@@ -324,7 +325,7 @@ impl World {
             lamps: &self.lights,
             wind_volume: self.wind_volume(self.time_s),
             wind_texture: &self.wind_texture,
-            carried: OnceCell::new(),
+            carried: carried.map_or_else(OnceCell::new, OnceCell::from),
             flash: OnceCell::new(),
             scene,
         })

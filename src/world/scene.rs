@@ -17,6 +17,7 @@ use crate::{
     planet::Planet,
     scene::{LocalFrame, Place, WorldKind},
     weather::{CloudLight, Conditions, slab_reflectance, smoothstep},
+    wind::Blowing,
 };
 
 /// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun stands too high for either to matter: of
@@ -140,6 +141,11 @@ impl World {
     /// [`crate::Status::InvalidArgument`] if the position, which the host calls `name`, is not a place on or above the planet, or
     /// the time is not known.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
+        Ok(self.scene_and_wind(name, position, time_s)?.0)
+    }
+
+    /// The same, with the wind if it had to be worked out.
+    pub(super) fn scene_and_wind(&self, name: &str, position: DVec3, time_s: f64) -> Result<(Scene, Option<Blowing>)> {
         let conditions = self.weather_at(time_s)?;
         let land = self.land(&conditions);
         self.scene_over((name, position), time_s, conditions, &land)
@@ -152,7 +158,7 @@ impl World {
         time_s: f64,
         conditions: Conditions,
         land: &LandSeen,
-    ) -> Result<Scene> {
+    ) -> Result<(Scene, Option<Blowing>)> {
         let local = self.frame.place_at(name, position)?;
         let planet = planet_under(&self.set.planet, &conditions);
         let lights = self.lights_over(&local.place, (&conditions, land.albedo), time_s)?;
@@ -163,18 +169,14 @@ impl World {
         let patchy =
             conditions.fog.extinction_per_m > 0.0 && (conditions.fog.coverage < 1.0 || conditions.fog.lifted > 0.0);
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
-        let drift_m = if patchy || curtained {
-            self.over().carrying_until(time_s)?.displacement_m().truncate().to_array()
-        } else {
-            [0.0; 2]
-        };
+        let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
         let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
             map_m: self.map_place(position, &local),
-            drift_m,
+            drift_m: wind.map_or([0.0; 2], |wind| wind.drift.displacement_m.to_array()),
             curtains_fallen_m: curtain::fallen_m(time_s),
             color: self.set.color,
             planet,
@@ -194,7 +196,7 @@ impl World {
         for light in [&mut scene.ground, &mut scene.above_fog] {
             light.adaptation_cd_m2 += land.snow * (SNOW_KEY - GROUND_KEY) * light.total_lux / PI;
         }
-        Ok(scene)
+        Ok((scene, wind))
     }
 
     /// Sunlight on level ground at the world's origin, in whole W/m^2: what another machine's rounding changes in a light
@@ -205,7 +207,7 @@ impl World {
         // A state must not depend on how far another state has been shown.
         let conditions = self.timeline.at(time_s);
         let land = LandSeen::reported(&conditions);
-        let scene = self.scene_over(("position", origin), time_s, conditions, &land)?;
+        let (scene, _) = self.scene_over(("position", origin), time_s, conditions, &land)?;
         Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
