@@ -101,3 +101,21 @@ fn after_a_cut_shadows_are_coarse_for_sixteen_frames_and_then_as_without_history
     assert!(cut[0] < 0.1 && cut[1] > 0.1, "coarse, yet shadows: {cut:?}");
     assert!(settled[1] < 0.01, "{settled:?}");
 }
+
+#[test]
+fn shadows_and_mirrored_clouds_are_made_in_turns() {
+    let mut sky = Sky::new("LOWI 121150Z 24012KT 9999 -RA SCT030 18/12 Q1015", CloudModel::Volume);
+    let mut passes = |from: u32| -> Vec<u32> {
+        let one = |i: u32| {
+            sky.context.update(f64::from(i) / 60.0).unwrap();
+            over_ground(&mut sky, 1e4, FrameFlags(0));
+            sky.view.report().passes
+        };
+        (from..from + 32).map(one).collect()
+    };
+    passes(0);
+    let settled = passes(32);
+    println!("passes of a wet frame under broken clouds: {settled:?}");
+    // March, follow, resolve, one of both maps, the composition.
+    assert!(settled.iter().all(|passes| *passes == 5), "{settled:?}");
+}
