@@ -2,6 +2,7 @@
 #include "shots.h"
 
 #include "objects.h"
+#include "snow_shots.h"
 
 static wk_weather weather_here(double visibility_m, double humidity)
 {
@@ -378,6 +379,8 @@ static bool with_wipers(demo *d, double time_s)
 /* The eye on the hillside from which the posts' distances count, and a driver's on the road. */
 #define HILLSIDE 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 1.5, 50.0
 #define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
+/* Beside the excavator's way to its pad. */
+#define YARD 20.0, -50.0, 5.0, SITE_VIEW_AZIMUTH_DEG + 48.0, -8.0, 50.0
 #define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
 
 const shot SHOTS[] = {
@@ -407,6 +410,9 @@ const shot SHOTS[] = {
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
     {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL},
     {"white_morning", "3 cm of snow on the ground", ROADSIDE(1.0), white_morning, WORLD, NULL},
+    {"after_a_night", "After six hours of snow in wind", YARD, after_a_night, WORLD, NULL},
+    {"thaw", "Five warm hours later", YARD, thaw, WORLD, NULL},
+    {"blowing_snow", "Blowing snow, wind 14 m/s", ROADSIDE(-1.0), blowing_snow, WORLD, NULL},
     {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
     {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},

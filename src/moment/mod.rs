@@ -197,6 +197,8 @@ pub struct Scene {
     pub conditions: Conditions,
     /// The planet's air under that weather.
     pub planet: Planet,
+    /// Share of the light that the land sends up again, a channel: the planet's ground and the snow on it.
+    pub land_albedo: [f64; 3],
     /// The sun.
     pub sun: Light,
     /// The moon.

@@ -55,11 +55,18 @@ pub(super) struct LandSeen {
     pub snow: f64,
     /// Share of the light that goes up again.
     pub albedo: f64,
+    /// The same of the snow.
+    snow_albedo: f64,
 }
 
 impl LandSeen {
     fn new(snow: f64, snow_albedo: f64) -> Self {
-        Self { snow, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow }
+        Self { snow, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow, snow_albedo }
+    }
+
+    /// Share of the light that the land of a planet sends up again, a channel.
+    pub fn albedo_on(&self, planet: &Planet) -> [f64; 3] {
+        planet.ground_albedo.map(|bare| bare + (self.snow_albedo - bare) * self.snow)
     }
 
     /// As the weather reports the snow.

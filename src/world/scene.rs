@@ -51,9 +51,10 @@ fn zenith_depths(planet: &Planet, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     (scattering, tent.extinction_per_m.map(|e| e * tent.half_width_m * above))
 }
 
-/// Albedo of the grey ground that is adapted to, and of snow as photographers expose it: 1.3 stops above grey.
+/// Albedo of the grey ground that is adapted to, and what counts as that of ground under snow: its snow, of albedo 0.8, then shows two stops
+/// over grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
-const SNOW_KEY: f64 = 0.33;
+const SNOW_KEY: f64 = 0.2;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
 
@@ -179,6 +180,7 @@ impl World {
             drift_m: wind.map_or([0.0; 2], |wind| wind.drift.displacement_m.to_array()),
             curtains_fallen_m: curtain::fallen_m(time_s),
             color: self.set.color,
+            land_albedo: land.albedo_on(&planet),
             planet,
             sun,
             moon,

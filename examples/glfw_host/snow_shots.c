@@ -1,0 +1,127 @@
+/* Snow that lies, led through the hours of a night and a morning on the site's own terrain. */
+#include "snow_shots.h"
+
+#include <stdlib.h>
+
+#define NODES 512
+#define CELL_M 0.5
+#define ROAD_HALF_WIDTH_M 4.0
+
+/* The site's context with snow as a state in place of the one that the demo has. */
+static bool begin(demo *d)
+{
+    wk_simulation_desc simulation = WK_SIMULATION_DESC_INIT;
+    wk_context_desc place = WK_CONTEXT_DESC_INIT;
+    simulation.lying_snow_model = WK_LYING_SNOW_SIMULATED;
+    simulation.ground_model = WK_GROUND_SIMULATED;
+    place.next = &simulation;
+    place.world_kind = WK_WORLD_TANGENT;
+    place.latitude_deg = SITE_LATITUDE_DEG;
+    place.longitude_deg = SITE_LONGITUDE_DEG;
+    return weather_check(wk_view_destroy(d->weather.view)) && weather_check(wk_context_destroy(d->weather.context)) &&
+           weather_check(wk_context_create(d->weather.device, &place, &d->weather.context)) &&
+           weather_check(wk_view_create(d->weather.context, NULL, &d->weather.view));
+}
+
+/* Heights and classes of the ground about the pad. */
+static bool tell_ground(demo *d)
+{
+    const ground *g = &d->scene.ground;
+    wk_ground_grid grid = WK_GROUND_GRID_INIT;
+    float *heights = malloc(sizeof *heights * NODES * NODES);
+    uint8_t *classes = malloc(NODES * NODES);
+    double x, y;
+    ground_pad(&x, &y);
+    grid.origin_m[0] = x - 0.5 * CELL_M * NODES, grid.origin_m[1] = y - 0.5 * CELL_M * NODES;
+    grid.origin_m[2] = ground_z(g, x, y);
+    for (int i = 0; heights && classes && i < NODES * NODES; i++) {
+        double east = grid.origin_m[0] + CELL_M * (i % NODES), north = grid.origin_m[1] + CELL_M * (i / NODES);
+        heights[i] = (float)(ground_z(g, east, north) - grid.origin_m[2]);
+        bool paved = fabs(ground_road_offset(east, north)) < ROAD_HALF_WIDTH_M;
+        classes[i] = paved ? WK_SURFACE_CLASS_PAVED : 0;
+    }
+    grid.cell_m = CELL_M;
+    grid.nodes[0] = grid.nodes[1] = NODES;
+    grid.heights_m = heights, grid.height_count = NODES * NODES;
+    grid.surface_classes = classes, grid.surface_class_count = NODES * NODES;
+    bool ok = heights && classes && weather_check(wk_context_set_ground_grid(d->weather.context, &grid));
+    free(heights);
+    free(classes);
+    return ok;
+}
+
+static bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
+{
+    wk_given_direction sun = WK_GIVEN_DIRECTION_INIT;
+    sun.azimuth_deg = azimuth_deg;
+    sun.elevation_deg = elevation_deg;
+    return weather_check(wk_context_set_sun(d->weather.context, &sun));
+}
+
+/* From now on. */
+static bool weather(demo *d, double temperature_c, double snow_mm_h, double wind_m_s, double cover)
+{
+    wk_weather w = WK_WEATHER_INIT;
+    wk_cloud_layer cloud = WK_CLOUD_LAYER_INIT;
+    w.station_altitude_m = SITE_ALTITUDE_M;
+    w.visibility_m = snow_mm_h > 0.0 ? 1200.0 : 40e3;
+    w.relative_humidity = 0.8;
+    w.temperature_c = temperature_c;
+    w.wind_speed_m_s = wind_m_s;
+    w.wind_from_deg = SITE_VIEW_AZIMUTH_DEG + 80.0;
+    w.precipitation_kind = snow_mm_h > 0.0 ? WK_PRECIPITATION_SNOW : WK_PRECIPITATION_NONE;
+    w.precipitation_rate_mm_h = snow_mm_h;
+    cloud.kind = snow_mm_h > 0.0 ? WK_CLOUD_NIMBOSTRATUS : WK_CLOUD_CIRRUS;
+    cloud.cover = cover;
+    cloud.base_m = snow_mm_h > 0.0 ? 600.0 : 8000.0;
+    w.clouds = &cloud;
+    w.cloud_count = cover > 0.0 ? 1 : 0;
+    return weather_check(wk_context_set_weather(d->weather.context, &w, d->time_s, 0.0));
+}
+
+static bool hours(demo *d, double count)
+{
+    d->time_s += 3600.0 * count;
+    return weather_check(wk_context_accumulate(d->weather.context, count));
+}
+
+/* Two tracks from the excavator back to the road. */
+static bool drive(demo *d)
+{
+    const ground *g = &d->scene.ground;
+    double x, y;
+    ground_pad(&x, &y);
+    vec3 back = direction(SITE_VIEW_AZIMUTH_DEG + 70.0 + 180.0, 0.0), side = vec(back.y, -back.x, 0.0);
+    for (int i = -1; i <= 1; i += 2) {
+        double points[12][3];
+        for (int k = 0; k < 12; k++) {
+            double away = 2.5 * k - 3.0, aside = 1.2 * i + 0.035 * k * k;
+            points[k][0] = x + away * back.x + aside * side.x;
+            points[k][1] = y + away * back.y + aside * side.y;
+            points[k][2] = ground_z(g, points[k][0], points[k][1]);
+        }
+        wk_snow_strip strip = WK_SNOW_STRIP_INIT;
+        strip.points_m = (const double(*)[3])points;
+        strip.point_count = 12;
+        strip.width_m = 0.7;
+        if (!weather_check(wk_context_press_snow(d->weather.context, &strip)))
+            return false;
+    }
+    return true;
+}
+
+static bool night(demo *d)
+{
+    return begin(d) && tell_ground(d) && sun_at(d, 60, -20) && weather(d, -5.0, 2.0, 9.0, 1.0) && hours(d, 6.0) &&
+           drive(d);
+}
+
+bool after_a_night(demo *d) { return night(d) && weather(d, -6.0, 0.0, 1.0, 0.3) && sun_at(d, 160, 16); }
+
+bool thaw(demo *d)
+{
+    return night(d) && weather(d, 7.0, 0.0, 3.0, 0.0) && sun_at(d, 170, 30) && hours(d, 5.0) &&
+           weather(d, 7.0, 0.0, 3.0, 0.3);
+}
+
+bool blowing_snow(demo *d) { return night(d) && sun_at(d, 160, 16) && weather(d, -8.0, 0.0, 14.0, 0.3); }
