@@ -290,7 +290,9 @@ fn wet_surface(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surfac
     let patches = mix(pattern, vec2f(0.0, 1.0), smoothstep(150.0, 800.0, range));
     let lies = snow_share(snow.x, patches, mix(1.0, level, facing.sure)) * look.snow * gets;
     let soft = normalize(mix(facing.normal, up, select(0.35, 0.0, here.share > 0.5 || surface.normal.w > 0.0)));
+    // Drifts and tracks lie over the ground that the host drew: what they rise by leans their light.
+    let heaped = normalize(soft - here.drift * (here.share * lies));
     let glints = snow_glints(place, side, to_eye) * (1.0 - snow.y);
-    let white = snow_light(snow, soft, up, ground_here.albedo, host_lamps(at, soft), glints);
+    let white = snow_light(snow, heaped, up, ground_here.albedo, host_lamps(at, heaped), glints);
     return Veil(mix(veil.light, min(white, vec3f(ground.most)), lies), veil.transmittance * (1.0 - lies));
 }

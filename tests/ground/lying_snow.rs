@@ -298,3 +298,34 @@ fn the_terrains_snow_is_drawn_where_it_lies() {
     let (side, middle) = (brightness(&row[..20]), brightness(&row[70..90]));
     assert!(side > 4.0 * middle && (middle / 900.0 - 1.0).abs() < 0.3, "{side} {middle}; {NODES:?}");
 }
+
+#[test]
+fn the_walls_of_a_track_face_the_sun_and_away_from_it() {
+    let mut host = Host::new();
+    let mut context = context(&host, LyingSnowModel::Simulated);
+    let surface = Surface { snow_depth_m: 0.6, ..Surface::default() };
+    context.set_weather(&Weather { temperature_c: -5.0, surface, ..Weather::default() }, 0.0, 0.0).unwrap();
+    context.set_ground_grid(Some(grid())).unwrap();
+    context.update(60.0).unwrap();
+    context.press_snow(&SnowStrip { points: vec![at(-10.0, 2.0), at(-10.0, 28.0)], width_m: 2.4 }).unwrap();
+    let depths = [-14.0, -11.5, -10.0, -8.5, -6.0].map(|x| context.snow_at(at(x, 15.0)).unwrap().depth_m);
+    host.view = welkin::frame::View::new(&context).unwrap();
+    host.context = context;
+    let eye = DVec3::new(-10.0, 15.0, 9.0);
+    let camera = look(eye, 0.0, -90.0, 1.0);
+    let pixels = host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [900.0; 3]));
+    // Metres to the east of the track's middle, along the middle row.
+    let row = &pixels[(SIZE.1 / 2 * SIZE.0) as usize..][..SIZE.0 as usize];
+    let across_m = 2.0 * 9.0 * 0.5f64.tan() * f64::from(SIZE.0) / f64::from(SIZE.1);
+    let shown = |east_m: f64| {
+        let x = ((east_m / across_m + 0.5) * f64::from(SIZE.0)) as usize;
+        brightness(&row[x - 1..x + 2])
+    };
+    let [open, sunny, floor, shady] = [-4.0, -1.5, 0.0, 1.5].map(shown);
+    println!(
+        "depths {depths:.2?} m; {open:.0} in the open, {sunny:.0}, {floor:.0} and {shady:.0} cd/m^2 across the track"
+    );
+    assert!(depths[2] < 0.7 * depths[0], "{depths:?}");
+    // The sun stands in the south-east: what faces east is brighter.
+    assert!(sunny > 1.05 * open && shady < 0.95 * open && (floor / open - 1.0).abs() < 0.1);
+}
