@@ -88,7 +88,7 @@ impl Shape {
             soft: mix(mix(mix(0.3, 0.12, heaps), 0.8, slab.cellular), 1.2, slab.fibre),
             cellular: slab.cellular,
             solid_m: mix(SOLID_CELLS, SOLID_CELLS_OF_FIBRES, slab.fibre) * finer * slab.scale_m,
-            held: 1.4 * piled / (dome * dome),
+            held: 1.4 * piled.max(slab.cellular) / (dome * dome),
             anvil: (ANVIL_BEYOND + 20.0 * (1.0 - slab.convection)).min(NO_ANVIL),
             stretch: stretch(slab),
             lean_m: stretch_toward(slab) * (LEAN * slab.fibre * slab.thickness_m),
