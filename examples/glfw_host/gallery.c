@@ -38,6 +38,20 @@ static bool write(const char *path, const uint8_t *rgb, int width, int height)
     return ok;
 }
 
+/* Each square of four pixels becomes its mean. */
+static void halve(uint8_t *rgb, int *width, int *height)
+{
+    int w = *width / 2, h = *height / 2;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            for (int c = 0; c < 3; c++) {
+                const uint8_t *from = rgb + ((size_t)(2 * y) * (size_t)*width + (size_t)(2 * x)) * 3 + c;
+                int sum = from[0] + from[3] + from[(size_t)*width * 3] + from[(size_t)*width * 3 + 3];
+                rgb[((size_t)y * (size_t)w + (size_t)x) * 3 + (size_t)c] = (uint8_t)((sum + 2) / 4);
+            }
+    *width = w, *height = h;
+}
+
 static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
 {
     char path[1024];
@@ -55,8 +69,11 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
     if (!ok)
         return false;
     picture_read(&d->picture, rgb);
+    int width = d->picture.shown_width, height = d->picture.shown_height;
+    if (s->small)
+        halve(rgb, &width, &height);
     snprintf(path, sizeof path, "%s/%s.png", out, s->name);
-    if (!write(path, rgb, d->picture.shown_width, d->picture.shown_height))
+    if (!write(path, rgb, width, height))
         return false;
     printf("%s: %s\n", path, s->caption);
     fflush(stdout);

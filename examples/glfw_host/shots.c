@@ -106,6 +106,27 @@ static bool evening_clouds(demo *d)
     return cloudy(d, l, 2) && sun_at(d, 300, 7);
 }
 
+static bool altocumulus(demo *d)
+{
+    wk_cloud_layer l = layer(WK_CLOUD_ALTOCUMULUS, 0.6, 3600.0);
+    return cloudy(d, &l, 1) && sun_at(d, 170, 40);
+}
+
+/* The sun stands in the picture, above its middle. */
+static bool halo(demo *d)
+{
+    wk_cloud_layer l = layer(WK_CLOUD_CIRROSTRATUS, 1.0, 8500.0);
+    return cloudy(d, &l, 1) && sun_at(d, SITE_VIEW_AZIMUTH_DEG + 4.0, 27) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -2.0));
+}
+
+static bool limb_with_clouds(demo *d)
+{
+    wk_cloud_layer l[] = {layer(WK_CLOUD_STRATUS, 0.5, 1000.0), layer(WK_CLOUD_CIRRUS, 0.3, 9000.0)};
+    l[0].spacing_m = 20e3; /* whole fields of cloud: single ones are smaller than a pixel */
+    return cloudy(d, l, 2) && sun_at(d, 60, 30);
+}
+
 static bool above_clouds(demo *d)
 {
     wk_cloud_layer l = layer(WK_CLOUD_STRATOCUMULUS, 0.85, 900.0);
@@ -217,15 +238,6 @@ static bool snow(demo *d, double rate_mm_h, double temperature_c, double visibil
 }
 
 static bool quiet_snow(demo *d) { return sun_at(d, 300, -1) && snow(d, 1.5, 0.3, 650, 0.6); }
-
-static bool white_morning(demo *d)
-{
-    wk_weather w = weather_here(40e3, 0.7);
-    wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.3, 1500.0);
-    w.surface_snow_depth_m = 0.03;
-    w.temperature_c = -6.0;
-    return sun_at(d, 150, 14) && set(d, &w, &heaps);
-}
 
 static bool snowstorm(demo *d) { return sun_at(d, 200, 20) && snow(d, 4.0, -6.0, 250, 16.0); }
 
@@ -381,44 +393,47 @@ static bool with_wipers(demo *d, double time_s)
 #define ROADSIDE(elevation) 12.0, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 3.0, elevation, 50.0
 /* Beside the excavator's way to its pad. */
 #define YARD 20.0, -50.0, 5.0, SITE_VIEW_AZIMUTH_DEG + 48.0, -8.0, 50.0
+#define SKYWARD(elevation, fov_y) 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, elevation, fov_y
 #define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
 
 const shot SHOTS[] = {
-    {"noon", "Noon", HILLSIDE, noon, WORLD, NULL},
-    {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL},
-    {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL},
-    {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL},
-    {"fair_cumulus", "Fair-weather cumulus", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, fair_cumulus, WORLD, NULL},
-    {"evening_clouds", "Cumulus and altocumulus, low sun", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, evening_clouds, WORLD, NULL},
-    {"cloud_shadows", "Shadows of cumulus", 0.0, -4.8, 500.0, SITE_VIEW_AZIMUTH_DEG + 4.0, -6.0, 60.0, cloud_shadows, WORLD, NULL},
-    {"above_clouds", "Stratocumulus from above, low sun", HIGH(2300.0, SITE_VIEW_AZIMUTH_DEG, -6.0, 50.0), above_clouds, NO_WORLD, NULL},
-    {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL},
-    {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL},
-    {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL},
-    {"fog", "Fog, visibility 150 m", HILLSIDE, fog, WORLD, NULL},
-    {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, WORLD, NULL},
-    {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, WORLD, NULL},
-    {"cloudburst", "Cloudburst, 60 mm/h, wind 9 m/s", ROADSIDE(-4.0), cloudburst, WORLD, NULL},
-    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL},
-    {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers},
-    {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers},
-    {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL},
-    {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL},
-    {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL},
-    {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL},
-    {"rainbow", "Rainbow", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 12.0, 60.0, rainbow, WORLD, NULL},
-    {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL},
-    {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL},
-    {"white_morning", "3 cm of snow on the ground", ROADSIDE(1.0), white_morning, WORLD, NULL},
-    {"after_a_night", "After six hours of snow in wind", YARD, after_a_night, WORLD, NULL},
-    {"thaw", "Five warm hours later", YARD, thaw, WORLD, NULL},
-    {"blowing_snow", "Blowing snow, wind 14 m/s", ROADSIDE(-1.0), blowing_snow, WORLD, NULL},
-    {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL},
-    {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL},
-    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL},
-    {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL},
-    {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL},
-    {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL},
+    {"noon", "Noon", HILLSIDE, noon, WORLD, NULL, false},
+    {"sunset", "Sunset", HILLSIDE, sunset, WORLD, NULL, false},
+    {"twilight", "Civil twilight", HILLSIDE, twilight, WORLD, NULL, false},
+    {"night", "Night with a half moon", HILLSIDE, night, WORLD, NULL, false},
+    {"fair_cumulus", "Fair-weather cumulus", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, fair_cumulus, WORLD, NULL, false},
+    {"evening_clouds", "Cumulus and altocumulus, low sun", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 11.0, 50.0, evening_clouds, WORLD, NULL, false},
+    {"altocumulus", "Altocumulus", SKYWARD(26.0, 60.0), altocumulus, WORLD, NULL, true},
+    {"halo", "Cirrostratus with its halo", SKYWARD(22.0, 70.0), halo, WORLD, NULL, true},
+    {"cloud_shadows", "Shadows of cumulus", 0.0, -4.8, 500.0, SITE_VIEW_AZIMUTH_DEG + 4.0, -6.0, 60.0, cloud_shadows, WORLD, NULL, false},
+    {"above_clouds", "Stratocumulus from above, low sun", HIGH(2300.0, SITE_VIEW_AZIMUTH_DEG, -6.0, 50.0), above_clouds, NO_WORLD, NULL, false},
+    {"lightning", "Lightning at night, rain 6 mm/h", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 8.0, 50.0, lightning, WORLD, NULL, false},
+    {"haze", "Haze, visibility 5 km", HILLSIDE, haze, WORLD, NULL, false},
+    {"overcast", "Overcast, light rain, visibility 4 km", HILLSIDE, overcast_rain, WORLD, NULL, false},
+    {"fog", "Fog, visibility 150 m", HILLSIDE, fog, WORLD, NULL, false},
+    {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, WORLD, NULL, false},
+    {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, WORLD, NULL, false},
+    {"cloudburst", "Cloudburst, 60 mm/h, wind 9 m/s", ROADSIDE(-4.0), cloudburst, WORLD, NULL, false},
+    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL, false},
+    {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers, true},
+    {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers, true},
+    {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL, false},
+    {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL, false},
+    {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL, false},
+    {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL, false},
+    {"rainbow", "Rainbow", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 12.0, 60.0, rainbow, WORLD, NULL, false},
+    {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL, false},
+    {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL, false},
+    {"after_a_night", "After six hours of snow in wind", YARD, after_a_night, WORLD, NULL, false},
+    {"thaw", "Five warm hours later", YARD, thaw, WORLD, NULL, false},
+    {"blowing_snow", "Blowing snow, wind 14 m/s", ROADSIDE(-1.0), blowing_snow, WORLD, NULL, false},
+    {"snowstorm", "Snowstorm, 4 mm/h, wind 16 m/s", ROADSIDE(-2.0), snowstorm, WORLD, NULL, false},
+    {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL, false},
+    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL, false},
+    {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL, false},
+    {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL, false},
+    {"limb_with_clouds", "Clouds before the limb, 200 km up", HIGH(200e3, 8.0, -14.0, 30.0), limb_with_clouds, NO_WORLD, NULL, true},
+    {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL, false},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 

@@ -16,6 +16,8 @@ typedef struct shot {
     enum world world;
     /* The window that the camera looks through at a time: it has been in the rain for 50 s. NULL: none. */
     bool (*windscreen)(demo *d, double time_s);
+    /* Written at half the size: of grain or of few things. */
+    bool small;
 } shot;
 
 extern const shot SHOTS[];

@@ -103,7 +103,7 @@ static bool drive(demo *d)
         wk_snow_strip strip = WK_SNOW_STRIP_INIT;
         strip.points_m = (const double(*)[3])points;
         strip.point_count = 12;
-        strip.width_m = 0.7;
+        strip.width_m = 0.9;
         if (!weather_check(wk_context_press_snow(d->weather.context, &strip)))
             return false;
     }
@@ -112,7 +112,7 @@ static bool drive(demo *d)
 
 static bool night(demo *d)
 {
-    return begin(d) && tell_ground(d) && sun_at(d, 60, -20) && weather(d, -5.0, 2.0, 9.0, 1.0) && hours(d, 6.0) &&
+    return begin(d) && tell_ground(d) && sun_at(d, 60, -20) && weather(d, -5.0, 3.0, 9.0, 1.0) && hours(d, 6.0) &&
            drive(d);
 }
 

@@ -6,7 +6,7 @@ use super::table::{CLASSES, RAIN_EDGES_MM, Table, mixed};
 use crate::{
     falling::{FallingLayer, drops::factor_in, sizes::DropSizes},
     moment::{GroundLight, Light, Moment, Scene},
-    weather::{Conditions, Falling, smoothstep},
+    weather::{Conditions, Falling, GroundLayer, smoothstep},
 };
 
 /// Direct light over all light on level ground below which no bow shows.
@@ -17,6 +17,19 @@ pub(super) fn in_rain(falling: &Falling, factor: f64) -> [f64; CLASSES] {
     let sizes = DropSizes::new(falling, factor);
     let rain = |i: usize| sizes.extinction_between_per_m(RAIN_EDGES_MM[i - 1], RAIN_EDGES_MM[i]);
     std::array::from_fn(|i| if i == 0 { 0.0 } else { rain(i) })
+}
+
+/// Asymmetry of droplets, and how far from it, below and above, there are none: dust and sand have less, lifted snow more
+/// (`weather::particles`).
+const DROPLETS: f64 = 0.85;
+const DUST_BELOW: f64 = 0.05;
+const SNOW_ABOVE: f64 = 0.03;
+
+/// Share of a low layer that is droplets: particles that tell colours apart, dust, sand and lifted snow make no bow.
+fn droplets(layer: &GroundLayer) -> f64 {
+    let off = layer.asymmetry - DROPLETS;
+    let round = 1.0 - if off > 0.0 { off / SNOW_ABOVE } else { -off / DUST_BELOW };
+    round.max(0.0) * (1.0 - smoothstep(0.25, 0.75, layer.angstrom_exponent))
 }
 
 /// The bows of a weather's low air, of all that takes its light; `None` where there are no drops.
@@ -34,9 +47,8 @@ pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; 
         let all: f64 = classes.iter().sum();
         classes.iter_mut().for_each(|v| *v *= falling.liquid_per_m / all.max(f64::MIN_POSITIVE));
     }
-    // Particles that tell colours apart are no droplets.
     let fog = c.fog.extinction_per_m.max(0.0);
-    classes[0] = fog * (1.0 - smoothstep(0.25, 0.75, c.fog.angstrom_exponent));
+    classes[0] = fog * droplets(&c.fog);
     let all = fog + falling.extinction_per_m();
     (classes.iter().sum::<f64>() > 0.0).then(|| classes.map(|v| v / all))
 }
@@ -66,4 +78,26 @@ pub(crate) fn is_lit(scene: &Scene) -> bool {
 /// Whether some direction within `half_angle` of the middle of a picture may be within `reach` of the point opposite to the light, rad.
 pub(super) fn is_within(middle: DVec3, half_angle: f64, to_light: DVec3, reach: f64) -> bool {
     middle.dot(-to_light).clamp(-1.0, 1.0).acos() < half_angle + reach
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weather::{Lofted, LoftedKind, Weather, derive};
+
+    #[test]
+    fn fog_has_a_bow_but_no_sand_dust_or_lifted_snow() {
+        let bow = |weather: &Weather| in_low_air(&derive(weather).unwrap()).is_some();
+        let lofted = |kind| Weather {
+            visibility_m: 400.0,
+            lofted: Lofted { kind, ..Weather::default().lofted },
+            ..Weather::default()
+        };
+        assert!(bow(&Weather::preset("fog").unwrap()) && !bow(&Weather::preset("sand_storm").unwrap()));
+        for kind in
+            [LoftedKind::BlowingSnow, LoftedKind::DriftingSnow, LoftedKind::DriftingDust, LoftedKind::BlowingSand]
+        {
+            assert!(!bow(&lofted(kind)), "{kind:?}");
+        }
+    }
 }
