@@ -22,15 +22,17 @@ impl Context {
         self.held.ground.set_terrain(&mut self.world, desc)
     }
 
-    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one that is there
-    /// keeps its water.
+    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is, with as much
+    /// simulated snow; one that is there keeps its water, and its snow wherever there is ground.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for more than
     /// [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
     pub fn set_terrain_tile(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.set_tile((&mut self.world, waits), cells)
+        self.held.ground.set_tile((&mut self.world, waits), cells)?;
+        self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        Ok(())
     }
 
     /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the ground lets it.
@@ -40,16 +42,20 @@ impl Context {
     /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
     pub fn update_terrain(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.update_tile((&mut self.world, waits), cells)
+        self.held.ground.update_tile((&mut self.world, waits), cells)?;
+        self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        Ok(())
     }
 
-    /// Takes a tile away, with the water on it. Beside it water runs off.
+    /// Takes a tile away, with the water and the snow on it. Beside it water runs off.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is not.
     pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.remove_tile((&mut self.world, waits), key)
+        self.held.ground.remove_tile((&mut self.world, waits), key)?;
+        self.held.snowpack.tile_changed(&mut self.world, key, waits);
+        Ok(())
     }
 
     /// The lattice of the terrain's tiles.

@@ -280,6 +280,7 @@ impl HeldGround {
 
     /// What a camera sees of the ground.
     pub fn seen(&self, world: &World, now: &Moment<'_>) -> GroundSeen<'_> {
+        let has_cells = self.host.is_some() || self.tiled.is_some();
         GroundSeen {
             cover: self.cover_at(world, now.eye, now.scene.conditions.surface),
             hollows: &self.hollows,
@@ -290,8 +291,8 @@ impl HeldGround {
             has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry())
                 || self.tiled.as_ref().is_some_and(|tiled| tiled.is_wet()),
             snow: snow_about(world, now),
-            terrain_has_snow: self.host.is_some() && world.snow.is_some(),
-            has_snowy_terrain: self.host.is_some() && world.snow.as_ref().is_some_and(|snow| snow.has_cells),
+            terrain_has_snow: has_cells && world.snow.is_some(),
+            has_snowy_terrain: has_cells && world.snow.as_ref().is_some_and(|snow| snow.has_cells),
             surface_class: self.surface_class,
         }
     }
