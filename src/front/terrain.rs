@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     context::Context,
     error::Result,
-    ground::GroundCell,
+    ground::{GroundCell, GroundTexture},
     terrain::{TerrainCells, TerrainDesc, TerrainPoint, TileKey},
 };
 
@@ -77,6 +77,19 @@ impl Context {
     /// `None` for a tile that there is not.
     pub fn terrain_water(&self, key: TileKey) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         self.held.ground.tile_water(&self.world, key)
+    }
+
+    /// The water on the tiles about a place as textures for the host's own materials, up to date, and the snow where it is simulated: a
+    /// window of 512 x 512 cells, one texel a cell, that holds `center` in its middle quarter and moves by 64 cells at a time. What has
+    /// changed since the last call is uploaded and submitted; all of it where the window has moved. Both stay the same objects as long as
+    /// the context lives; where no tile has ground there is neither water nor snow. A host with several cameras calls it before each.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if `center` is no place; [`crate::Status::WrongOrder`] where no tile reaches into the window;
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn terrain_texture(&mut self, center: DVec3) -> Result<GroundTexture> {
+        let device = self.device().clone();
+        self.held.ground.terrain_texture(&device, &self.world, center)
     }
 
     /// The terrain under or above a position; `None` where no tile has ground.

@@ -15,7 +15,7 @@ use super::{
     texture::TerrainTextures,
     tiled::{Changed, SavedTiles, TiledWater},
     water::{Forcing, STEP_S, depth_at_mm},
-    window::{DrawnTerrain, RecentChanges},
+    window::{DrawnTerrain, RecentChanges, TerrainWindow},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -124,6 +124,8 @@ pub(crate) struct HeldGround {
     pub(super) tiled: Option<Box<TiledWater>>,
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
     pub(super) recent: RecentChanges,
+    /// The textures of tiles that the host has asked for.
+    pub(super) host_window: Option<Box<TerrainWindow>>,
 }
 
 /// A saved ground that can be shown.
@@ -159,6 +161,7 @@ impl HeldGround {
             tiled: None,
             waiting: Vec::new(),
             recent: RecentChanges::default(),
+            host_window: None,
         }
     }
 

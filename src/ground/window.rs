@@ -1,4 +1,5 @@
-//! The part of a terrain of tiles about a camera as textures, for the surface pass: what a grid has in [`super::texture`].
+//! The part of a terrain of tiles about a place as textures: about a camera for the surface pass, or about a place that the host names for
+//! its own shaders. What a grid has in [`super::texture`].
 //!
 //! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of cells of 1 m reaches
 //! 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is filled and uploaded: all of it where the
@@ -120,9 +121,12 @@ enum Part {
     Snow,
 }
 
-/// The textures of a view's window.
+/// The textures of a window: water, and the surface with its snow; for a host water and snow.
 #[derive(Default)]
 pub(crate) struct TerrainWindow {
+    is_for_host: bool,
+    /// How often anything was written.
+    pub(super) writes: u64,
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
     filled: Option<Filled>,
     water: Vec<[u16; 4]>,
@@ -131,6 +135,16 @@ pub(crate) struct TerrainWindow {
 }
 
 impl TerrainWindow {
+    /// For a host's own shaders.
+    pub fn for_host() -> Self {
+        Self { is_for_host: true, ..Self::default() }
+    }
+
+    /// Water and snow, for a host.
+    pub(super) fn textures(&self) -> Option<&[wgpu::Texture; 2]> {
+        self.textures.as_ref().map(|(textures, _)| textures)
+    }
+
     /// Water and surface about a camera, up to date.
     pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
         let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
@@ -166,13 +180,18 @@ impl TerrainWindow {
     /// Fills and uploads a part of a window: the surface, the water, both, or the snow.
     fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), what: Part) {
         let Some(part) = window.meets(part) else { return };
+        let is_snow = matches!(what, Part::Snow);
         match what {
             Part::Snow => self.read_snow(shown, part),
+            Part::Surface if self.is_for_host => return,
+            Part::Ground if self.is_for_host => self.read(shown, part, Part::Water),
             _ => self.read(shown, part, what),
         }
-        let (textures, _) = self.textures.get_or_insert_with(|| made(device));
+        self.writes += 1;
+        let is_for_host = self.is_for_host;
+        let (textures, _) = self.textures.get_or_insert_with(|| made(device, is_for_host));
         let extent = [0, 1].map(|i| (part.high[i] - part.low[i]) as u32);
-        let below = if matches!(what, Part::Snow) { WINDOW as u32 } else { 0 };
+        let below = if is_snow && !is_for_host { WINDOW as u32 } else { 0 };
         let at = [0, 1].map(|i| (part.low[i] - window.low[i]) as u32);
         let write = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
             let to = wgpu::TexelCopyTextureInfo {
@@ -188,16 +207,21 @@ impl TerrainWindow {
             write(&textures[1], bytemuck::cast_slice(&self.surface), 16);
         }
         if !self.water.is_empty() {
-            write(&textures[0], bytemuck::cast_slice(&self.water), 8);
+            write(&textures[usize::from(is_snow)], bytemuck::cast_slice(&self.water), 8);
         }
     }
 
     /// Reads the snow of a part of the terrain, by rows.
     fn read_snow(&mut self, shown: &Shown<'_>, part: CellRect) {
         let width = (part.high[0] - part.low[0]) as usize;
+        let count = width * (part.high[1] - part.low[1]) as usize;
         self.water.clear();
         self.surface.clear();
-        self.surface.resize(width * (part.high[1] - part.low[1]) as usize, [0.0; 4]);
+        if self.is_for_host {
+            self.water.resize(count, [0; 4]);
+        } else {
+            self.surface.resize(count, [0.0; 4]);
+        }
         let (terrain, Some(snow)) = (shown.terrain, shown.snow) else { return };
         for key in terrain.keys_within(part) {
             let Some(tile) = snow.tiles.get(&[key.east, key.north]) else { continue };
@@ -207,6 +231,10 @@ impl TerrainWindow {
                 let to = (y - part.low[1]) as usize * width + (own.low[0] - part.low[0]) as usize;
                 let count = (own.high[0] - own.low[0]) as usize;
                 let Some(cells) = tile.cells.get(from..from + count) else { continue };
+                if self.is_for_host {
+                    self.water[to..to + count].copy_from_slice(cells);
+                    continue;
+                }
                 let texel = |c: &[u16; 4]| c.map(|v| f16::from_bits(v).to_f32());
                 self.surface[to..to + count].iter_mut().zip(cells).for_each(|(to, c)| *to = texel(c));
             }
@@ -277,7 +305,7 @@ fn half4(values: [f32; 4]) -> [u16; 4] {
 }
 
 /// Textures of a window, still empty, and their views.
-fn made(device: &Device) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
+fn made(device: &Device, is_for_host: bool) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
     use wgpu::{TextureFormat as F, TextureUsages as U};
     let texture = |label, format, height| {
         device.device.create_texture(&wgpu::TextureDescriptor {
@@ -287,12 +315,17 @@ fn made(device: &Device) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: U::TEXTURE_BINDING | U::COPY_DST,
+            usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
             view_formats: &[],
         })
     };
     let rows = WINDOW as u32;
-    let both = [texture("window water", F::Rgba16Float, rows), texture("window surface", F::Rgba32Float, 2 * rows)];
+    let second = if is_for_host {
+        texture("window snow", F::Rgba16Float, rows)
+    } else {
+        texture("window surface", F::Rgba32Float, 2 * rows)
+    };
+    let both = [texture("window water", F::Rgba16Float, rows), second];
     let views = [0, 1].map(|i| both[i].create_view(&Default::default()));
     (both, views)
 }

@@ -1,6 +1,6 @@
 //! Snow that the wind carries along the ground: from where it blows to where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is taken as it is. Else the surface's shape bends the mean wind: slopes that face
+//! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows against the mean wind. Else the surface's shape bends the mean wind: slopes that face
 //! it quicken it and lee slopes calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L
 //! (Jackson and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of
 //! Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003).
@@ -47,8 +47,8 @@ struct Air {
 pub(super) struct Edges {
     /// What has left it down the wind: along each row to the east or west, along each column to the north or south.
     left: [Vec<Air>; 2],
-    /// Wind over each cell: at the place, m/s, or over the mean wind.
-    wind: Vec<f64>,
+    /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
+    wind: Vec<[f64; 2]>,
     /// Of the sweep that it was in last.
     swept: u64,
     /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
@@ -102,14 +102,35 @@ impl Way {
 /// What a whole sweep is done with.
 struct Sweep<'a> {
     way: &'a Way,
-    /// Units of mass for a flux of 1 kg/(m s).
+    /// Along the mean wind.
+    mean: Through,
+    /// Units of mass for a flux of 1 kg/(m s) over the length of a cell's side.
     per_flux: f64,
-    /// Shares by which the flux grows and falls in a cell.
-    grown: [f64; 2],
+    cell_m: f64,
     landing_kg_m3: f64,
     /// The wind over cells is that at their places.
     is_local: bool,
     revision: u64,
+}
+
+/// How the wind goes through a cell.
+#[derive(Clone, Copy)]
+struct Through {
+    /// Lengths of its direction's parts, together.
+    sum: f64,
+    /// Share of the flux that goes east or west.
+    across: f64,
+    /// Shares by which the flux grows and falls.
+    grown: [f64; 2],
+}
+
+impl Through {
+    /// In this direction: the lengths of its parts.
+    fn new([x, y]: [f64; 2], cell_m: f64) -> Self {
+        let sum = x + y;
+        let grown = [ERODING_M, LANDING_M].map(|l| 1.0 - libm::exp(-cell_m / (sum * l)));
+        Self { sum, across: x / sum, grown }
+    }
 }
 
 fn smooth(x: f64) -> f64 {
@@ -194,8 +215,9 @@ impl Drift {
         self.sweeps += 1;
         let sweep = Sweep {
             way: &way,
-            per_flux: (way.unit.x.abs() + way.unit.y.abs()) * step.seconds / field.cell_m * UNITS,
-            grown: [ERODING_M, LANDING_M].map(|l| 1.0 - libm::exp(-way.through_m / l)),
+            mean: Through::new([way.unit.x.abs(), way.unit.y.abs()], field.cell_m),
+            per_flux: step.seconds / field.cell_m * UNITS,
+            cell_m: field.cell_m,
             landing_kg_m3: new_density_kg_m3(-5.0, way.speed),
             is_local: step.wind.local.is_some(),
             revision: step.revision,
@@ -250,12 +272,13 @@ impl Drift {
             let patch = &field.patches[at];
             wind.extend((0..patch.heights_m.len()).map(|cell| {
                 let place = [cell % columns, cell / columns];
-                let Some(local) = step.wind.local else { return shaped(field, at, place, way.unit) };
+                let Some(local) = step.wind.local else { return [shaped(field, at, place, way.unit), 0.0] };
                 let on = [0, 1].map(|i| patch.key[i] * field.size[i] as i32 + place[i] as i32);
                 let found = local(on, patch.surface_m(cell));
                 strongest = strongest.max(found.length());
                 // Against the mean wind nothing is carried: there the air turns round behind something.
-                found.dot(way.unit).max(0.0)
+                let along = |axis: usize| (if way.back[axis] { -found[axis] } else { found[axis] }).max(0.0);
+                [along(0), along(1)]
             }));
             field.patches[at].edges.wind = wind;
         }
@@ -292,11 +315,10 @@ impl Drift {
             for i in 0..nx {
                 let column = if way.back[0] { nx - 1 - i } else { i };
                 let before = [by_rows[row], by_columns[column]];
-                let (leaving, lee, changed) = sweep.cell(patch, row * nx + column, before);
+                let ([across, along], lee, changed) = sweep.cell(patch, row * nx + column, before);
                 changes |= changed;
-                let across = (leaving as f64 * way.shares[0]) as i64;
                 by_rows[row] = Air { snow: across, lee };
-                by_columns[column] = Air { snow: leaving - across, lee };
+                by_columns[column] = Air { snow: along, lee };
             }
         }
         if changes {
@@ -312,23 +334,37 @@ impl Drift {
 }
 
 impl Sweep<'_> {
-    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell, the lee's line over it, and whether the
-    /// column has changed.
-    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> (i64, Option<[f64; 2]>, bool) {
+    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along the column, the
+    /// lee's line over it, and whether its column of snow has changed.
+    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([i64; 2], Option<[f64; 2]>, bool) {
         let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
-        let leaving = before[0].snow + before[1].snow;
+        let mut leaving = before[0].snow + before[1].snow;
+        if leaving == 0 && patch.is_bare() {
+            return ([0; 2], lee, false);
+        }
+        let (speed, through) = self.wind(patch.edges.wind[cell], calm);
+        let mut changes = false;
         // Over what stands there, and over holes, it only passes.
-        if patch.is_blocked(cell) || (leaving == 0 && patch.is_bare()) {
-            return (leaving, lee, false);
+        if !patch.is_blocked(cell) {
+            let carries = (saltation_kg_m_s(speed, DRY_THRESHOLD_M_S) * through.sum * self.per_flux) as i64;
+            let mut column = patch.column(cell);
+            let gained = exchange(&mut column, carries - leaving, speed, through.grown, self.landing_kg_m3);
+            if gained != 0 {
+                patch.put(cell, column);
+                (leaving, changes) = (leaving + gained, true);
+            }
         }
-        let speed = if self.is_local { patch.edges.wind[cell] } else { self.way.speed * calm * patch.edges.wind[cell] };
-        let carries = (saltation_kg_m_s(speed, DRY_THRESHOLD_M_S) * self.per_flux) as i64;
-        let mut column = patch.column(cell);
-        let gained = exchange(&mut column, carries - leaving, speed, self.grown, self.landing_kg_m3);
-        if gained != 0 {
-            patch.put(cell, column);
+        let across = (leaving as f64 * through.across) as i64;
+        ([across, leaving - across], lee, changes)
+    }
+
+    /// Speed of the wind over a cell, m/s, and how it goes through: as it blows there, or along the mean wind.
+    fn wind(&self, own: [f64; 2], calm: f64) -> (f64, Through) {
+        if !self.is_local {
+            return (self.way.speed * calm * own[0], self.mean);
         }
-        (leaving + gained, lee, gained != 0)
+        let speed = libm::hypot(own[0], own[1]);
+        if speed > 0.0 { (speed, Through::new(own.map(|v| v / speed), self.cell_m)) } else { (0.0, self.mean) }
     }
 }
 

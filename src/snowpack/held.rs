@@ -266,7 +266,10 @@ impl HeldSnow {
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
             let revision = self.revision + 1;
-            if site.shade(field, &c, &world.set.shelters) {
+            // Asked as it stands at the step's end: of a solved field nothing earlier is known.
+            let wind = site.wind(world, end_s, &c);
+            let local = wind.as_ref().map(|wind| wind as WindAt<'_>);
+            if site.shade(field, &c, (&world.set.shelters, local)) {
                 field.clear_blocked(revision);
             }
             let site = &*site;
@@ -275,15 +278,13 @@ impl HeldSnow {
                 let falling = world.over().falling_at(site.place(place, height_m), middle_s, c).precipitation;
                 Forcing::new(&c, &falling, sunlight_w_m2, seconds)
             };
-            // Asked as it stands at the step's end: of a solved field nothing earlier is known.
-            let wind = site.wind(world, end_s, &c);
             let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
             field.step(&Step {
                 seconds,
                 even: &forcing,
                 falls: (!world.set.regions.is_empty()).then_some(&falls as FallsAt<'_>),
                 settling: &self.settling,
-                wind: WindOver { mean, local: wind.as_ref().map(|wind| wind as WindAt<'_>) },
+                wind: WindOver { mean, local },
                 country: &state.country,
                 slides: end_s.rem_euclid(COARSE_STEP_S) == 0.0,
                 revision,

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     column::Column,
-    field::{Field, Patch},
+    field::{Field, Patch, WindAt},
 };
 use crate::{
     falling::flakes::aggregate_speed_m_s,
@@ -216,16 +216,19 @@ impl Site {
         (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds what the standing boxes keep off and stop under a weather. Says whether something new stands on cells.
-    pub fn shade(&mut self, field: &mut Field, c: &Conditions, shelters: &[Shelter]) -> bool {
+    /// Finds what the standing boxes keep off and stop under a weather whose flakes go with `local` where the wind varies in space. Says
+    /// whether something new stands on cells.
+    pub fn shade(
+        &mut self,
+        field: &mut Field,
+        c: &Conditions,
+        (shelters, local): (&[Shelter], Option<WindAt<'_>>),
+    ) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
-        let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
-        // Eddies bring flakes into the lee, so that no shadow is longer than its box is high.
-        let across = wind * (fall / wind.length().max(fall));
-        let slant = ((across / fall * 16.0).round() / 16.0).extend(-1.0);
+        let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
         let standing = || shelters.iter().filter(|s| s.stands());
         let same = self.boxes.iter().eq(standing()) && !self.stale;
-        if same && (slant == self.slant || self.boxes.is_empty()) {
+        if same && ((slant == self.slant && local.is_none()) || self.boxes.is_empty()) {
             return false;
         }
         let had_any = !self.boxes.is_empty();
@@ -241,31 +244,45 @@ impl Site {
                 patch.obstacles_m.clear();
             }
             for shelter in &self.boxes {
-                self.shade_box(patch, field.size, shelter, !same);
+                self.shade_box((patch, field.size), shelter, !same, local.map(|local| (local, fall)));
             }
         }
         !same
     }
 
-    fn shade_box(&self, patch: &mut Patch, size: [usize; 2], shelter: &Shelter, stands_anew: bool) {
+    fn shade_box(
+        &self,
+        (patch, size): (&mut Patch, [usize; 2]),
+        shelter: &Shelter,
+        stands_anew: bool,
+        local: Option<(WindAt<'_>, f64)>,
+    ) {
         let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
         let middle = self.local(shelter.center_m);
         let radius = shelter.half_size_m.length() + self.cell_m;
-        let run = self.slant.truncate() * (middle.z + radius - patch.lowest_m).max(0.0);
-        let low = (middle.truncate() + run.min(DVec2::ZERO) - radius) / self.cell_m;
-        let high = (middle.truncate() + run.max(DVec2::ZERO) + radius) / self.cell_m;
+        let over = (middle.z + radius - patch.lowest_m).max(0.0);
+        let (back, on) = match local {
+            // Whichever way the wind turns round it.
+            Some(_) => (DVec2::splat(-over), DVec2::splat(over)),
+            None => (self.slant.truncate().min(DVec2::ZERO) * over, self.slant.truncate().max(DVec2::ZERO) * over),
+        };
+        let low = (middle.truncate() + back - radius) / self.cell_m;
+        let high = (middle.truncate() + on + radius) / self.cell_m;
         let span = |i: usize| {
             let (low, high) = (low[i] - corner[i], high[i] - corner[i]);
             low.ceil().max(0.0) as usize..(high.floor() + 1.0).clamp(0.0, size[i] as f64) as usize
         };
-        let velocity = self.to_enu.transpose() * self.slant;
         let up = self.to_enu.row(2);
         for row in span(1) {
             for column in span(0) {
                 let cell = row * size[0] + column;
                 let plan = DVec2::new(corner[0] + column as f64, corner[1] + row as f64) * self.cell_m;
                 let ground = self.position(plan.extend(f64::from(patch.heights_m[cell])));
-                if sheltered(shelter, ground + up * SURFACE_M, velocity) {
+                let slant = local.map_or(self.slant, |(local, fall)| {
+                    let on = [corner[0] as i32 + column as i32, corner[1] as i32 + row as i32];
+                    slant(local(on, patch.surface_m(cell)), fall)
+                });
+                if sheltered(shelter, ground + up * SURFACE_M, self.to_enu.transpose() * slant) {
                     patch.sheltered.resize(size[0] * size[1], false);
                     patch.sheltered[cell] = true;
                 }
@@ -298,22 +315,32 @@ impl Site {
 
     /// The wind at 10 m over a place of the lattice where it varies in space, by the logarithmic law from 2 m over the snow; none where
     /// it does not vary at that time in the weather `c`.
-    pub fn wind<'a>(
-        &'a self,
-        world: &'a World,
+    pub fn wind<'w>(
+        &self,
+        world: &'w World,
         time_s: f64,
         c: &Conditions,
-    ) -> Option<impl Fn([i32; 2], f64) -> DVec2 + use<'a>> {
+    ) -> Option<impl Fn([i32; 2], f64) -> DVec2 + use<'w>> {
         let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
         let volume = world.wind_volume(time_s)?;
         let asked_m = ASKED_M.max(volume.cell_m.z);
         let speed = c.wind.speed_m_s();
         let lower = if speed > 0.0 { c.wind.speed_at_height_m_s(asked_m) / speed } else { 1.0 };
+        let (origin, from_enu, cell_m) = (self.origin, self.to_enu.transpose(), self.cell_m);
         Some(move |place: [i32; 2], surface_m: f64| {
-            let about = volume.wind(self.place(place, surface_m + asked_m), (mean * lower).extend(0.0));
+            let plan = DVec2::new(f64::from(place[0]), f64::from(place[1])) * cell_m;
+            let at = origin + from_enu * plan.extend(surface_m + asked_m);
+            let about = volume.wind(at, (mean * lower).extend(0.0));
             about.map_or(mean, |w| w.truncate() / lower.max(0.1))
         })
     }
+}
+
+/// How flakes of this fall speed go with a wind, m/s: over their fall, in sixteenths.
+fn slant(wind: DVec2, fall: f64) -> DVec3 {
+    // Eddies bring flakes into the lee, so that no shadow is longer than its box is high.
+    let across = wind * (fall / wind.length().max(fall));
+    ((across / fall * 16.0).round() / 16.0).extend(-1.0)
 }
 
 /// Height of the ground about a place, m.

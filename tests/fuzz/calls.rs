@@ -758,6 +758,10 @@ pub const CALLS: &[(&str, Call)] = &[
         let context = handle(d, &w.contexts);
         get("wk_ground_texture", |p| unsafe { wk_context_get_ground_texture(context, p.cast()) })
     }),
+    ("wk_context_get_terrain_texture", |d, w| {
+        let (context, at) = (handle(d, &w.contexts), [d.float(), d.float(), d.float()]);
+        get("wk_ground_texture", |p| unsafe { wk_context_get_terrain_texture(context, &at, p.cast()) })
+    }),
     ("wk_weather_from_metar", |d, _| {
         let report = CString::new(texts::metar(d)).expect("no zeros");
         let (mut layers, mut out, mut metar) =

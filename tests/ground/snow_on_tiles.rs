@@ -253,3 +253,48 @@ fn the_tiles_snow_is_drawn_where_it_lies() {
     host.view = View::new(&host.context).unwrap();
     assert!(again == shoot(&mut host));
 }
+
+#[test]
+fn water_and_snow_about_a_place_are_textures_for_the_hosts_own_materials() {
+    let host = Host::new();
+    let mut context = context(&host);
+    let e = context.terrain_texture(DVec3::ZERO).unwrap_err();
+    assert!(e.status == Status::WrongOrder && e.to_string().contains("no tile reaches into the window"), "{e}");
+    context.set_weather(&weather(-5.0, 1.0, 12.0, 200.0), 0.0, 0.0).unwrap();
+    set_tiles(&mut context);
+    assert!(context.terrain_texture(DVec3::ZERO).unwrap().snow.is_none(), "before there is a state");
+    context.update(3600.0).unwrap();
+    let read = |texture: &wgpu::Texture| welkin::gpu::readback::rgba(&host.device, texture).unwrap();
+    let look_at = |context: &mut Context, center: DVec3| {
+        let asked = context.terrain_texture(center).unwrap();
+        let (water, snow) = (read(&asked.texture), read(asked.snow.as_ref().unwrap()));
+        // Cells on both sides of the borders, a hill, and a place without ground.
+        for place in [at(-1.0, -1.0), at(0.0, -1.0), at(3.0, -2.0), at(31.0, 31.0), at(-32.0, 8.0), at(40.0, 3.0)] {
+            let uv = asked.uv_from_world.map(|row| row.dot(place.extend(1.0)));
+            let [x, y] = uv.map(|v| v * 512.0 - 0.5);
+            assert!((x - x.round()).abs() < 1e-9 && (y - y.round()).abs() < 1e-9, "{x} {y}");
+            let (texel, wet) =
+                (snow[y as usize * 512 + x.round() as usize], water[y as usize * 512 + x.round() as usize]);
+            let on = place.x < 32.0;
+            let here = context.snow_at(place).unwrap();
+            let wanted =
+                [here.depth_m, here.density_kg_m3, here.wetness, here.albedo].map(|v| if on { v } else { 0.0 });
+            let near = (0..4).all(|i| (f64::from(texel[i]) - wanted[i]).abs() <= 1e-3 * wanted[i]);
+            assert!(near && (!on || wanted[0] > 0.0), "{place}: {texel:?} {wanted:?}");
+            assert!(on || wet[..2] == [0.0; 2], "{place}: {wet:?}");
+        }
+        asked
+    };
+    let first = look_at(&mut context, DVec3::ZERO);
+    let again = context.terrain_texture(DVec3::ZERO).unwrap();
+    assert_eq!((again.revision, &again.texture, &again.snow), (first.revision, &first.texture, &first.snow));
+    context.take_snow(&SnowStrip { points: vec![at(-20.0, 9.0), at(20.0, 9.0)], width_m: 3.0 }, 0.1).unwrap();
+    let ploughed = look_at(&mut context, DVec3::ZERO);
+    assert!(ploughed.revision > first.revision && ploughed.snow == first.snow);
+    context.update(7200.0).unwrap();
+    let moved = look_at(&mut context, at(100.0, -70.0));
+    assert!(moved.uv_from_world != first.uv_from_world && moved.texture == first.texture);
+    let e = context.terrain_texture(DVec3::splat(f64::NAN)).unwrap_err();
+    assert!(e.status == Status::InvalidArgument && e.to_string().starts_with("center must be"), "{e}");
+    assert!(context.terrain_texture(at(5000.0, 0.0)).is_err());
+}
