@@ -8,7 +8,8 @@
 //! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over [`ERODING_M`] where there is
 //! loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole step, whatever its length and the cells' size:
 //! what leaves a cell enters the next ones, what leaves the last ones is blown out. As much comes in from the country about the field as its
-//! snow yields. Only what hops is carried; suspended snow is drawn and not moved.
+//! snow yields. What hops ([`saltation_kg_m_s`]) and what is suspended ([`suspension_kg_m_s`]) are carried side by side: the second grows
+//! over [`LIFTING_M`] and lands over [`SINKING_M`], so that it reaches farther into a lee.
 //!
 //! The sweep goes from patch to patch down the wind, as from cell to cell: what leaves the last cells of one, and the line of a lee over
 //! them, is what comes to the next. Patches that have no snow, get none and have none to their lee are left out.
@@ -18,12 +19,16 @@ use glam::DVec2;
 use super::{
     column::{Column, Part, UNITS},
     field::{Field, NONE, Patch, Step},
-    laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, threshold_m_s},
+    laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, suspension_kg_m_s, threshold_m_s},
 };
 
-/// Ways over which the flux grows and falls to 1/e, m.
+/// Ways over which the flux of what hops grows and falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 const LANDING_M: f64 = 3.0;
+/// The same of what is suspended: it is fully developed after some 500 to 1000 m (Takeuchi 1980), and sinks half a metre at 0.4 m/s in a
+/// wind of 12 m/s.
+const LIFTING_M: f64 = 250.0;
+const SINKING_M: f64 = 15.0;
 /// Run of the line below which the wind is calmed, over its fall.
 const LEE_RUN: f64 = 12.0;
 /// What the calm takes of the wind.
@@ -36,8 +41,8 @@ const SHAPE_M: f64 = 10.0;
 /// What comes over a cell's border with the wind.
 #[derive(Clone, Copy, Debug, Default)]
 struct Air {
-    /// Snow, in units of mass.
-    snow: i64,
+    /// Snow that hops and that is suspended, in units of mass.
+    snow: [i64; 2],
     /// Height of the lee's line there, and of what casts it, m; none at the end of the ground.
     lee: Option<[f64; 2]>,
 }
@@ -120,15 +125,16 @@ struct Through {
     sum: f64,
     /// Share of the flux that goes east or west.
     across: f64,
-    /// Shares by which the flux grows and falls.
-    grown: [f64; 2],
+    /// Shares by which the fluxes of what hops and what is suspended grow and fall.
+    grown: [[f64; 2]; 2],
 }
 
 impl Through {
     /// In this direction: the lengths of its parts.
     fn new([x, y]: [f64; 2], cell_m: f64) -> Self {
         let sum = x + y;
-        let grown = [ERODING_M, LANDING_M].map(|l| 1.0 - libm::exp(-cell_m / (sum * l)));
+        let share = |l: f64| 1.0 - libm::exp(-cell_m / (sum * l));
+        let grown = [[ERODING_M, LANDING_M], [LIFTING_M, SINKING_M]].map(|lengths| lengths.map(share));
         Self { sum, across: x / sum, grown }
     }
 }
@@ -208,7 +214,7 @@ impl Drift {
         }
         let way = Way::new(mean, field.cell_m);
         let inflow = inflow(field, step, &way);
-        self.choose(field, &way, inflow != [0; 2]);
+        self.choose(field, &way, inflow != [[0; 2]; 2]);
         if self.winds(field, step, &way) <= DRY_THRESHOLD_M_S {
             return;
         }
@@ -226,7 +232,7 @@ impl Drift {
             let patch = self.order[at] as usize;
             self.come(field, patch, &way, inflow);
             let edges = &field.patches[patch].edges;
-            let comes = self.coming.iter().flatten().any(|air| air.snow > 0);
+            let comes = self.coming.iter().flatten().any(|air| air.snow != [0; 2]);
             if comes || !field.patches[patch].is_bare() || (edges.has_lee && !sweep.is_local) {
                 self.sweep(field, patch, &sweep);
             }
@@ -286,7 +292,7 @@ impl Drift {
     }
 
     /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
-    fn come(&mut self, field: &mut Field, at: usize, way: &Way, inflow: [i64; 2]) {
+    fn come(&mut self, field: &mut Field, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for axis in 0..2 {
             let before = way.beside(&field.patches[at], axis, false);
             let coming = &mut self.coming[axis];
@@ -296,7 +302,7 @@ impl Drift {
                 Some(_) => coming.resize(field.size[1 - axis], Air::default()),
                 None => {
                     coming.resize(field.size[1 - axis], Air { snow: inflow[axis], lee: None });
-                    field.books.blown_in += inflow[axis] * field.size[1 - axis] as i64;
+                    field.books.blown_in += inflow[axis].iter().sum::<i64>() * field.size[1 - axis] as i64;
                 }
             }
         }
@@ -326,7 +332,7 @@ impl Drift {
         }
         for axis in 0..2 {
             if way.beside(patch, axis, true) == NONE {
-                field.books.blown_out += self.coming[axis].iter().map(|air| air.snow).sum::<i64>();
+                field.books.blown_out += self.coming[axis].iter().flat_map(|air| air.snow).sum::<i64>();
             }
             std::mem::swap(&mut self.coming[axis], &mut patch.edges.left[axis]);
         }
@@ -334,28 +340,32 @@ impl Drift {
 }
 
 impl Sweep<'_> {
-    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along the column, the
-    /// lee's line over it, and whether its column of snow has changed.
-    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([i64; 2], Option<[f64; 2]>, bool) {
+    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along the column, hopping
+    /// and suspended, the lee's line over it, and whether its column of snow has changed.
+    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
         let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
-        let mut leaving = before[0].snow + before[1].snow;
-        if leaving == 0 && patch.is_bare() {
-            return ([0; 2], lee, false);
+        let mut leaving = [0, 1].map(|kind| before[0].snow[kind] + before[1].snow[kind]);
+        if leaving == [0; 2] && patch.is_bare() {
+            return ([[0; 2]; 2], lee, false);
         }
         let (speed, through) = self.wind(patch.edges.wind[cell], calm);
         let mut changes = false;
         // Over what stands there, and over holes, it only passes.
         if !patch.is_blocked(cell) {
-            let carries = (saltation_kg_m_s(speed, DRY_THRESHOLD_M_S) * through.sum * self.per_flux) as i64;
             let mut column = patch.column(cell);
-            let gained = exchange(&mut column, carries - leaving, speed, through.grown, self.landing_kg_m3);
-            if gained != 0 {
+            for (kind, flux) in [saltation_kg_m_s, suspension_kg_m_s].into_iter().enumerate() {
+                let carries = (flux(speed, DRY_THRESHOLD_M_S) * through.sum * self.per_flux) as i64;
+                let lacking = carries - leaving[kind];
+                let gained = exchange(&mut column, lacking, speed, through.grown[kind], self.landing_kg_m3);
+                leaving[kind] += gained;
+                changes |= gained != 0;
+            }
+            if changes {
                 patch.put(cell, column);
-                (leaving, changes) = (leaving + gained, true);
             }
         }
-        let across = (leaving as f64 * through.across) as i64;
-        ([across, leaving - across], lee, changes)
+        let across = leaving.map(|snow| (snow as f64 * through.across) as i64);
+        ([across, [leaving[0] - across[0], leaving[1] - across[1]]], lee, changes)
     }
 
     /// Speed of the wind over a cell, m/s, and how it goes through: as it blows there, or along the mean wind.
@@ -369,14 +379,15 @@ impl Sweep<'_> {
 }
 
 /// What the country about a field yields to each row and each column of cells at its border.
-fn inflow(field: &Field, step: &Step<'_>, way: &Way) -> [i64; 2] {
+fn inflow(field: &Field, step: &Step<'_>, way: &Way) -> [[i64; 2]; 2] {
     let country = step.country;
     let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
     if country.ice == 0 || way.speed <= threshold {
-        return [0; 2];
+        return [[0; 2]; 2];
     }
-    let flux = saltation_kg_m_s(way.speed, DRY_THRESHOLD_M_S) * step.seconds / field.cell_m * UNITS;
-    [way.unit.x.abs(), way.unit.y.abs()].map(|part| (flux * part) as i64)
+    let fluxes = [saltation_kg_m_s, suspension_kg_m_s]
+        .map(|flux| flux(way.speed, DRY_THRESHOLD_M_S) * step.seconds / field.cell_m * UNITS);
+    [way.unit.x.abs(), way.unit.y.abs()].map(|part| fluxes.map(|flux| (flux * part) as i64))
 }
 
 /// Takes from a column towards `lacking` more in the air, or lands what is too much; answers what the air has gained.

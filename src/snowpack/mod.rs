@@ -12,7 +12,7 @@
 //!
 //! Steps of [`STEP_S`] begin at whole multiples of it, so that the state does not depend on how often it is led. Fast-forward takes steps
 //! of [`COARSE_STEP_S`] with the same laws, and the state remembers how much of it was laid so. One column is one layer: no hard crust
-//! under new snow, no frozen ground; what hops is carried and what is suspended is not.
+//! under new snow, no frozen ground.
 //!
 //! Nothing here is drawn: what draws snow, runs from under it or is lit by it reads `LyingSnow` of the
 //! world. So there are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.

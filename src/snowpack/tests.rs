@@ -320,7 +320,7 @@ fn snow_lies_over_the_borders_of_tiles_as_on_one_grid_to_the_bit() {
 #[test]
 fn a_tiles_snow_blows_and_slides_onto_bare_tiles_and_over_holes() {
     let mut land = flat([96, 32], 1.0);
-    land.heights_m = (0..land.len()).map(|c| if c % 96 == 32 { 8.0 } else { 0.0 }).collect();
+    land.heights_m = (0..land.len()).map(|c| if [32, 33].contains(&(c % 96)) { 8.0 } else { 0.0 }).collect();
     let mut field = land.cut([32, 32], Column::default());
     let mut holes = vec![false; 32 * 32];
     holes[10 * 32..12 * 32].fill(true);
@@ -360,4 +360,22 @@ fn quiet_tiles_hold_and_cost_nothing() {
     field.books.began = field.lying();
     lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
     assert_eq!(field.patches.iter().filter(|p| p.columns.capacity() > 0).count(), 1);
+}
+
+#[test]
+fn suspended_snow_moves_most_of_the_mass_where_the_wind_blows_a_long_way() {
+    let wind = 16.0;
+    // What leaves level country so long, kg/(m s).
+    let flux = |cells: usize| {
+        let land = flat([cells, 3], 5.0);
+        let mut field = land.field(Column::of(1.0, 200.0));
+        lead(&mut field, &acts(&weather(-6.0, wind, 1.0), &Falling::NONE, 0.0), DVec2::new(wind, 0.0), 20);
+        assert_eq!(field.lying(), field.books.balance());
+        field.books.blown_out as f64 / UNITS * 25.0 / (3.0 * 5.0 * 20.0 * STEP_S)
+    };
+    let (short, long) = (flux(20), flux(800));
+    let [hops, floats] =
+        [laws::saltation_kg_m_s, laws::suspension_kg_m_s].map(|law| law(wind, laws::DRY_THRESHOLD_M_S));
+    println!("over 100 m {short:.4}, over 4 km {long:.4} kg/(m s); {hops:.4} hop and {floats:.4} float");
+    assert!((long / (hops + floats) - 1.0).abs() < 0.03 && short > hops && short < 0.6 * long, "{short} {long}");
 }

@@ -51,15 +51,16 @@ const SNOW_ALBEDO: f64 = 0.82;
 
 /// What light from above meets on land of which snow covers this share.
 pub(super) struct LandSeen {
-    /// Share that snow covers.
+    /// Share that snow covers, and its albedo.
     pub snow: f64,
+    pub snow_albedo: f64,
     /// Share of the light that goes up again.
     pub albedo: f64,
 }
 
 impl LandSeen {
     fn new(snow: f64, snow_albedo: f64) -> Self {
-        Self { snow, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow }
+        Self { snow, snow_albedo, albedo: LAND_ALBEDO + (snow_albedo - LAND_ALBEDO) * snow }
     }
 
     /// As the weather reports the snow.

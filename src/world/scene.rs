@@ -170,6 +170,7 @@ impl World {
         };
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
+        let ground_albedo = planet.ground_albedo.map(|bare| bare + (land.snow_albedo - bare) * land.snow);
         let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
@@ -185,6 +186,7 @@ impl World {
             deck_cover,
             medium_share: medium_share(&under_sun),
             ground: above_fog,
+            ground_albedo,
             above_fog,
             conditions,
         };
