@@ -15,6 +15,7 @@ use welkin::{
 };
 
 use crate::{
+    hills::save,
     host::{Host, SIZE, ground, look},
     terrain::roof,
 };
@@ -252,6 +253,8 @@ fn the_tiles_snow_is_drawn_where_it_lies() {
     assert!(again != pixels && bright(&again, SIZE.1 - 3) < 0.5 * side, "{}", bright(&again, SIZE.1 - 3));
     host.view = View::new(&host.context).unwrap();
     assert!(again == shoot(&mut host));
+    let seen = |p: &[f32; 4]| [0, 1, 2].map(|i| 255.0 * (f64::from(p[i]) / 2e4).clamp(0.0, 1.0).powf(1.0 / 2.2));
+    save("snow_on_tiles", &again.iter().map(seen).collect::<Vec<_>>());
 }
 
 #[test]
