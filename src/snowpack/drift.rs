@@ -293,7 +293,7 @@ impl Drift {
 
     /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
     fn come(&mut self, field: &mut Field, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
-        for axis in 0..2 {
+        for (axis, inflow) in inflow.into_iter().enumerate() {
             let before = way.beside(&field.patches[at], axis, false);
             let coming = &mut self.coming[axis];
             coming.clear();
@@ -301,8 +301,8 @@ impl Drift {
                 Some(edges) if edges.swept == self.sweeps => coming.extend_from_slice(&edges.left[axis]),
                 Some(_) => coming.resize(field.size[1 - axis], Air::default()),
                 None => {
-                    coming.resize(field.size[1 - axis], Air { snow: inflow[axis], lee: None });
-                    field.books.blown_in += inflow[axis].iter().sum::<i64>() * field.size[1 - axis] as i64;
+                    coming.resize(field.size[1 - axis], Air { snow: inflow, lee: None });
+                    field.books.blown_in += inflow.iter().sum::<i64>() * field.size[1 - axis] as i64;
                 }
             }
         }

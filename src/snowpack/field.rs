@@ -274,6 +274,7 @@ pub(super) struct Field {
     /// Of tiles: the origin of their lattice and its cells, m. None of a grid.
     pub lattice: Option<[f64; 4]>,
     /// By their keys: rows from the south, in each from the west.
+    #[expect(clippy::vec_box, reason = "a new one is put among the others, which are many and large")]
     pub patches: Vec<Box<Patch>>,
     pub books: Books,
     /// Mean run-off of the last step, mm/h, and the share of the ground that snow covered.
