@@ -6208,13 +6208,13 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * ====================================================================================================
  * Water on the host's terrain as a texture
  *
- * For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture,
- * uploaded once for the host and for the stage SURFACE. One texel for each node, the first one south-west, rows to the
- * north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
+ * For the host's own materials: the water of the terrain's cells as one native texture, of a grid
+ * (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain) those
+ * about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
  * ====================================================================================================
  */
 
-/** The water of the terrain's cells on the GPU. */
+/** The water of the terrain's cells on the GPU, of a grid or about a place on tiles. */
 typedef struct wk_ground_texture {
     /** sizeof(wk_ground_texture) of your header. */
     uint32_t struct_size;
@@ -6281,6 +6281,21 @@ wk_status wk_context_get_ground_texture(wk_context *context,
                                         wk_ground_texture *out_texture);
 
 /**
+ * Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a grid:
+ * a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
+ * `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
+ * wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it is
+ * uploaded where the window has moved. Both textures stay the same as long as the context lives.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the window;
+ * WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ */
+WK_API
+wk_status wk_context_get_terrain_texture(wk_context *context,
+                                         const double (*center_m)[3],
+                                         wk_ground_texture *out_texture);
+
+/**
  * Gets the text of the functions that compute how a place of the texture looks: how dark, how much of it mirrors, how
  * rough. NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
@@ -6302,8 +6317,8 @@ wk_status wk_ground_texture_init(wk_ground_texture *out,
  * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
  * patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
  * state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
- * each cell of the host's terrain (wk_context_set_ground_grid), and wk_context_save keeps it. Standing boxes
- * (wk_context_set_shelters) keep it off and cast drifts.
+ * each cell of the host's terrain (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it.
+ * Standing boxes (wk_context_set_shelters) keep it off and cast drifts.
  * ====================================================================================================
  */
 

@@ -31,7 +31,9 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     rain::{Planes, Shelter},
     scene::{Camera, WorldKind},
-    weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather},
+    snowpack::LyingSnowModel,
+    terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
+    weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind},
 };
 
 use textures::texture;
@@ -499,12 +501,49 @@ fn wind_fields_allocate_nothing() {
     }
 }
 
+/// Steps of snow that falls, drifts and slides on four tiles, and of rain that melts it.
+fn snow_on_tiles_allocates_nothing() {
+    let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
+    let device = Device::headless(&options).unwrap();
+    let desc = ContextDesc { lying_snow: LyingSnowModel::Simulated, ..ContextDesc::default() };
+    let mut context = Context::new(device.clone(), Arc::new(Shared::new(&device).unwrap()), desc).unwrap();
+    context.set_terrain(Some(TerrainDesc { tile_cells: 32, ..TerrainDesc::default() })).unwrap();
+    let heights: Vec<f32> = (0..32 * 32).map(|c| (c % 32) as f32 * 0.2 + (c % 7) as f32).collect();
+    for key in [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| TileKey::new(x, y)) {
+        let cells = TerrainCells { key, heights_m: Rows::of(&heights), ..TerrainCells::default() };
+        context.set_terrain_tile(&cells).unwrap();
+    }
+    let weather = |temperature_c, kind| Weather {
+        temperature_c,
+        precipitation: Precipitation::of(kind, 2.0),
+        wind: Wind::of(14.0, 250.0),
+        surface: Surface { snow_depth_m: 0.3, ..Surface::default() },
+        ..Weather::default()
+    };
+    let mut hour = 0.0;
+    for (temperature_c, kind) in [(-5.0, PrecipitationKind::Snow), (4.0, PrecipitationKind::Rain)] {
+        context.set_weather(&weather(temperature_c, kind), hour * 3600.0, 0.0).unwrap();
+        // What the weather was before is forgotten by then.
+        hour += 2.0;
+        context.update(hour * 3600.0).unwrap();
+        OWN.lock().unwrap().clear();
+        let before = CALLS.load(Relaxed);
+        ASKING.store(true, Relaxed);
+        (1..=60).for_each(|i| context.update(hour * 3600.0 + 60.0 * f64::from(i)).unwrap());
+        ASKING.store(false, Relaxed);
+        assert_eq!(CALLS.load(Relaxed) - before, 0, "{kind:?}: {:?}", OWN.lock().unwrap());
+        hour += 1.0;
+    }
+    assert!(context.snow_books().unwrap().ran_off_kg > 0.0);
+}
+
 #[test]
 fn recording_allocates_nothing_of_its_own() {
     // What wgpu does for backtraces of its own is not counted, and must not hold the lock that asking needs.
     // SAFETY: nothing else runs in this process yet that reads the environment.
     unsafe { std::env::set_var("RUST_LIB_BACKTRACE", "0") };
     wind_fields_allocate_nothing();
+    snow_on_tiles_allocates_nothing();
     for (backends, frames) in [(wgpu::Backends::NOOP, 10_000), (wgpu::Backends::VULKAN | wgpu::Backends::GL, 500)] {
         let mut host = RustHost::new(backends);
         for id in 0..WARM {

@@ -1,8 +1,8 @@
 //! Water on the host's terrain as a texture
 //!
-//! For the host's own materials: the water of the terrain's cells (wk_context_set_ground_grid) as one native texture,
-//! uploaded once for the host and for the stage SURFACE. One texel for each node, the first one south-west, rows to the
-//! north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
+//! For the host's own materials: the water of the terrain's cells as one native texture, of a grid
+//! (wk_context_set_ground_grid) uploaded once for the host and for the stage SURFACE, of tiles (wk_context_set_terrain) those
+//! about a place. One texel for each cell, the first one south-west, rows to the north, in every graphics interface. Published functions, GLSL and WGSL, compute how it looks.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -10,8 +10,11 @@ use std::{
     sync::OnceLock,
 };
 
+use glam::DVec3;
+
 use super::{
     boundary::guard,
+    conditions::position,
     context::{ContextObject, wk_context},
     host,
     input::out,
@@ -20,13 +23,13 @@ use super::{
     veil::wk_shading_language,
 };
 use crate::{
-    error::Status,
-    ground::{SNIPPET_GLSL, SNIPPET_WGSL},
+    error::{Result, Status},
+    ground::{GroundTexture, SNIPPET_GLSL, SNIPPET_WGSL},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_ground_texture.rs"));
 
-/// The water of the terrain's cells on the GPU.
+/// The water of the terrain's cells on the GPU, of a grid or about a place on tiles.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_texture {
@@ -94,18 +97,52 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
         object.cell.check_not_lost()?;
         object.cell.drain();
         let ground = object.write().ground_texture()?;
-        let snow = ground.snow.as_ref().map(|texture| host::native_texture(&object.cell, texture)).transpose()?;
-        place.set(&wk_ground_texture {
-            texture: host::native_texture(&object.cell, &ground.texture)?,
-            generation: ground.generation,
-            revision: ground.revision,
-            width: ground.texture.width(),
-            height: ground.texture.height(),
-            uv_from_world: ground.uv_from_world.map(|row| row.to_array()),
-            snow_texture: snow.unwrap_or(0),
-            ..wk_ground_texture::INIT
-        });
+        place.set(&native(&object, &ground)?);
         Ok(Status::Ok)
+    })
+}
+
+/// Gets the native textures of the tiles about a place, up to date, as wk_context_get_ground_texture does those of a grid:
+/// a window of 512 x 512 cells, which has `center_m` in its middle quarter and moves by 64 cells at a time.
+/// `uv_from_world` is where it is now; where no tile has ground there is neither water nor snow. Call it after each
+/// wk_context_update, and for several cameras before you draw each. It costs nothing if nothing has changed; all of it is
+/// uploaded where the window has moved. Both textures stay the same as long as the context lives.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a place that is none; WK_ERROR_WRONG_ORDER where no tile reaches into the window;
+/// WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_get_terrain_texture(
+    context: *mut wk_context,
+    center_m: *const [f64; 3],
+    out_texture: *mut wk_ground_texture,
+) -> wk_status {
+    guard("wk_context_get_terrain_texture", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        // SAFETY: the caller's promise about `out_texture`.
+        let place = unsafe { layout::out_struct(&"out_texture", out_texture)? };
+        // SAFETY: the caller's promise about `center_m`.
+        let center = unsafe { position("center_m", center_m)? };
+        object.cell.host().check_own_shaders("context", "terrain textures")?;
+        object.cell.check_not_lost()?;
+        object.cell.drain();
+        let found = object.write().terrain_texture(DVec3::from_array(center));
+        place.set(&native(&object, &found.map_err(|e| e.renamed("center", "center_m"))?)?);
+        Ok(Status::Ok)
+    })
+}
+
+/// What a host gets of textures.
+fn native(object: &ContextObject, ground: &GroundTexture) -> Result<wk_ground_texture> {
+    let snow = ground.snow.as_ref().map(|texture| host::native_texture(&object.cell, texture)).transpose()?;
+    Ok(wk_ground_texture {
+        texture: host::native_texture(&object.cell, &ground.texture)?,
+        generation: ground.generation,
+        revision: ground.revision,
+        width: ground.texture.width(),
+        height: ground.texture.height(),
+        uv_from_world: ground.uv_from_world.map(|row| row.to_array()),
+        snow_texture: snow.unwrap_or(0),
+        ..wk_ground_texture::INIT
     })
 }
 

@@ -3,8 +3,8 @@
 //! The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it (wk_surface.snow_depth_m):
 //! patches first, then whole, on what faces up. With WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a
 //! state: it falls, settles, drifts, slides, melts into the ground's water and refreezes, on level, open ground and on
-//! each cell of the host's terrain (wk_context_set_ground_grid), and wk_context_save keeps it. Standing boxes
-//! (wk_context_set_shelters) keep it off and cast drifts.
+//! each cell of the host's terrain (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it.
+//! Standing boxes (wk_context_set_shelters) keep it off and cast drifts.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -184,7 +184,7 @@ impl Layer {
 /// Light on a layer from sun, sky and the layers above it, and from the ground; times `exposure`.
 pub(super) fn light_on(scene: &Scene, shape: &Shape, exposure: f64) -> LayerLight {
     let light = scene.brighter();
-    let albedo = scene.land_albedo;
+    let albedo = scene.ground_albedo;
     let top_m = shape.base_m + shape.thickness_m;
     let over = scene.conditions.cloud_light_at(light.direction.z, albedo[1], top_m);
     let (direct, sky) = light_above_clouds(scene, top_m);

@@ -116,7 +116,7 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
 /// [`crate::Status::InvalidArgument`] naming the parameter.
 pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     let (above, lights) = (&scene.above_fog, [&scene.sun, &scene.moon]);
-    let lux = ([above.sun_lux, above.moon_lux, above.sky_lux], scene.land_albedo);
+    let lux = ([above.sun_lux, above.moon_lux, above.sky_lux], scene.ground_albedo);
     let left = through_fog(&scene.conditions, &scene.place, lights, lux)?;
     scene.ground = GroundLight::new(left, lights, scene.place.altitude_m);
     Ok(())
@@ -162,7 +162,7 @@ impl Scene {
             to_sun: light.direction,
             sun_irradiance: lux,
             sky_irradiance: self.above_fog.sky_lux,
-            ground_albedo: self.land_albedo,
+            ground_albedo: self.ground_albedo,
         };
         let view = viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m);
         if let Some(law) = law {

@@ -60,7 +60,7 @@ impl Frame<'_> {
         };
         let level = |light: &crate::moment::Light| light.direction.z.max(0.0);
         let diffuse = [0, 1, 2].map(|i| ground.sky_lux[i] + rest[i] * level(other));
-        let albedo = scene.land_albedo;
+        let albedo = scene.ground_albedo;
         let up = [0, 1, 2].map(|i| albedo[i] * (diffuse[i] + facing[i] * level(main)));
         let numbers =
             Numbers { space: self.color_space, unit: self.cd_m2_per_unit, exposure, curve: context.tone_curve() };

@@ -135,7 +135,7 @@ impl Context {
         let keep = (1.0 - cover) * (scene.ground.sky_lux[1] as f32 / clear_e).min(1.0);
         let mut sh: Sh9 = std::array::from_fn(|k| [0, 1, 2].map(|i| (sun[k][i] + moon[k][i]) * keep));
         let kept = keep * clear_e / scene.ground.sky_lux[1].max(1e-9) as f32;
-        add_even_sky(&mut sh, even.map(|u| u * (1.0 - kept).max(0.0)), scene.land_albedo);
+        add_even_sky(&mut sh, even.map(|u| u * (1.0 - kept).max(0.0)), scene.ground_albedo);
         Ok(sh)
     }
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     context::Context,
     error::Result,
-    ground::GroundCell,
+    ground::{GroundCell, GroundTexture},
     terrain::{TerrainCells, TerrainDesc, TerrainPoint, TileKey},
 };
 
@@ -22,15 +22,17 @@ impl Context {
         self.held.ground.set_terrain(&mut self.world, desc)
     }
 
-    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is; one that is there
-    /// keeps its water.
+    /// Adds a tile, or gives all cells of one that is there other values. A new tile begins as wet as level ground is, with as much
+    /// simulated snow; one that is there keeps its water, and its snow wherever there is ground.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for more than
     /// [`MAX_TERRAIN_CELLS`](crate::terrain::MAX_TERRAIN_CELLS) in all. Nothing changes then.
     pub fn set_terrain_tile(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.set_tile((&mut self.world, waits), cells)
+        self.held.ground.set_tile((&mut self.world, waits), cells)?;
+        self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        Ok(())
     }
 
     /// Gives a rectangle of a tile's cells other heights, other classes, or both. Water that stands there runs where the ground lets it.
@@ -40,16 +42,20 @@ impl Context {
     /// As [`Context::set_terrain_tile`]; also for a tile that there is not.
     pub fn update_terrain(&mut self, cells: &TerrainCells<'_>) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.update_tile((&mut self.world, waits), cells)
+        self.held.ground.update_tile((&mut self.world, waits), cells)?;
+        self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        Ok(())
     }
 
-    /// Takes a tile away, with the water on it. Beside it water runs off.
+    /// Takes a tile away, with the water and the snow on it. Beside it water runs off.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that there is not.
     pub fn remove_terrain_tile(&mut self, key: TileKey) -> Result<()> {
         let waits = self.has_steps_to_do();
-        self.held.ground.remove_tile((&mut self.world, waits), key)
+        self.held.ground.remove_tile((&mut self.world, waits), key)?;
+        self.held.snowpack.tile_changed(&mut self.world, key, waits);
+        Ok(())
     }
 
     /// The lattice of the terrain's tiles.
@@ -71,6 +77,19 @@ impl Context {
     /// `None` for a tile that there is not.
     pub fn terrain_water(&self, key: TileKey) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         self.held.ground.tile_water(&self.world, key)
+    }
+
+    /// The water on the tiles about a place as textures for the host's own materials, up to date, and the snow where it is simulated: a
+    /// window of 512 x 512 cells, one texel a cell, that holds `center` in its middle quarter and moves by 64 cells at a time. What has
+    /// changed since the last call is uploaded and submitted; all of it where the window has moved. Both stay the same objects as long as
+    /// the context lives; where no tile has ground there is neither water nor snow. A host with several cameras calls it before each.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if `center` is no place; [`crate::Status::WrongOrder`] where no tile reaches into the window;
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
+    pub fn terrain_texture(&mut self, center: DVec3) -> Result<GroundTexture> {
+        let device = self.device().clone();
+        self.held.ground.terrain_texture(&device, &self.world, center)
     }
 
     /// The terrain under or above a position; `None` where no tile has ground.

@@ -15,7 +15,7 @@ use super::{
     texture::TerrainTextures,
     tiled::{Changed, SavedTiles, TiledWater},
     water::{Forcing, STEP_S, depth_at_mm},
-    window::{DrawnTerrain, RecentChanges},
+    window::{DrawnTerrain, RecentChanges, TerrainWindow},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -124,6 +124,8 @@ pub(crate) struct HeldGround {
     pub(super) tiled: Option<Box<TiledWater>>,
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
     pub(super) recent: RecentChanges,
+    /// The textures of tiles that the host has asked for.
+    pub(super) host_window: Option<Box<TerrainWindow>>,
 }
 
 /// A saved ground that can be shown.
@@ -159,6 +161,7 @@ impl HeldGround {
             tiled: None,
             waiting: Vec::new(),
             recent: RecentChanges::default(),
+            host_window: None,
         }
     }
 
@@ -280,6 +283,7 @@ impl HeldGround {
 
     /// What a camera sees of the ground.
     pub fn seen(&self, world: &World, now: &Moment<'_>) -> GroundSeen<'_> {
+        let has_cells = self.host.is_some() || self.tiled.is_some();
         GroundSeen {
             cover: self.cover_at(world, now.eye, now.scene.conditions.surface),
             hollows: &self.hollows,
@@ -290,8 +294,8 @@ impl HeldGround {
             has_wet_terrain: self.host.as_ref().is_some_and(|held| !held.water.is_dry())
                 || self.tiled.as_ref().is_some_and(|tiled| tiled.is_wet()),
             snow: snow_about(world, now),
-            terrain_has_snow: self.host.is_some() && world.snow.is_some(),
-            has_snowy_terrain: self.host.is_some() && world.snow.as_ref().is_some_and(|snow| snow.has_cells),
+            terrain_has_snow: has_cells && world.snow.is_some(),
+            has_snowy_terrain: has_cells && world.snow.as_ref().is_some_and(|snow| snow.has_cells),
             surface_class: self.surface_class,
         }
     }

@@ -2,16 +2,30 @@
 
 use std::sync::{Arc, MutexGuard, PoisonError};
 
+use glam::DVec3;
+
 use super::{
     GroundTexture,
     held::HeldGround,
     texture::{Filled, TerrainTextures, uv_from_world},
+    window::{DrawnTerrain, TerrainWindow},
 };
 use crate::{
     error::{Error, Result, Status},
     gpu::Device,
     surroundings::LyingSnow,
+    world::World,
 };
+
+/// Submits that what was written into textures is read next.
+fn hand_over<'a>(device: &Device, textures: impl Iterator<Item = &'a wgpu::Texture>) {
+    let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
+    let mut encoder = device.device.create_command_encoder(&label);
+    let state = wgpu::TextureUses::RESOURCE;
+    let each = textures.map(|texture| wgpu::TextureTransition { texture, selector: None, state });
+    encoder.transition_resources(std::iter::empty(), each);
+    device.submit(encoder);
+}
 
 impl HeldGround {
     /// The water on the host's terrain as a texture for the host's own materials, up to date: what has changed since is uploaded and
@@ -27,7 +41,7 @@ impl HeldGround {
                 "the ground's texture comes after wk_context_set_ground_grid: there is no terrain",
             ));
         };
-        let rows = uv_from_world(grid, to_enu);
+        let rows = uv_from_world(&DrawnTerrain::of_grid(grid, to_enu));
         let _entered = device.enter()?;
         let mut textures = self.locked();
         let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures, snow).cloned() else {
@@ -35,16 +49,43 @@ impl HeldGround {
         };
         let snow = textures.host_snow(device, snow.filter(|s| s.cells.len() as u32 == water.width() * water.height()));
         if std::mem::take(&mut textures.written) {
-            let label = wgpu::CommandEncoderDescriptor { label: Some("ground texture") };
-            let mut encoder = device.device.create_command_encoder(&label);
-            let read = wgpu::TextureUses::RESOURCE;
-            let both = std::iter::once(&water).chain(&snow);
-            let both = both.map(|texture| wgpu::TextureTransition { texture, selector: None, state: read });
-            encoder.transition_resources(std::iter::empty(), both);
-            device.submit(encoder);
+            hand_over(device, std::iter::once(&water).chain(&snow));
         }
         device.check()?;
         Ok(GroundTexture { texture: water, snow, generation, revision, uv_from_world: rows })
+    }
+
+    /// The water and the snow on the tiles about a place, for the host's own materials; see
+    /// [`Context::terrain_texture`](crate::context::Context::terrain_texture).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn terrain_texture(&mut self, device: &Arc<Device>, world: &World, center: DVec3) -> Result<GroundTexture> {
+        world.frame.place_at("center", center)?;
+        let none = || {
+            let wanted =
+                "the terrain's texture comes after wk_context_set_terrain_tile: no tile reaches into the window";
+            Error::new(Status::WrongOrder, wanted)
+        };
+        let drawn = world.set.tiles.as_deref().and_then(|terrain| DrawnTerrain::window(terrain, center));
+        let rows = uv_from_world(&drawn.ok_or_else(none)?);
+        let _entered = device.enter()?;
+        let mut window = self.host_window.take().unwrap_or_else(|| Box::new(TerrainWindow::for_host()));
+        let before = window.writes;
+        let ice = world.timeline.at(world.time_s).surface.ice;
+        if let Some(shown) = self.shown_tiles(world, ice) {
+            window.views(device, center, &shown);
+        }
+        let textures = window.textures().cloned();
+        let revision = window.writes;
+        self.host_window = Some(window);
+        let [water, snow] = textures.ok_or_else(none)?;
+        let snow = world.snow.is_some().then_some(snow);
+        if before != revision {
+            hand_over(device, std::iter::once(&water).chain(&snow));
+        }
+        device.check()?;
+        Ok(GroundTexture { texture: water, snow, generation: 1, revision, uv_from_world: rows })
     }
 
     /// Water and surface of the terrain for drawing, up to date if any of it is `wanted`; there are none without one.

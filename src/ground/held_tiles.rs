@@ -170,7 +170,8 @@ impl HeldGround {
     pub(super) fn shown_tiles<'a>(&'a self, world: &'a World, ice: f64) -> Option<Shown<'a>> {
         let terrain = world.set.tiles.as_deref()?;
         let water = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;
-        Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, recent: &self.recent })
+        let snow = world.snow.as_deref();
+        Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, recent: &self.recent, snow })
     }
 
     /// Water of each cell of a tile.

@@ -4,9 +4,9 @@
 //! share are within 1/2048 of their value, standing water within 1/2048 of it, so 0.06 mm at 100 mm. Standing water is signed, so that
 //! between a node under water and one above it the shore lies where the water's level meets the ground.
 
-use glam::{DMat3, DVec4};
+use glam::DVec4;
 
-use super::{GroundGrid, terrain::Terrain, terrain::TerrainWater};
+use super::{GroundGrid, terrain::Terrain, terrain::TerrainWater, window::DrawnTerrain};
 use crate::{gpu::Device, surroundings::LyingSnow};
 
 /// WGSL text of the functions that say how the water looks; see [`GroundTexture`].
@@ -33,12 +33,12 @@ pub struct GroundTexture {
     pub uv_from_world: [DVec4; 2],
 }
 
-/// Rows from the host's world to the texture's coordinates; `to_enu` turns its axes at the grid's origin.
-pub(crate) fn uv_from_world(grid: &GroundGrid, to_enu: DMat3) -> [DVec4; 2] {
+/// Rows from the host's world to the coordinates of a texture of these nodes.
+pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
     [0, 1].map(|i| {
-        let nodes = f64::from(grid.nodes[i]);
-        let row = to_enu.row(i) / (grid.cell_m * nodes);
-        row.extend(0.5 / nodes - row.dot(grid.origin))
+        let nodes = f64::from(drawn.nodes[i]);
+        let row = drawn.to_enu.row(i) / (drawn.cell_m * nodes);
+        row.extend(0.5 / nodes - row.dot(drawn.origin))
     })
 }
 
@@ -184,7 +184,7 @@ fn write_at(
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
+    use glam::{DMat3, DVec3};
 
     use super::*;
     use crate::gpu::shader;
@@ -199,7 +199,7 @@ mod tests {
             classes: Vec::new(),
         };
         let turned = DMat3::from_rotation_z(0.7);
-        let rows = uv_from_world(&grid, turned);
+        let rows = uv_from_world(&DrawnTerrain::of_grid(&grid, turned));
         for index in [0, 4, 7, 14] {
             let uv = rows.map(|r| r.dot(grid.node(index, &turned).extend(1.0)));
             let wanted = [(index % 5) as f64 + 0.5, (index / 5) as f64 + 0.5];

@@ -205,7 +205,7 @@ impl WetScene<'_> {
             fog_depth: self.fog_depth as f32,
             ground_light: f([0, 1, 2].map(|i| {
                 let light = lamp_lux[i] * lamp.apparent.z.max(0.0) + scene.ground.sky_lux[i];
-                0.5 * scene.land_albedo[i] * light / PI
+                0.5 * scene.ground_albedo[i] * light / PI
             })),
             film_level: level_of(film),
             axis_u: u,

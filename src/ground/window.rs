@@ -1,4 +1,5 @@
-//! The part of a terrain of tiles about a camera as textures, for the surface pass: what a grid has in [`super::texture`].
+//! The part of a terrain of tiles about a place as textures: about a camera for the surface pass, or about a place that the host names for
+//! its own shaders. What a grid has in [`super::texture`].
 //!
 //! A window of 512 x 512 cells lies about the camera, moved by 64 cells at a time. A texel is a cell, so a window of cells of 1 m reaches
 //! 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is filled and uploaded: all of it where the
@@ -15,6 +16,7 @@ use super::{
 };
 use crate::{
     gpu::Device,
+    surroundings::LyingSnow,
     terrain::{CellRect, Terrain},
 };
 
@@ -93,6 +95,8 @@ pub(super) struct Shown<'a> {
     pub even: GroundWater,
     pub ice: f32,
     pub recent: &'a RecentChanges,
+    /// What lies on the tiles, where it is led through time.
+    pub snow: Option<&'a LyingSnow>,
 }
 
 /// Of what the textures are.
@@ -104,18 +108,43 @@ struct Filled {
     water: (u64, u64),
     even: GroundWater,
     ice: f32,
+    /// Revision of the snow; 0 before there is any.
+    snow: u64,
 }
 
-/// The textures of a view's window.
+/// Which of its textures' parts a window fills.
+#[derive(Clone, Copy)]
+enum Part {
+    Ground,
+    Surface,
+    Water,
+    Snow,
+}
+
+/// The textures of a window: water, and the surface with its snow; for a host water and snow.
 #[derive(Default)]
 pub(crate) struct TerrainWindow {
+    is_for_host: bool,
+    /// How often anything was written.
+    pub(super) writes: u64,
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
     filled: Option<Filled>,
     water: Vec<[u16; 4]>,
+    /// Of the surface, or of the snow, which lies in as many rows below it.
     surface: Vec<[f32; 4]>,
 }
 
 impl TerrainWindow {
+    /// For a host's own shaders.
+    pub fn for_host() -> Self {
+        Self { is_for_host: true, ..Self::default() }
+    }
+
+    /// Water and snow, for a host.
+    pub(super) fn textures(&self) -> Option<&[wgpu::Texture; 2]> {
+        self.textures.as_ref().map(|(textures, _)| textures)
+    }
+
     /// Water and surface about a camera, up to date.
     pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
         let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
@@ -127,32 +156,46 @@ impl TerrainWindow {
             water: shown.water.version(),
             even: shown.even,
             ice: shown.ice,
+            snow: shown.snow.map_or(0, |snow| snow.revision),
         };
         let before = self.filled.filter(|f| f.rect == rect && f.id == now.id);
         let changed: Option<Vec<CellRect>> =
             before.and_then(|f| Some(shown.recent.since(f.revision, now.revision)?.collect()));
         let is_wet_anew = before.is_none_or(|f| (f.water, f.even, f.ice) != (now.water, now.even, now.ice));
         match changed {
-            Some(changed) => changed.iter().for_each(|c| self.fill(device, shown, (rect, c.grown(1)), [true, true])),
-            None => self.fill(device, shown, (rect, rect), [true, false]),
+            Some(changed) => changed.iter().for_each(|c| self.fill(device, shown, (rect, c.grown(1)), Part::Ground)),
+            None => self.fill(device, shown, (rect, rect), Part::Surface),
         }
         if is_wet_anew {
-            self.fill(device, shown, (rect, rect), [false, true]);
+            self.fill(device, shown, (rect, rect), Part::Water);
+        }
+        // A new texture has none.
+        if before.map_or(0, |f| f.snow) != now.snow {
+            self.fill(device, shown, (rect, rect), Part::Snow);
         }
         self.filled = Some(now);
         self.textures.as_ref().map_or([None, None], |t| t.1.clone().map(Some))
     }
 
-    /// Fills and uploads a part of a window: the surface, the water, or both.
-    fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), which: [bool; 2]) {
+    /// Fills and uploads a part of a window: the surface, the water, both, or the snow.
+    fn fill(&mut self, device: &Device, shown: &Shown<'_>, (window, part): (CellRect, CellRect), what: Part) {
         let Some(part) = window.meets(part) else { return };
-        self.read(shown, part, which);
-        let (textures, _) = self.textures.get_or_insert_with(|| made(device));
+        let is_snow = matches!(what, Part::Snow);
+        match what {
+            Part::Snow => self.read_snow(shown, part),
+            Part::Surface if self.is_for_host => return,
+            Part::Ground if self.is_for_host => self.read(shown, part, Part::Water),
+            _ => self.read(shown, part, what),
+        }
+        self.writes += 1;
+        let is_for_host = self.is_for_host;
+        let (textures, _) = self.textures.get_or_insert_with(|| made(device, is_for_host));
         let extent = [0, 1].map(|i| (part.high[i] - part.low[i]) as u32);
+        let below = if is_snow && !is_for_host { WINDOW as u32 } else { 0 };
         let at = [0, 1].map(|i| (part.low[i] - window.low[i]) as u32);
         let write = |texture: &wgpu::Texture, bytes: &[u8], texel: u32| {
             let to = wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x: at[0], y: at[1], z: 0 },
+                origin: wgpu::Origin3d { x: at[0], y: at[1] + below, z: 0 },
                 ..texture.as_image_copy()
             };
             let rows =
@@ -160,16 +203,47 @@ impl TerrainWindow {
             let size = wgpu::Extent3d { width: extent[0], height: extent[1], depth_or_array_layers: 1 };
             device.queue.write_texture(to, bytes, rows, size);
         };
-        if which[0] {
+        if !self.surface.is_empty() {
             write(&textures[1], bytemuck::cast_slice(&self.surface), 16);
         }
-        if which[1] {
-            write(&textures[0], bytemuck::cast_slice(&self.water), 8);
+        if !self.water.is_empty() {
+            write(&textures[usize::from(is_snow)], bytemuck::cast_slice(&self.water), 8);
+        }
+    }
+
+    /// Reads the snow of a part of the terrain, by rows.
+    fn read_snow(&mut self, shown: &Shown<'_>, part: CellRect) {
+        let width = (part.high[0] - part.low[0]) as usize;
+        let count = width * (part.high[1] - part.low[1]) as usize;
+        self.water.clear();
+        self.surface.clear();
+        if self.is_for_host {
+            self.water.resize(count, [0; 4]);
+        } else {
+            self.surface.resize(count, [0.0; 4]);
+        }
+        let (terrain, Some(snow)) = (shown.terrain, shown.snow) else { return };
+        for key in terrain.keys_within(part) {
+            let Some(tile) = snow.tiles.get(&[key.east, key.north]) else { continue };
+            let Some(own) = terrain.rect(key).meets(part).filter(|_| terrain.slot(key).is_some()) else { continue };
+            for y in own.low[1]..own.high[1] {
+                let from = terrain.in_tile([own.low[0], y]);
+                let to = (y - part.low[1]) as usize * width + (own.low[0] - part.low[0]) as usize;
+                let count = (own.high[0] - own.low[0]) as usize;
+                let Some(cells) = tile.cells.get(from..from + count) else { continue };
+                if self.is_for_host {
+                    self.water[to..to + count].copy_from_slice(cells);
+                    continue;
+                }
+                let texel = |c: &[u16; 4]| c.map(|v| f16::from_bits(v).to_f32());
+                self.surface[to..to + count].iter_mut().zip(cells).for_each(|(to, c)| *to = texel(c));
+            }
         }
     }
 
     /// Reads the texels of a part of the terrain, by rows.
-    fn read(&mut self, shown: &Shown<'_>, part: CellRect, [surface, water]: [bool; 2]) {
+    fn read(&mut self, shown: &Shown<'_>, part: CellRect, what: Part) {
+        let [surface, water] = [!matches!(what, Part::Water), !matches!(what, Part::Surface)];
         let width = (part.high[0] - part.low[0]) as usize;
         let count = width * (part.high[1] - part.low[1]) as usize;
         self.surface.clear();
@@ -231,21 +305,27 @@ fn half4(values: [f32; 4]) -> [u16; 4] {
 }
 
 /// Textures of a window, still empty, and their views.
-fn made(device: &Device) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
+fn made(device: &Device, is_for_host: bool) -> ([wgpu::Texture; 2], [wgpu::TextureView; 2]) {
     use wgpu::{TextureFormat as F, TextureUsages as U};
-    let texture = |label, format| {
+    let texture = |label, format, height| {
         device.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
-            size: wgpu::Extent3d { width: WINDOW as u32, height: WINDOW as u32, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d { width: WINDOW as u32, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: U::TEXTURE_BINDING | U::COPY_DST,
+            usage: U::TEXTURE_BINDING | U::COPY_DST | U::COPY_SRC,
             view_formats: &[],
         })
     };
-    let both = [texture("window water", F::Rgba16Float), texture("window surface", F::Rgba32Float)];
+    let rows = WINDOW as u32;
+    let second = if is_for_host {
+        texture("window snow", F::Rgba16Float, rows)
+    } else {
+        texture("window surface", F::Rgba32Float, 2 * rows)
+    };
+    let both = [texture("window water", F::Rgba16Float, rows), second];
     let views = [0, 1].map(|i| both[i].create_view(&Default::default()));
     (both, views)
 }

@@ -27,7 +27,7 @@ impl LightAround {
         let g = &scene.ground;
         let lux = if light == &scene.sun { g.sun_lux } else { g.moon_lux };
         let level = light.direction.z.max(0.0);
-        let albedo = scene.land_albedo;
+        let albedo = scene.ground_albedo;
         let below = [0, 1, 2].map(|i| albedo[i] * (g.sky_lux[i] + lux[i] * level) / PI);
         Self {
             above: DVec3::from(g.sky_lux) / PI,

@@ -197,8 +197,6 @@ pub struct Scene {
     pub conditions: Conditions,
     /// The planet's air under that weather.
     pub planet: Planet,
-    /// Share of the light that the land sends up again, a channel: the planet's ground and the snow on it.
-    pub land_albedo: [f64; 3],
     /// The sun.
     pub sun: Light,
     /// The moon.
@@ -207,6 +205,9 @@ pub struct Scene {
     pub color: [[f64; 3]; 3],
     /// Light on the ground.
     pub ground: GroundLight,
+    /// Share of it that the ground sends up again, at the planet's three wavelengths: the planet's, and as much as snow covers of it that
+    /// snow's albedo.
+    pub ground_albedo: [f64; 3],
     /// Light on the low layer of fog, rain, snow or dust, if the place lies in one; else the same.
     pub above_fog: GroundLight,
     /// Airglow and starlight, cd/m^2 a channel.

@@ -46,7 +46,7 @@ pub(super) struct Exchange {
 }
 
 /// What acts on columns during a step: the same for all of a field but for what is kept off.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Forcing {
     /// Units of ice that fall, their depth as they land, and the share of the albedo's way to that of new snow that they go.
     ice: i64,
@@ -59,8 +59,25 @@ pub(super) struct Forcing {
     refreezing: i64,
     sublimation: i64,
     albedo_kept: f64,
-    /// Per step of density: settling by grains of dry snow, and per unit of the mass above.
-    settling: Box<[[f64; 2]]>,
+}
+
+/// How snow settles in a step, per step of density: by its grains while it is dry, and per unit of the mass above.
+#[derive(Clone, Debug)]
+pub(super) struct Settling(Box<[[f64; 2]; DENSITIES]>);
+
+impl Settling {
+    pub fn new() -> Self {
+        Self(Box::new([[0.0; 2]; DENSITIES]))
+    }
+
+    /// Of air of this temperature, in a step so long.
+    pub fn set(&mut self, temperature_c: f64, seconds: f64) {
+        for (i, settling) in self.0.iter_mut().enumerate() {
+            let density = DENSITY_STEP * (i as f64 + 0.5);
+            let grains = laws::metamorphism_per_s(temperature_c, density, false) * seconds;
+            *settling = [grains, 0.5 * seconds / laws::viscosity(temperature_c, density) / UNITS];
+        }
+    }
 }
 
 fn units(amount: f64) -> i64 {
@@ -82,11 +99,6 @@ impl Forcing {
         let depth = snow / laws::new_density_kg_m3(t, wind) + pellets / laws::PELLETS_KG_M3;
         let rain = falling.rain_mm_h + falling.drizzle_mm_h;
         let (melt, by_sun) = laws::melt_mm_h(c, rain);
-        let settling = (0..DENSITIES).map(|i| {
-            let density = DENSITY_STEP * (i as f64 + 0.5);
-            let grains = laws::metamorphism_per_s(t, density, false) * seconds;
-            [grains, 0.5 * seconds / laws::viscosity(t, density) / UNITS]
-        });
         Self {
             ice: units(snow + pellets),
             depth: units(depth),
@@ -97,8 +109,12 @@ impl Forcing {
             refreezing: units(laws::refreezing_mm_h(t) * hours),
             sublimation: units(laws::sublimation_mm_h(c) * hours),
             albedo_kept: laws::albedo_kept(t > 0.0, seconds),
-            settling: settling.collect(),
         }
+    }
+
+    /// Whether any ice falls.
+    pub fn snows(&self) -> bool {
+        self.ice > 0
     }
 }
 
@@ -143,7 +159,7 @@ impl Column {
     }
 
     /// Leads the column through a step in which `open` of what falls gets to it.
-    pub fn step(&mut self, f: &Forcing, open: f64) -> Exchange {
+    pub fn step(&mut self, f: &Forcing, settling: &Settling, open: f64) -> Exchange {
         let mut gone = Exchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
         if self.ice == 0 && ice == 0 {
@@ -151,7 +167,7 @@ impl Column {
         }
         let rain = if open == 1.0 { f.rain } else { (f.rain as f64 * open) as i64 };
         gone.fallen = ice + rain;
-        self.settle(f);
+        self.settle(f, settling);
         if ice > 0 {
             self.land(ice, if open == 1.0 { f.depth } else { (f.depth as f64 * open) as i64 }, f.renewed * open);
         }
@@ -166,12 +182,12 @@ impl Column {
     }
 
     /// The snow settles under half of its own load, and its albedo goes to that of old snow.
-    fn settle(&mut self, f: &Forcing) {
+    fn settle(&mut self, f: &Forcing, settling: &Settling) {
         if self.depth == 0 {
             return;
         }
         let at = ((self.density_kg_m3() / DENSITY_STEP) as usize).min(DENSITIES - 1);
-        let [grains, load] = f.settling[at];
+        let [grains, load] = settling.0[at];
         let wet = if self.is_wet() { 2.0 } else { 1.0 };
         let shrinks = libm::exp(-(grains * wet + load * self.mass() as f64));
         self.depth = (self.depth as f64 * shrinks) as i64;

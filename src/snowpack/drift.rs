@@ -1,6 +1,6 @@
 //! Snow that the wind carries along the ground: from where it blows to where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is taken as it is. Else the surface's shape bends the mean wind: slopes that face
+//! **Wind at the surface.** A wind that varies in space is taken as it is, with its direction, but for what blows against the mean wind. Else the surface's shape bends the mean wind: slopes that face
 //! it quicken it and lee slopes calm it by 0.58 of their slope (Liston and Elder 2006), crests quicken it and hollows calm it by 2 H / L
 //! (Jackson and Hunt 1975). Behind what stands up the wind is calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of
 //! Winstral and Marks (2002), with the length of drifts behind solid fences (Tabler 2003).
@@ -8,19 +8,27 @@
 //! **Transport.** Along the wind the flux goes to what the wind can carry ([`saltation_kg_m_s`]): upwards over [`ERODING_M`] where there is
 //! loose snow, downwards over [`LANDING_M`]. One sweep down the wind does this for a whole step, whatever its length and the cells' size:
 //! what leaves a cell enters the next ones, what leaves the last ones is blown out. As much comes in from the country about the field as its
-//! snow yields. Only what hops is carried; suspended snow is drawn and not moved.
+//! snow yields. What hops ([`saltation_kg_m_s`]) and what is suspended ([`suspension_kg_m_s`]) are carried side by side: the second grows
+//! over [`LIFTING_M`] and lands over [`SINKING_M`], so that it reaches farther into a lee.
+//!
+//! The sweep goes from patch to patch down the wind, as from cell to cell: what leaves the last cells of one, and the line of a lee over
+//! them, is what comes to the next. Patches that have no snow, get none and have none to their lee are left out.
 
 use glam::DVec2;
 
 use super::{
     column::{Column, Part, UNITS},
-    field::{Books, Land, Step},
-    laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, threshold_m_s},
+    field::{Field, NONE, Patch, Step},
+    laws::{DRY_THRESHOLD_M_S, new_density_kg_m3, saltation_kg_m_s, suspension_kg_m_s, threshold_m_s},
 };
 
-/// Ways over which the flux grows and falls to 1/e, m.
+/// Ways over which the flux of what hops grows and falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 const LANDING_M: f64 = 3.0;
+/// The same of what is suspended: it is fully developed after some 500 to 1000 m (Takeuchi 1980), and sinks half a metre at 0.4 m/s in a
+/// wind of 12 m/s.
+const LIFTING_M: f64 = 250.0;
+const SINKING_M: f64 = 15.0;
 /// Run of the line below which the wind is calmed, over its fall.
 const LEE_RUN: f64 = 12.0;
 /// What the calm takes of the wind.
@@ -30,15 +38,37 @@ const LEAST_M: f64 = 1.0;
 /// Distance over which the surface's shape is looked at, m.
 const SHAPE_M: f64 = 10.0;
 
+/// What comes over a cell's border with the wind.
+#[derive(Clone, Copy, Debug, Default)]
+struct Air {
+    /// Snow that hops and that is suspended, in units of mass.
+    snow: [i64; 2],
+    /// Height of the lee's line there, and of what casts it, m; none at the end of the ground.
+    lee: Option<[f64; 2]>,
+}
+
+/// What a sweep knows of a patch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Edges {
+    /// What has left it down the wind: along each row to the east or west, along each column to the north or south.
+    left: [Vec<Air>; 2],
+    /// Wind over each cell: its parts along the sweep, m/s, or its speed over the mean wind's and nothing.
+    wind: Vec<[f64; 2]>,
+    /// Of the sweep that it was in last.
+    swept: u64,
+    /// Snow may lie on it or come to it in this sweep; and some may lie to its lee.
+    has_snow: bool,
+    has_lee: bool,
+}
+
 /// Room for a sweep.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drift {
-    /// Ground and snow, m.
-    surface: Vec<f64>,
-    /// Height of the lee's line over each cell, and of what casts it.
-    lee: Vec<[f64; 2]>,
-    /// What enters each cell, in units of mass.
-    entering: Vec<i64>,
+    /// Numbers of the patches down the wind.
+    order: Vec<u32>,
+    /// What comes to a patch: along each row, and along each column.
+    coming: [Vec<Air>; 2],
+    sweeps: u64,
 }
 
 /// How a sweep goes down the wind.
@@ -68,11 +98,44 @@ impl Way {
         }
     }
 
-    /// The neighbour up or down the wind along an axis.
-    fn neighbour(&self, place: [usize; 2], nodes: [usize; 2], axis: usize, down: bool) -> Option<usize> {
-        let mut to = place;
-        to[axis] = if self.back[axis] == down { to[axis].checked_sub(1)? } else { to[axis] + 1 };
-        (to[axis] < nodes[axis]).then(|| to[1] * nodes[0] + to[0])
+    /// The patch up or down the wind along an axis.
+    fn beside(&self, patch: &Patch, axis: usize, down: bool) -> u32 {
+        patch.near[2 * axis + usize::from(self.back[axis] != down)]
+    }
+}
+
+/// What a whole sweep is done with.
+struct Sweep<'a> {
+    way: &'a Way,
+    /// Along the mean wind.
+    mean: Through,
+    /// Units of mass for a flux of 1 kg/(m s) over the length of a cell's side.
+    per_flux: f64,
+    cell_m: f64,
+    landing_kg_m3: f64,
+    /// The wind over cells is that at their places.
+    is_local: bool,
+    revision: u64,
+}
+
+/// How the wind goes through a cell.
+#[derive(Clone, Copy)]
+struct Through {
+    /// Lengths of its direction's parts, together.
+    sum: f64,
+    /// Share of the flux that goes east or west.
+    across: f64,
+    /// Shares by which the fluxes of what hops and what is suspended grow and fall.
+    grown: [[f64; 2]; 2],
+}
+
+impl Through {
+    /// In this direction: the lengths of its parts.
+    fn new([x, y]: [f64; 2], cell_m: f64) -> Self {
+        let sum = x + y;
+        let share = |l: f64| 1.0 - libm::exp(-cell_m / (sum * l));
+        let grown = [[ERODING_M, LANDING_M], [LIFTING_M, SINKING_M]].map(|lengths| lengths.map(share));
+        Self { sum, across: x / sum, grown }
     }
 }
 
@@ -81,118 +144,250 @@ fn smooth(x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// Height of ground and snow so many cells along an axis from a cell, m, and how many they were: fewer at the end of the ground.
+fn along(field: &Field, (patch, place): (usize, [usize; 2]), axis: usize, up: bool, cells: usize) -> (f64, usize) {
+    let (mut at, mut patch, mut left) = (place, patch, cells);
+    loop {
+        let room = if up { field.size[axis] - 1 - at[axis] } else { at[axis] };
+        let next = field.patches[patch].near[2 * axis + usize::from(up)];
+        let ends = left <= room || next == NONE;
+        if ends {
+            let go = left.min(room);
+            at[axis] = if up { at[axis] + go } else { at[axis] - go };
+            left -= go;
+            break;
+        }
+        left -= room + 1;
+        (patch, at[axis]) = (next as usize, if up { 0 } else { field.size[axis] - 1 });
+    }
+    let (patch, cell) = (&field.patches[patch], at[1] * field.size[0] + at[0]);
+    if patch.is_hole(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
+}
+
 /// What the surface's shape makes of the wind at a cell, up to a factor.
-fn shaped(surface: &[f64], land: &Land, place: [usize; 2], unit: DVec2) -> f64 {
-    let reach = (SHAPE_M / land.cell_m).round().max(1.0) as usize;
-    let at = |axis: usize, up: bool| {
-        let mut to = place;
-        to[axis] = if up { (to[axis] + reach).min(land.nodes[axis] - 1) } else { to[axis].saturating_sub(reach) };
-        (surface[to[1] * land.nodes[0] + to[0]], to[axis].abs_diff(place[axis]) as f64 * land.cell_m)
+fn shaped(field: &Field, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
+    let reach = (SHAPE_M / field.cell_m).round().max(1.0) as usize;
+    let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
+    let at = |axis: usize, up: bool| match along(field, (patch, place), axis, up, reach) {
+        (_, 0) => (here, 0.0),
+        (height, cells) => (height, cells as f64 * field.cell_m),
     };
-    let here = surface[place[1] * land.nodes[0] + place[0]];
     let (mut slope, mut over) = (DVec2::ZERO, 0.0);
     for axis in 0..2 {
         let ((low, before), (high, after)) = (at(axis, false), at(axis, true));
-        slope[axis] = (high - low) / (before + after);
+        slope[axis] = if before + after > 0.0 { (high - low) / (before + after) } else { 0.0 };
         over += 0.25 * (2.0 * here - low - high);
     }
     let along = slope.dot(unit).clamp(-0.5, 0.5);
-    let crest = (8.0 * over / (reach as f64 * land.cell_m)).clamp(-0.4, 0.4);
+    let crest = (8.0 * over / (reach as f64 * field.cell_m)).clamp(-0.4, 0.4);
     1.0 + 0.58 * along + crest
+}
+
+/// What a lee leaves of the wind at a cell, up to a factor, and the line over it.
+fn calmed(patch: &Patch, cell: usize, way: &Way, before: [Air; 2]) -> (f64, Option<[f64; 2]>) {
+    let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
+    for (share, lee) in way.shares.into_iter().zip(before).filter_map(|(share, air)| Some((share, air.lee?))) {
+        line += share * lee[0];
+        caster += share * lee[1];
+        sum += share;
+    }
+    let fallen = (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, (caster / sum).max(LEAST_M)]);
+    if patch.is_hole(cell) {
+        return (1.0, fallen);
+    }
+    let (ground, stands) = (patch.surface_m(cell), patch.obstacle_m(cell));
+    let top = ground + stands;
+    match fallen.filter(|fallen| fallen[0] > top) {
+        Some(lee) => (1.0 - CALMED * smooth((lee[0] - ground) / lee[1]), Some(lee)),
+        None => (1.0, Some([top, stands.max(LEAST_M)])),
+    }
 }
 
 impl Drift {
     /// Carries snow by the wind of a step, if that is strong enough anywhere.
-    pub fn blow(&mut self, columns: &mut [Column], books: &mut Books, land: &Land, step: &Step<'_>) {
+    pub fn blow(&mut self, field: &mut Field, step: &Step<'_>) {
         let mean = step.wind.mean;
-        let strongest = match step.wind.local {
-            Some(local) => local.iter().fold(0.0, |most, w| w.length().max(most)),
-            None => 1.7 * mean.length(),
+        let lies = field.patches.iter().any(|p| !p.is_bare());
+        let too_calm = step.wind.local.is_none() && 1.7 * mean.length() <= DRY_THRESHOLD_M_S;
+        if too_calm || mean.length() < 0.1 || !(lies || step.country.ice > 0) {
+            return;
+        }
+        let way = Way::new(mean, field.cell_m);
+        let inflow = inflow(field, step, &way);
+        self.choose(field, &way, inflow != [[0; 2]; 2]);
+        if self.winds(field, step, &way) <= DRY_THRESHOLD_M_S {
+            return;
+        }
+        self.sweeps += 1;
+        let sweep = Sweep {
+            way: &way,
+            mean: Through::new([way.unit.x.abs(), way.unit.y.abs()], field.cell_m),
+            per_flux: step.seconds / field.cell_m * UNITS,
+            cell_m: field.cell_m,
+            landing_kg_m3: new_density_kg_m3(-5.0, way.speed),
+            is_local: step.wind.local.is_some(),
+            revision: step.revision,
         };
-        let loose = columns.iter().any(|c| c.ice > 0);
-        if strongest <= DRY_THRESHOLD_M_S || mean.length() < 0.1 || !(loose || step.country.ice > 0) {
-            return;
+        for at in 0..self.order.len() {
+            let patch = self.order[at] as usize;
+            self.come(field, patch, &way, inflow);
+            let edges = &field.patches[patch].edges;
+            let comes = self.coming.iter().flatten().any(|air| air.snow != [0; 2]);
+            if comes || !field.patches[patch].is_bare() || (edges.has_lee && !sweep.is_local) {
+                self.sweep(field, patch, &sweep);
+            }
         }
-        let way = Way::new(mean, land.cell_m);
-        self.begin(columns, land, step, &way);
-        books.blown_in += self.entering.iter().sum::<i64>();
-        let per_flux = (way.unit.x.abs() + way.unit.y.abs()) * step.seconds / land.cell_m * UNITS;
-        let grown = [ERODING_M, LANDING_M].map(|l| 1.0 - libm::exp(-way.through_m / l));
-        let landing = new_density_kg_m3(-5.0, way.speed);
-        let [nx, ny] = land.nodes;
+    }
+
+    /// Puts the patches in the order of the wind, and finds which of them snow may reach and which have such in their lee.
+    fn choose(&mut self, field: &mut Field, way: &Way, comes_in: bool) {
+        self.order.clear();
+        self.order.extend(0..field.patches.len() as u32);
+        let along = |v: i32, axis: usize| if way.back[axis] { -v } else { v };
+        let keys = |p: &u32| {
+            let [x, y] = field.patches[*p as usize].key;
+            [along(y, 1), along(x, 0)]
+        };
+        self.order.sort_unstable_by_key(keys);
+        let any = |field: &Field, patch: u32, down: bool| {
+            let near = [0, 1].map(|axis| way.beside(&field.patches[patch as usize], axis, down));
+            near.into_iter().filter(|n| *n != NONE).any(|n| {
+                let edges = &field.patches[n as usize].edges;
+                edges.has_snow || (down && edges.has_lee)
+            })
+        };
+        for patch in &self.order {
+            let lies = comes_in || !field.patches[*patch as usize].is_bare() || any(field, *patch, false);
+            field.patches[*patch as usize].edges.has_snow = lies;
+        }
+        for patch in self.order.iter().rev() {
+            field.patches[*patch as usize].edges.has_lee = any(field, *patch, true);
+        }
+    }
+
+    /// Finds the wind over the cells that snow may reach. Answers the strongest, m/s.
+    fn winds(&self, field: &mut Field, step: &Step<'_>, way: &Way) -> f64 {
+        let mut strongest: f64 = if step.wind.local.is_some() { 0.0 } else { 1.7 * way.speed };
+        let columns = field.size[0];
+        for at in self.order.iter().map(|at| *at as usize) {
+            if !field.patches[at].edges.has_snow {
+                continue;
+            }
+            let mut wind = std::mem::take(&mut field.patches[at].edges.wind);
+            wind.clear();
+            let patch = &field.patches[at];
+            wind.extend((0..patch.heights_m.len()).map(|cell| {
+                let place = [cell % columns, cell / columns];
+                let Some(local) = step.wind.local else { return [shaped(field, at, place, way.unit), 0.0] };
+                let on = [0, 1].map(|i| patch.key[i] * field.size[i] as i32 + place[i] as i32);
+                let found = local(on, patch.surface_m(cell));
+                strongest = strongest.max(found.length());
+                // Against the mean wind nothing is carried: there the air turns round behind something.
+                let along = |axis: usize| (if way.back[axis] { -found[axis] } else { found[axis] }).max(0.0);
+                [along(0), along(1)]
+            }));
+            field.patches[at].edges.wind = wind;
+        }
+        strongest
+    }
+
+    /// Finds what comes to a patch: from those up the wind, or what the country about the field yields.
+    fn come(&mut self, field: &mut Field, at: usize, way: &Way, inflow: [[i64; 2]; 2]) {
+        for (axis, inflow) in inflow.into_iter().enumerate() {
+            let before = way.beside(&field.patches[at], axis, false);
+            let coming = &mut self.coming[axis];
+            coming.clear();
+            match field.patches.get(before as usize).map(|p| &p.edges) {
+                Some(edges) if edges.swept == self.sweeps => coming.extend_from_slice(&edges.left[axis]),
+                Some(_) => coming.resize(field.size[1 - axis], Air::default()),
+                None => {
+                    coming.resize(field.size[1 - axis], Air { snow: inflow, lee: None });
+                    field.books.blown_in += inflow.iter().sum::<i64>() * field.size[1 - axis] as i64;
+                }
+            }
+        }
+    }
+
+    /// Sweeps over a patch: what comes to it becomes what leaves it.
+    fn sweep(&mut self, field: &mut Field, at: usize, sweep: &Sweep<'_>) {
+        let way = sweep.way;
+        let [nx, ny] = field.size;
+        let [by_rows, by_columns] = &mut self.coming;
+        let patch = &mut *field.patches[at];
+        patch.edges.swept = self.sweeps;
+        let mut changes = false;
         for j in 0..ny {
+            let row = if way.back[1] { ny - 1 - j } else { j };
             for i in 0..nx {
-                let place = [if way.back[0] { nx - 1 - i } else { i }, if way.back[1] { ny - 1 - j } else { j }];
-                let cell = place[1] * nx + place[0];
-                let calm = self.calmed(land, &way, place);
-                let mut leaving = self.entering[cell];
-                if !land.is_blocked(cell) {
-                    let speed = match step.wind.local {
-                        // Against the mean wind nothing is carried: there the air turns round behind something.
-                        Some(local) => local[cell].dot(way.unit).max(0.0),
-                        None => way.speed * calm * shaped(&self.surface, land, place, way.unit),
-                    };
-                    let carries = (saltation_kg_m_s(speed, DRY_THRESHOLD_M_S) * per_flux) as i64;
-                    leaving += exchange(&mut columns[cell], carries - leaving, speed, grown, landing);
-                }
-                for axis in 0..2 {
-                    let part = if axis == 0 { (leaving as f64 * way.shares[0]) as i64 } else { leaving };
-                    leaving -= part;
-                    match way.neighbour(place, land.nodes, axis, true) {
-                        Some(next) => self.entering[next] += part,
-                        None => books.blown_out += part,
-                    }
-                }
+                let column = if way.back[0] { nx - 1 - i } else { i };
+                let before = [by_rows[row], by_columns[column]];
+                let ([across, along], lee, changed) = sweep.cell(patch, row * nx + column, before);
+                changes |= changed;
+                by_rows[row] = Air { snow: across, lee };
+                by_columns[column] = Air { snow: along, lee };
             }
         }
-    }
-
-    /// Makes room, and lets in what the country about the field yields.
-    fn begin(&mut self, columns: &[Column], land: &Land, step: &Step<'_>, way: &Way) {
-        self.surface.clear();
-        self.surface.extend(land.heights_m.iter().zip(columns).map(|(h, c)| h + c.depth_m()));
-        self.lee.clear();
-        self.lee.resize(land.len(), [0.0; 2]);
-        self.entering.clear();
-        self.entering.resize(land.len(), 0);
-        let country = step.country;
-        let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
-        if country.ice == 0 || way.speed <= threshold {
-            return;
+        if changes {
+            patch.changed(sweep.revision);
         }
-        let flux = saltation_kg_m_s(way.speed, DRY_THRESHOLD_M_S) * step.seconds / land.cell_m * UNITS;
-        let [nx, ny] = land.nodes;
-        let (west, south) = (if way.back[0] { nx - 1 } else { 0 }, if way.back[1] { ny - 1 } else { 0 });
-        for j in 0..ny {
-            self.entering[j * nx + west] += (flux * way.unit.x.abs()) as i64;
-        }
-        for i in 0..nx {
-            self.entering[south * nx + i] += (flux * way.unit.y.abs()) as i64;
-        }
-    }
-
-    /// What a lee leaves of the wind at a cell, up to a factor.
-    fn calmed(&mut self, land: &Land, way: &Way, place: [usize; 2]) -> f64 {
-        let cell = place[1] * land.nodes[0] + place[0];
-        let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
         for axis in 0..2 {
-            if let Some(before) = way.neighbour(place, land.nodes, axis, false) {
-                line += way.shares[axis] * self.lee[before][0];
-                caster += way.shares[axis] * self.lee[before][1];
-                sum += way.shares[axis];
+            if way.beside(patch, axis, true) == NONE {
+                field.books.blown_out += self.coming[axis].iter().flat_map(|air| air.snow).sum::<i64>();
+            }
+            std::mem::swap(&mut self.coming[axis], &mut patch.edges.left[axis]);
+        }
+    }
+}
+
+impl Sweep<'_> {
+    /// Exchanges snow between the air over a cell and its column. Answers what leaves the cell along the row and along the column, hopping
+    /// and suspended, the lee's line over it, and whether its column of snow has changed.
+    fn cell(&self, patch: &mut Patch, cell: usize, before: [Air; 2]) -> ([[i64; 2]; 2], Option<[f64; 2]>, bool) {
+        let (calm, lee) = if self.is_local { (1.0, None) } else { calmed(patch, cell, self.way, before) };
+        let mut leaving = [0, 1].map(|kind| before[0].snow[kind] + before[1].snow[kind]);
+        if leaving == [0; 2] && patch.is_bare() {
+            return ([[0; 2]; 2], lee, false);
+        }
+        let (speed, through) = self.wind(patch.edges.wind[cell], calm);
+        let mut changes = false;
+        // Over what stands there, and over holes, it only passes.
+        if !patch.is_blocked(cell) {
+            let mut column = patch.column(cell);
+            for (kind, flux) in [saltation_kg_m_s, suspension_kg_m_s].into_iter().enumerate() {
+                let carries = (flux(speed, DRY_THRESHOLD_M_S) * through.sum * self.per_flux) as i64;
+                let lacking = carries - leaving[kind];
+                let gained = exchange(&mut column, lacking, speed, through.grown[kind], self.landing_kg_m3);
+                leaving[kind] += gained;
+                changes |= gained != 0;
+            }
+            if changes {
+                patch.put(cell, column);
             }
         }
-        let (ground, stands) = (self.surface[cell], land.obstacle_m(cell));
-        let top = ground + stands;
-        let fallen = if sum > 0.0 { line / sum - way.through_m / LEE_RUN } else { top };
-        if fallen > top {
-            let height = (caster / sum).max(LEAST_M);
-            self.lee[cell] = [fallen, height];
-            return 1.0 - CALMED * smooth((fallen - ground) / height);
-        }
-        self.lee[cell] = [top, stands.max(LEAST_M)];
-        1.0
+        let across = leaving.map(|snow| (snow as f64 * through.across) as i64);
+        ([across, [leaving[0] - across[0], leaving[1] - across[1]]], lee, changes)
     }
+
+    /// Speed of the wind over a cell, m/s, and how it goes through: as it blows there, or along the mean wind.
+    fn wind(&self, own: [f64; 2], calm: f64) -> (f64, Through) {
+        if !self.is_local {
+            return (self.way.speed * calm * own[0], self.mean);
+        }
+        let speed = libm::hypot(own[0], own[1]);
+        if speed > 0.0 { (speed, Through::new(own.map(|v| v / speed), self.cell_m)) } else { (0.0, self.mean) }
+    }
+}
+
+/// What the country about a field yields to each row and each column of cells at its border.
+fn inflow(field: &Field, step: &Step<'_>, way: &Way) -> [[i64; 2]; 2] {
+    let country = step.country;
+    let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
+    if country.ice == 0 || way.speed <= threshold {
+        return [[0; 2]; 2];
+    }
+    let fluxes = [saltation_kg_m_s, suspension_kg_m_s]
+        .map(|flux| flux(way.speed, DRY_THRESHOLD_M_S) * step.seconds / field.cell_m * UNITS);
+    [way.unit.x.abs(), way.unit.y.abs()].map(|part| fluxes.map(|flux| (flux * part) as i64))
 }
 
 /// Takes from a column towards `lacking` more in the air, or lands what is too much; answers what the air has gained.

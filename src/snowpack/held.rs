@@ -2,18 +2,21 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use super::{
     COARSE_STEP_S, STEP_S,
-    column::{Column, Forcing},
-    field::{Field, Step},
+    column::{Column, Forcing, Settling},
+    field::{FallsAt, Field, Step, WindAt, WindOver},
     laws, query,
     saved::SavedSnow,
     site::Site,
 };
 use crate::{
     error::{Error, Result, Status},
-    surroundings::{Meltwater, TerrainHeights},
-    weather::{Conditions, snow_cover},
+    surroundings::Meltwater,
+    terrain::{Terrain, TileKey},
+    weather::snow_cover,
     world::{HeldEffect, Within, World, parse_error},
 };
 
@@ -34,8 +37,6 @@ const SUN_EVERY_S: f64 = 300.0;
 /// Beyond this an update is fast-forward, s, and beyond this the rest is left out.
 const LONGEST_S: f64 = 86_400.0;
 const MOST_S: f64 = 30.0 * 86_400.0;
-/// Side of the blocks of cells that ask once what falls in regions.
-const BLOCK: usize = 16;
 /// Density of snow of which only the depth is reported, kg/m^3: a seasonal pack's (Sturm et al. 1995, "prairie").
 const REPORTED_KG_M3: f64 = 250.0;
 /// Where it is in a saved state.
@@ -63,6 +64,9 @@ pub(crate) struct HeldSnow {
     pub is_fast: bool,
     state: Option<SnowState>,
     site: Option<Site>,
+    /// Tiles that were changed while steps remained, on the terrain as it was then.
+    waiting: Vec<(TileKey, Arc<Terrain>)>,
+    settling: Settling,
     /// Steps that end up to here are coarse.
     coarse_until_s: f64,
     revision: u64,
@@ -111,6 +115,8 @@ impl HeldSnow {
             is_fast: false,
             state: None,
             site: None,
+            waiting: Vec::new(),
+            settling: Settling::new(),
             coarse_until_s: f64::NEG_INFINITY,
             revision: 1,
             published: 0,
@@ -141,6 +147,11 @@ impl HeldSnow {
         self.state.as_ref().map_or(0.0, |s| s.coarse_s)
     }
 
+    /// Of patches that change now.
+    pub(super) fn next_revision(&self) -> u64 {
+        self.revision + 1
+    }
+
     /// Says that the snow is another than before.
     pub(super) fn changed(&mut self) {
         self.revision += 1;
@@ -151,30 +162,79 @@ impl HeldSnow {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
         }
-        self.settle_on(world.set.terrain.as_ref());
+        self.settle_on(world);
         Ok(())
     }
 
-    /// Takes another terrain: one with nodes at the same places keeps its snow, on another it is as deep as on level ground.
-    fn settle_on(&mut self, terrain: Option<&Arc<TerrainHeights>>) {
+    /// Takes the terrain as it is by now: the snow stays on cells that stay; on new ones it is as deep as on level ground.
+    fn settle_on(&mut self, world: &World) {
+        match (&world.set.terrain, &world.set.tiles) {
+            (Some(grid), _) => {
+                let Some(state) = &mut self.state else { return };
+                if state.field.is_none() || !self.site.as_ref().is_some_and(|site| site.is_of(grid)) {
+                    self.site = Some(Site::of_grid(grid, self.site.as_ref(), &mut state.field, state.country));
+                    self.revision += 1;
+                }
+            }
+            (None, Some(tiles)) => self.settle_on_tiles(tiles),
+            (None, None) => {
+                let had = self.site.take().is_some() | self.state.as_mut().is_some_and(|s| s.field.take().is_some());
+                self.revision += u64::from(had);
+            }
+        }
+    }
+
+    fn settle_on_tiles(&mut self, terrain: &Terrain) {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        waiting.retain(|(key, then)| {
+            let later = then.revision > terrain.revision;
+            if then.id == terrain.id && !later {
+                self.follow_tile(then, *key);
+            }
+            then.id == terrain.id && later
+        });
+        self.waiting = waiting;
+        let revision = self.next_revision();
         let Some(state) = &mut self.state else { return };
-        let Some(terrain) = terrain else {
-            self.revision += u64::from(self.site.take().is_some() | state.field.take().is_some());
-            return;
-        };
-        if state.field.is_some()
-            && self.site.as_ref().is_some_and(|s| Arc::ptr_eq(&s.terrain, terrain) || s.terrain.hash == terrain.hash)
-        {
+        let known = self.site.as_ref().and_then(|site| site.seen(terrain));
+        if state.field.is_some() && known == Some(terrain.revision) {
             return;
         }
-        let keeps = self.site.as_ref().is_none_or(|site| site.has_places_of(terrain));
-        let site = Site::new(terrain.clone());
-        let fits = state.field.as_ref().is_some_and(|f| keeps && f.columns.len() == site.land.len());
-        if !fits {
-            state.field = Some(Field::new(&site.land, state.country));
+        let old = self.site.take();
+        let mut site = match old {
+            Some(site) if known.is_some() && state.field.is_some() => site,
+            old => Site::of_tiles(terrain, old.as_ref(), &mut state.field),
+        };
+        if let Some(field) = &mut state.field {
+            site.follow_all(terrain, (field, state.country, revision));
         }
         self.site = Some(site);
-        self.revision += 1;
+        self.revision = revision;
+    }
+
+    /// Lets the snow follow a change of one tile. Before it all of that terrain was known.
+    fn follow_tile(&mut self, terrain: &Terrain, key: TileKey) {
+        let revision = self.next_revision();
+        let Some(SnowState { field: Some(field), country, .. }) = &mut self.state else { return };
+        let Some(site) = self.site.as_mut().filter(|site| site.seen(terrain).is_some()) else { return };
+        site.follow(terrain, key, (field, *country, revision));
+        site.is_up_to(terrain);
+        self.revision = revision;
+    }
+
+    /// Takes a tile that the host has set, changed or removed. `waits`: steps remain of what was set before.
+    pub fn tile_changed(&mut self, world: &mut World, key: TileKey, waits: bool) {
+        let Some(terrain) = world.set.tiles.clone().filter(|_| self.state.is_some()) else { return };
+        if waits {
+            self.waiting.push((key, terrain));
+            return;
+        }
+        if self.site.as_ref().is_some_and(|site| site.seen(&terrain).is_some()) {
+            self.follow_tile(&terrain, key);
+        } else {
+            self.settle_on_tiles(&terrain);
+        }
+        self.publish(world);
     }
 
     /// Leads the snow through its next step.
@@ -198,23 +258,37 @@ impl HeldSnow {
             return Ok(());
         }
         let forcing = Forcing::new(&c, f, state.sunlight_w_m2, seconds);
-        let ran_off = state.country.step(&forcing, 1.0).ran_off;
+        self.settling.set(c.air.temperature_c, seconds);
+        let ran_off = state.country.step(&forcing, &self.settling, 1.0).ran_off;
         state.melted = Meltwater {
             covered: snow_cover(state.country.depth_m()),
             runoff_mm_h: ran_off as f64 / super::column::UNITS * 3600.0 / seconds,
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
-            if site.shade(&c, &world.set.shelters) {
-                field.clear_blocked(&site.land);
-            }
-            let forcings = forcings_over(site, world, (&c, middle_s), &forcing, (state.sunlight_w_m2, seconds));
+            let revision = self.revision + 1;
             // Asked as it stands at the step's end: of a solved field nothing earlier is known.
-            let wind = site.wind(world, end_s, &c, &field.columns);
-            let local: Option<Vec<_>> = wind.local.map(<[_]>::to_vec);
-            let wind = super::field::WindOver { mean: wind.mean, local: local.as_deref() };
-            let slides = end_s.rem_euclid(COARSE_STEP_S) == 0.0;
-            let country = &state.country;
-            field.step(&site.land, &Step { seconds, block: BLOCK, forcings: &forcings, wind, country, slides });
+            let wind = site.wind(world, end_s, &c);
+            let local = wind.as_ref().map(|wind| wind as WindAt<'_>);
+            if site.shade(field, &c, (&world.set.shelters, local)) {
+                field.clear_blocked(revision);
+            }
+            let site = &*site;
+            let sunlight_w_m2 = state.sunlight_w_m2;
+            let falls = |place: [i32; 2], height_m: f64| {
+                let falling = world.over().falling_at(site.place(place, height_m), middle_s, c).precipitation;
+                Forcing::new(&c, &falling, sunlight_w_m2, seconds)
+            };
+            let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
+            field.step(&Step {
+                seconds,
+                even: &forcing,
+                falls: (!world.set.regions.is_empty()).then_some(&falls as FallsAt<'_>),
+                settling: &self.settling,
+                wind: WindOver { mean, local },
+                country: &state.country,
+                slides: end_s.rem_euclid(COARSE_STEP_S) == 0.0,
+                revision,
+            });
             state.melted = Meltwater { covered: field.cover, runoff_mm_h: field.runoff_mm_h };
         }
         self.melts.push((from_s, seconds, state.melted));
@@ -238,40 +312,15 @@ impl HeldSnow {
     pub fn take_up(&mut self, world: &mut World, other: &mut LoadedSnow) {
         std::mem::swap(&mut self.state, &mut other.0);
         self.site = None;
+        self.waiting.clear();
         self.coarse_until_s = f64::NEG_INFINITY;
-        self.settle_on(world.set.terrain.as_ref());
+        self.settle_on(world);
         self.changed();
         self.forgets = true;
         self.melts.clear();
         self.melts.extend(self.state.as_ref().map(|s| (s.time_s - STEP_S, STEP_S, s.melted)));
         self.publish(world);
     }
-}
-
-/// What acts on each block of cells: one for all without regions.
-fn forcings_over(
-    site: &Site,
-    world: &World,
-    (c, middle_s): (&Conditions, f64),
-    even: &Forcing,
-    (sunlight_w_m2, seconds): (f64, f64),
-) -> Vec<Forcing> {
-    if world.set.regions.is_empty() {
-        return vec![even.clone()];
-    }
-    let [nx, ny] = site.land.nodes;
-    let mut forcings: Vec<Forcing> = Vec::new();
-    let mut last = c.precipitation;
-    for row in (0..ny).step_by(BLOCK) {
-        for column in (0..nx).step_by(BLOCK) {
-            let middle = (row + BLOCK / 2).min(ny - 1) * nx + (column + BLOCK / 2).min(nx - 1);
-            let falling = world.over().falling_at(site.cell_position(middle), middle_s, *c).precipitation;
-            let same = forcings.last().filter(|_| falling == last).cloned();
-            forcings.push(same.unwrap_or_else(|| Forcing::new(c, &falling, sunlight_w_m2, seconds)));
-            last = falling;
-        }
-    }
-    forcings
 }
 
 impl HeldEffect for HeldSnow {
@@ -288,7 +337,7 @@ impl HeldEffect for HeldSnow {
     }
 
     fn lead(&mut self, world: &World, within: Within) -> Result<Status> {
-        self.settle_on(world.set.terrain.as_ref());
+        self.settle_on(world);
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
             if end_s > world.time_s {
@@ -319,14 +368,10 @@ impl HeldEffect for HeldSnow {
         snow.country = query::seen(&state.country);
         snow.cover = snow_cover(state.country.depth_m());
         snow.threshold_m_s = laws::threshold_m_s(state.country.is_wet(), state.country.density_kg_m3());
-        snow.cells.clear();
-        if let Some(field) = &state.field {
-            snow.cells.extend(field.columns.iter().map(|c| {
-                let s = query::seen(c);
-                [s.depth_m, s.density_kg_m3, s.wetness, s.albedo].map(|v| v as f32)
-            }));
+        match &state.field {
+            Some(field) => query::publish(field, snow),
+            None => snow.show_none(),
         }
-        snow.has_cells = snow.cells.iter().any(|c| c[0] > 0.0);
         snow.revision += 1;
     }
 
@@ -340,10 +385,10 @@ impl HeldEffect for HeldSnow {
         }
     }
 
-    fn save(&self, table: &mut toml::Table) -> Result<()> {
+    fn save_in(&self, _world: &World, for_hash: bool, table: &mut toml::Table) -> Result<()> {
         let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
         if let Some(state) = &self.state {
-            table.insert(KEY.into(), toml::Value::try_from(SavedSnow::of(state)).map_err(written)?);
+            table.insert(KEY.into(), toml::Value::try_from(SavedSnow::of(state, for_hash)).map_err(written)?);
         }
         Ok(())
     }

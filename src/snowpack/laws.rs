@@ -100,6 +100,17 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
+/// What is suspended over the ground where the wind has blown long enough, kg/(m s), for winds at 10 m: Tabler's (1990, U^3.8 / 233847)
+/// for all snow up to 5 m less what hops, from the threshold on by the share of the friction that is over it, as in what hops.
+pub fn suspension_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
+    if wind_m_s <= threshold_m_s {
+        return 0.0;
+    }
+    let (u, t) = (drift_friction_velocity_m_s(wind_m_s), drift_friction_velocity_m_s(threshold_m_s));
+    let all = libm::pow(wind_m_s, 3.8) / 233_847.0 * (1.0 - t * t / (u * u));
+    (all - saltation_kg_m_s(wind_m_s, threshold_m_s)).max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,5 +168,11 @@ mod tests {
         let q = saltation_kg_m_s(15.0, 7.7);
         assert!((0.01..0.03).contains(&q), "{q} kg/(m s)");
         assert!(saltation_kg_m_s(7.8, 7.7) < 0.02 * q);
+        assert_eq!(suspension_kg_m_s(7.7, 7.7), 0.0);
+        // Far above the threshold all is Tabler's: 0.376 kg/(m s) at 20 m/s. Most of it is suspended.
+        let (hops, floats) = (saltation_kg_m_s(20.0, 7.7), suspension_kg_m_s(20.0, 7.7));
+        assert!(((hops + floats) / 0.376 - 1.0).abs() < 0.15 && floats > 5.0 * hops, "{hops} {floats}");
+        let near = suspension_kg_m_s(8.0, 7.7);
+        assert!((0.0..2.0 * saltation_kg_m_s(8.0, 7.7)).contains(&near), "{near}");
     }
 }

@@ -1,12 +1,20 @@
 //! What a host asks of lying snow.
 
 use glam::DVec3;
+use half::f16;
 
 use super::{
     column::{Column, UNITS},
+    field::Field,
     held::HeldSnow,
+    site::ground_m,
 };
-use crate::{error::Result, surroundings::SnowHere, weather::snow_cover, world::World};
+use crate::{
+    error::Result,
+    surroundings::{LyingSnow, SnowHere},
+    weather::snow_cover,
+    world::World,
+};
 
 /// How a wheel holds on the ground, as far as snow decides it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -101,6 +109,35 @@ pub(super) fn seen(column: &Column) -> SnowHere {
     }
 }
 
+fn texel(column: &Column) -> [f32; 4] {
+    let s = seen(column);
+    [s.depth_m, s.density_kg_m3, s.wetness, s.albedo].map(|v| v as f32)
+}
+
+/// Puts what lies on a field's cells where what draws it reads it.
+pub(super) fn publish(field: &Field, snow: &mut LyingSnow) {
+    if field.lattice.is_none() {
+        let cells = field.patches.first().map_or(0, |patch| patch.heights_m.len());
+        snow.tiles.clear();
+        snow.cells.clear();
+        snow.cells.extend((0..cells).map(|cell| texel(&field.patches[0].column(cell))));
+        snow.has_cells = snow.cells.iter().any(|c| c[0] > 0.0);
+        return;
+    }
+    snow.cells.clear();
+    let lies = |key: &[i32; 2]| field.find(*key).is_ok_and(|at| !field.patches[at].is_bare());
+    snow.tiles.retain(|key, _| lies(key));
+    for patch in field.patches.iter().filter(|patch| !patch.is_bare()) {
+        let tile = snow.tiles.entry(patch.key).or_default();
+        if tile.revision != patch.revision {
+            tile.cells.clear();
+            tile.cells.extend(patch.columns.iter().map(|c| texel(c).map(|v| f16::from_f32(v).to_bits())));
+            tile.revision = patch.revision;
+        }
+    }
+    snow.has_cells = !snow.tiles.is_empty();
+}
+
 impl HeldSnow {
     /// Snow at a place; see [`Context::snow_at`](crate::context::Context::snow_at).
     ///
@@ -112,10 +149,13 @@ impl HeldSnow {
         let Some((site, field)) = self.field() else {
             return Ok(SnowAt::of(seen(&country), country.mass_kg_m2(), position));
         };
-        let Some(about) = site.about(position) else {
+        let Some(about) = site.about(field, position) else {
             return Ok(SnowAt::of(seen(&country), country.mass_kg_m2(), position));
         };
-        let between = |of: &dyn Fn(&Column) -> f64| about.iter().map(|(c, s)| of(&field.columns[*c]) * s).sum::<f64>();
+        let between = |of: &dyn Fn(&Column) -> f64| {
+            let each = about.iter().flatten().map(|((patch, cell), s)| of(&field.patches[*patch].column(*cell)) * s);
+            each.sum::<f64>()
+        };
         let (depth_m, mass) = (between(&Column::depth_m), between(&Column::mass_kg_m2));
         let by_mass = |of: &dyn Fn(&Column) -> f64| {
             if mass > 0.0 { between(&|c| of(c) * c.mass_kg_m2()) / mass } else { 0.0 }
@@ -126,15 +166,14 @@ impl HeldSnow {
             wetness: by_mass(&Column::wetness),
             albedo: by_mass(&Column::albedo),
         };
-        let ground: f64 = about.iter().map(|(c, s)| site.land.heights_m[*c] * s).sum();
-        let local = site.local(position).truncate().extend(ground + depth_m);
+        let local = site.local(position).truncate().extend(ground_m(field, &about) + depth_m);
         Ok(SnowAt::of(here, mass, site.position(local)))
     }
 
     /// Where the mass on the host's terrain came from and went; `None` without a terrain.
     pub fn books(&self) -> Option<SnowBooks> {
-        let (site, field) = self.field()?;
-        let kg = |units: i64| units as f64 / UNITS * site.land.cell_m * site.land.cell_m;
+        let (_, field) = self.field()?;
+        let kg = |units: i64| units as f64 / UNITS * field.cell_m * field.cell_m;
         let b = field.books;
         Some(SnowBooks {
             began_kg: kg(b.began),

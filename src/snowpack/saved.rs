@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     column::Column,
-    field::{Books, Field},
+    field::{Books, Field, Patch},
     held::SnowState,
 };
 use crate::{
@@ -30,13 +30,33 @@ pub(super) struct SavedSnow {
     field: Option<SavedField>,
 }
 
+/// Cells of a grid, or of each tile.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedField {
     cells: usize,
-    columns: [String; 4],
+    /// Of a grid: ice, water, depth and albedo.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    columns: Option<[String; 4]>,
     books: [i64; 7],
     melted: [f64; 2],
+    /// Of tiles: the origin of their lattice and its cells, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lattice: Option<[f64; 4]>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    tiles: Vec<SavedTile>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedTile {
+    tile: [i32; 2],
+    /// As of a grid; left out without snow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    columns: Option<[String; 4]>,
+    /// In their place where the state is only hashed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hash: Option<String>,
 }
 
 fn is_zero(v: &f64) -> bool {
@@ -51,40 +71,82 @@ fn column([ice, water, depth, albedo]: [i64; 4]) -> Option<Column> {
     Some(Column { ice, water, depth, albedo }).filter(Column::is_sound)
 }
 
-impl SavedField {
-    fn of(field: &Field) -> Self {
-        let list = |i: usize| words(field.columns.iter().map(move |c| numbers(c)[i] as u64));
+/// The numbers of all columns, as lists.
+fn lists(patch: &Patch, cells: usize) -> [String; 4] {
+    [0, 1, 2, 3].map(|i| words((0..cells).map(move |cell| numbers(&patch.column(cell))[i] as u64)))
+}
+
+/// The columns that [`lists`] wrote, if they can be so many.
+fn of_lists(columns: &[String; 4], cells: usize) -> Option<Vec<Column>> {
+    let [ice, water, depth, albedo] = [0, 1, 2, 3].map(|i| values(&columns[i], cells));
+    let (ice, water, depth, albedo) = (ice?, water?, depth?, albedo?);
+    let at = |i: usize| column([ice[i] as i64, water[i] as i64, depth[i] as i64, albedo[i] as i64]);
+    (0..cells).map(at).collect()
+}
+
+impl SavedTile {
+    fn of(patch: &Patch, cells: usize, for_hash: bool) -> Self {
+        let lies = !patch.is_bare();
         Self {
-            cells: field.columns.len(),
-            columns: [list(0), list(1), list(2), list(3)],
+            tile: patch.key,
+            columns: (lies && !for_hash).then(|| lists(patch, cells)),
+            hash: (lies && for_hash).then(|| format!("{:x}", patch.hash())),
+        }
+    }
+}
+
+impl SavedField {
+    fn of(field: &Field, for_hash: bool) -> Self {
+        let cells = field.size[0] * field.size[1];
+        let is_grid = field.lattice.is_none();
+        let tiles = field.patches.iter().filter(|_| !is_grid);
+        Self {
+            cells,
+            columns: field.patches.first().filter(|_| is_grid).map(|patch| lists(patch, cells)),
             books: field.books.to_array(),
             melted: [field.cover, field.runoff_mm_h],
+            lattice: field.lattice,
+            tiles: tiles.map(|patch| SavedTile::of(patch, cells, for_hash)).collect(),
         }
     }
 
+    /// What was saved, on ground that is still to be known.
     fn field(&self) -> Option<Field> {
-        if self.cells > MOST_CELLS {
+        if self.cells.saturating_mul(self.tiles.len().max(1)) > MOST_CELLS
+            || self.columns.is_some() == self.lattice.is_some()
+        {
             return None;
         }
-        let [ice, water, depth, albedo] = [0, 1, 2, 3].map(|i| values(&self.columns[i], self.cells));
-        let (ice, water, depth, albedo) = (ice?, water?, depth?, albedo?);
-        let at = |i: usize| column([ice[i] as i64, water[i] as i64, depth[i] as i64, albedo[i] as i64]);
-        let mut field = Field::of((0..self.cells).map(at).collect::<Option<_>>()?);
+        let side = self.cells.isqrt();
+        let mut field = Field::new(if self.lattice.is_some() { [side; 2] } else { [self.cells, 1] }, 1.0);
+        if let Some([x, y, z, cell_m]) = self.lattice.filter(|_| side * side == self.cells) {
+            field.lattice = Some([x, y, z, cell_m]);
+            field.cell_m = cell_m;
+        }
+        if let Some(columns) = &self.columns {
+            field.add(Patch::loaded([0, 0], of_lists(columns, self.cells)?));
+        }
+        for tile in &self.tiles {
+            let columns = tile.columns.as_ref().map(|columns| of_lists(columns, self.cells));
+            field.find(tile.tile).err()?;
+            field.add(Patch::loaded(tile.tile, columns.unwrap_or_else(|| Some(Vec::new()))?));
+        }
         field.books = Books::from_array(self.books);
         [field.cover, field.runoff_mm_h] = self.melted;
-        (field.books.balance() == field.lying()).then_some(field)
+        (field.books.balance() == field.lying() && self.lattice == field.lattice).then_some(field)
     }
 }
 
 impl SavedSnow {
-    pub fn of(state: &SnowState) -> Self {
+    /// `for_hash`: of each tile's snow its hash alone.
+    pub fn of(state: &SnowState, for_hash: bool) -> Self {
         Self {
             time_s: state.time_s,
             sunlight_w_m2: state.sunlight_w_m2,
             country: numbers(&state.country),
             melted: [state.melted.covered, state.melted.runoff_mm_h],
             coarse_s: state.coarse_s,
-            field: state.field.as_ref().map(SavedField::of),
+            field: state.field.as_ref().map(|field| SavedField::of(field, for_hash)),
         }
     }
 

@@ -1,18 +1,19 @@
-//! Where a field of snow lies: the heights of the world's terrain, the standing boxes on it, and the wind over it.
+//! Where a field of snow lies: the heights of the world's grid or tiles, the standing boxes on them, and the wind over them.
 //!
 //! All that the snow knows of the host's terrain goes through here.
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     column::Column,
-    field::{Land, WindOver},
+    field::{Field, Patch, WindAt},
 };
 use crate::{
     falling::flakes::aggregate_speed_m_s,
     surroundings::{Shelter, TerrainHeights, shelter::sheltered},
+    terrain::{Terrain, TileKey},
     weather::Conditions,
     world::World,
 };
@@ -28,118 +29,267 @@ const ASKED_M: f64 = 2.0;
 /// The flakes whose fall decides what boxes keep off, mm.
 const FLAKE_MM: f64 = 4.0;
 
-/// The ground of a field of snow.
-pub(super) struct Site {
-    pub terrain: Arc<TerrainHeights>,
-    pub land: Land,
-    boxes: Vec<Shelter>,
-    slant: DVec3,
-    winds: Vec<DVec2>,
+/// Of what the ground is.
+enum Ground {
+    Grid(Arc<TerrainHeights>),
+    /// Tiles of the terrain with this number, as of a revision.
+    Tiles {
+        id: u64,
+        revision: u64,
+    },
 }
 
+/// The ground of a field of snow.
+pub(super) struct Site {
+    ground: Ground,
+    origin: DVec3,
+    to_enu: DMat3,
+    cell_m: f64,
+    boxes: Vec<Shelter>,
+    slant: DVec3,
+    /// Ground has changed since the boxes were looked at.
+    stale: bool,
+}
+
+/// The four cells about a place, each by its patch, and their shares.
+pub(super) type About = [Option<((usize, usize), f64)>; 4];
+
 impl Site {
-    pub fn new(terrain: Arc<TerrainHeights>) -> Self {
-        let land = Land {
-            nodes: terrain.nodes.map(|n| n as usize),
-            cell_m: terrain.cell_m,
-            heights_m: terrain.heights_m.iter().map(|h| f64::from(*h)).collect(),
-            obstacles_m: Vec::new(),
-            sheltered: Vec::new(),
+    fn new(ground: Ground, (origin, to_enu): (DVec3, DMat3), cell_m: f64) -> Self {
+        Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, stale: true }
+    }
+
+    /// Of a grid. The snow that lies on one with nodes at the same places stays, be it `old`'s or loaded; on another it is as deep as on
+    /// level ground.
+    pub fn of_grid(
+        terrain: &Arc<TerrainHeights>,
+        old: Option<&Self>,
+        field: &mut Option<Field>,
+        country: Column,
+    ) -> Self {
+        let t = terrain;
+        let keeps = match old.map(|old| &old.ground) {
+            Some(Ground::Grid(o)) => (o.origin, o.cell_m, o.nodes) == (t.origin, t.cell_m, t.nodes),
+            Some(Ground::Tiles { .. }) => false,
+            None => true,
         };
-        Self { terrain, land, boxes: Vec::new(), slant: DVec3::ZERO, winds: Vec::new() }
+        let size = t.nodes.map(|n| n as usize);
+        let fits = |f: &Field| f.lattice.is_none() && f.patches.len() == 1 && f.len() == t.heights_m.len();
+        match field.as_mut().filter(|f| keeps && fits(f)) {
+            Some(field) => {
+                (field.size, field.cell_m) = (size, t.cell_m);
+                field.patches[0].set_ground(t.heights_m.clone(), Vec::new());
+            }
+            None => {
+                let mut new = Field::new(size, t.cell_m);
+                new.add(Patch::new([0, 0], t.heights_m.clone(), Vec::new(), country));
+                *field = Some(new);
+            }
+        }
+        Self::new(Ground::Grid(t.clone()), (t.origin, t.to_enu), t.cell_m)
     }
 
-    /// Whether another terrain has its nodes at the same places, however high.
-    pub fn has_places_of(&self, other: &TerrainHeights) -> bool {
-        let t = &self.terrain;
-        (t.origin, t.cell_m, t.nodes) == (other.origin, other.cell_m, other.nodes)
+    /// Of tiles, none of which is known yet. The snow on tiles of the same lattice stays.
+    pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<Field>) -> Self {
+        let lattice = [terrain.desc.origin.x, terrain.desc.origin.y, terrain.desc.origin.z, terrain.desc.cell_m];
+        let fits = |f: &Field| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
+        if old.is_some() || !field.as_ref().is_some_and(fits) {
+            let mut new = Field::new([terrain.side(); 2], terrain.desc.cell_m);
+            new.lattice = Some(lattice);
+            *field = Some(new);
+        }
+        let ground = Ground::Tiles { id: terrain.id, revision: 0 };
+        Self::new(ground, (terrain.desc.origin, terrain.to_enu), terrain.desc.cell_m)
     }
 
-    /// East and north of the first node, m, and the height over it.
+    /// Whether it is of this grid.
+    pub fn is_of(&self, terrain: &Arc<TerrainHeights>) -> bool {
+        matches!(&self.ground, Ground::Grid(own) if Arc::ptr_eq(own, terrain) || own.hash == terrain.hash)
+    }
+
+    /// Whether it is of these tiles, and their revision when they were last looked at.
+    pub fn seen(&self, terrain: &Terrain) -> Option<u64> {
+        match self.ground {
+            Ground::Tiles { id, revision } if id == terrain.id => Some(revision),
+            _ => None,
+        }
+    }
+
+    /// Takes all tiles as the terrain has them by now.
+    pub fn follow_all(&mut self, terrain: &Terrain, (field, country, revision): (&mut Field, Column, u64)) {
+        for at in (0..field.patches.len()).rev() {
+            let [east, north] = field.patches[at].key;
+            if terrain.slot(TileKey::new(east, north)).is_none() {
+                field.remove(at);
+            }
+        }
+        for (_, tile) in terrain.all() {
+            self.follow(terrain, tile.key, (field, country, revision));
+        }
+        self.is_up_to(terrain);
+    }
+
+    /// Takes one tile as the terrain has it by now: one that has gone takes its snow with it, a new one has that of the country, one that
+    /// has changed keeps it wherever there is ground.
+    pub fn follow(&mut self, terrain: &Terrain, key: TileKey, (field, country, revision): (&mut Field, Column, u64)) {
+        let at = field.find([key.east, key.north]);
+        let tile = terrain.slot(key).map(|slot| terrain.tile(slot));
+        let (tile, ground) = match (tile, at) {
+            (Some(tile), _) => {
+                if at.is_ok_and(|at| field.patches[at].tile_revision == tile.revision) {
+                    return;
+                }
+                let hole = |cell| !tile.has_ground(cell);
+                let any = tile.says_classes() && (0..tile.heights_m.len()).any(hole);
+                let holes = if any { (0..tile.heights_m.len()).map(hole).collect() } else { Vec::new() };
+                (tile, (tile.heights_m.clone(), holes))
+            }
+            (None, at) => {
+                at.into_iter().for_each(|at| field.remove(at));
+                self.stale = true;
+                return;
+            }
+        };
+        match at {
+            Ok(at) => {
+                let patch = &mut field.patches[at];
+                patch.set_ground(ground.0, ground.1);
+                patch.tile_revision = tile.revision;
+                field.books.taken += patch.clear_blocked();
+                patch.changed(revision);
+            }
+            Err(_) => {
+                let mut patch = Patch::new([key.east, key.north], ground.0, ground.1, country);
+                patch.tile_revision = tile.revision;
+                patch.changed(revision);
+                field.add(patch);
+            }
+        }
+        self.stale = true;
+    }
+
+    /// Says that all of the terrain is known.
+    pub fn is_up_to(&mut self, terrain: &Terrain) {
+        if let Ground::Tiles { revision, .. } = &mut self.ground {
+            *revision = terrain.revision;
+        }
+    }
+
+    /// East and north of the first cell of the lattice, m, and the height over it.
     pub fn local(&self, position: DVec3) -> DVec3 {
-        self.terrain.to_enu * (position - self.terrain.origin)
+        self.to_enu * (position - self.origin)
     }
 
     pub fn position(&self, local: DVec3) -> DVec3 {
-        self.terrain.origin + self.terrain.to_enu.transpose() * local
+        self.origin + self.to_enu.transpose() * local
     }
 
-    /// Where the ground of a cell lies.
-    pub fn cell_position(&self, cell: usize) -> DVec3 {
-        let columns = self.land.nodes[0];
-        let plan = DVec2::new((cell % columns) as f64, (cell / columns) as f64) * self.land.cell_m;
-        self.position(plan.extend(self.land.heights_m[cell]))
+    /// A place of the lattice at a height.
+    pub fn place(&self, place: [i32; 2], height_m: f64) -> DVec3 {
+        self.position((DVec2::new(f64::from(place[0]), f64::from(place[1])) * self.cell_m).extend(height_m))
     }
 
-    /// The four cells about a place and their shares; `None` off the terrain and on what stands above it.
-    pub fn about(&self, position: DVec3) -> Option<[(usize, f64); 4]> {
+    /// The cells about a position and their shares; `None` off the terrain and on what stands above it.
+    pub fn about(&self, field: &Field, position: DVec3) -> Option<About> {
         let p = self.local(position);
-        let c = p.truncate() / self.land.cell_m;
-        let last = self.land.nodes.map(|n| (n - 1) as f64);
-        if !((0.0..=last[0]).contains(&c.x) && (0.0..=last[1]).contains(&c.y)) {
+        let c = p.truncate() / self.cell_m;
+        if let Ground::Grid(t) = &self.ground {
+            let last = t.nodes.map(|n| f64::from(n - 1));
+            if !((0.0..=last[0]).contains(&c.x) && (0.0..=last[1]).contains(&c.y)) {
+                return None;
+            }
+        }
+        if !c.is_finite() || c.abs().max_element() >= f64::from(1 << 30) {
             return None;
         }
-        let low = [(c.x as usize).min(self.land.nodes[0] - 2), (c.y as usize).min(self.land.nodes[1] - 2)];
-        let part = c - DVec2::new(low[0] as f64, low[1] as f64);
-        let about = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| {
-            let share = |on: usize, part: f64| if on == 1 { part } else { 1.0 - part };
-            ((low[1] + y) * self.land.nodes[0] + low[0] + x, share(x, part.x) * share(y, part.y))
+        let (low, part) = (c.floor(), c - c.floor());
+        let mut about = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|bit: [i32; 2]| {
+            let share = |i: usize| if bit[i] == 1 { part[i] } else { 1.0 - part[i] };
+            let cell = field.cell_at([low.x as i32 + bit[0], low.y as i32 + bit[1]])?;
+            Some((cell, share(0) * share(1)))
         });
-        let ground: f64 = about.iter().map(|(cell, share)| self.land.heights_m[*cell] * share).sum();
-        (p.z <= ground + ABOVE_M).then_some(about)
+        about[usize::from(part.x >= 0.5) + 2 * usize::from(part.y >= 0.5)]?;
+        if about.iter().any(Option::is_none) {
+            let all: f64 = about.iter().flatten().map(|(_, share)| share).sum();
+            about.iter_mut().flatten().for_each(|(_, share)| *share /= all);
+        }
+        (p.z <= ground_m(field, &about) + ABOVE_M).then_some(about)
     }
 
-    /// Finds what the standing boxes keep off and stop under a weather. Says whether something new stands on cells.
-    pub fn shade(&mut self, c: &Conditions, shelters: &[Shelter]) -> bool {
+    /// Finds what the standing boxes keep off and stop under a weather whose flakes go with `local` where the wind varies in space. Says
+    /// whether something new stands on cells.
+    pub fn shade(
+        &mut self,
+        field: &mut Field,
+        c: &Conditions,
+        (shelters, local): (&[Shelter], Option<WindAt<'_>>),
+    ) -> bool {
         let fall = aggregate_speed_m_s(FLAKE_MM, c.air.temperature_c);
-        let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
-        // Eddies bring flakes into the lee, so that no shadow is longer than its box is high.
-        let across = wind * (fall / wind.length().max(fall));
-        let slant = ((across / fall * 16.0).round() / 16.0).extend(-1.0);
+        let slant = slant(DVec2::new(c.wind.east_m_s, c.wind.north_m_s), fall);
         let standing = || shelters.iter().filter(|s| s.stands());
-        let same = self.boxes.iter().eq(standing());
-        if same && (slant == self.slant || self.boxes.is_empty()) {
+        let same = self.boxes.iter().eq(standing()) && !self.stale;
+        if same && ((slant == self.slant && local.is_none()) || self.boxes.is_empty()) {
             return false;
         }
-        self.slant = slant;
+        let had_any = !self.boxes.is_empty();
+        (self.slant, self.stale) = (slant, false);
         self.boxes.clear();
         self.boxes.extend(standing());
-        let len = if self.boxes.is_empty() { 0 } else { self.land.len() };
-        self.land.sheltered.clear();
-        self.land.sheltered.resize(len, false);
-        if !same {
-            self.land.obstacles_m.clear();
-            self.land.obstacles_m.resize(len, 0.0);
+        if self.boxes.is_empty() && !had_any && field.patches.iter().all(|p| p.sheltered.is_empty()) {
+            return false;
         }
-        for shelter in std::mem::take(&mut self.boxes) {
-            self.shade_box(&shelter, !same);
-            self.boxes.push(shelter);
+        for patch in &mut field.patches {
+            patch.sheltered.clear();
+            if !same {
+                patch.obstacles_m.clear();
+            }
+            for shelter in &self.boxes {
+                self.shade_box((patch, field.size), shelter, !same, local.map(|local| (local, fall)));
+            }
         }
         !same
     }
 
-    fn shade_box(&mut self, shelter: &Shelter, stands_anew: bool) {
+    fn shade_box(
+        &self,
+        (patch, size): (&mut Patch, [usize; 2]),
+        shelter: &Shelter,
+        stands_anew: bool,
+        local: Option<(WindAt<'_>, f64)>,
+    ) {
+        let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
         let middle = self.local(shelter.center_m);
-        let radius = shelter.half_size_m.length() + self.land.cell_m;
-        let lowest = self.land.heights_m.iter().fold(f64::MAX, |low, h| h.min(low));
-        let run = self.slant.truncate() * (middle.z + radius - lowest).max(0.0);
-        let low = (middle.truncate() + run.min(DVec2::ZERO) - radius) / self.land.cell_m;
-        let high = (middle.truncate() + run.max(DVec2::ZERO) + radius) / self.land.cell_m;
-        let columns = self.land.nodes[0];
-        let span = |low: f64, high: f64, nodes: usize| {
-            low.ceil().max(0.0) as usize..(high.floor() + 1.0).clamp(0.0, nodes as f64) as usize
+        let radius = shelter.half_size_m.length() + self.cell_m;
+        let over = (middle.z + radius - patch.lowest_m).max(0.0);
+        let (back, on) = match local {
+            // Whichever way the wind turns round it.
+            Some(_) => (DVec2::splat(-over), DVec2::splat(over)),
+            None => (self.slant.truncate().min(DVec2::ZERO) * over, self.slant.truncate().max(DVec2::ZERO) * over),
         };
-        let velocity = self.terrain.to_enu.transpose() * self.slant;
-        let up = self.terrain.to_enu.row(2);
-        for row in span(low.y, high.y, self.land.nodes[1]) {
-            for cell in span(low.x, high.x, columns).map(|column| row * columns + column) {
-                let ground = self.cell_position(cell);
-                if sheltered(shelter, ground + up * SURFACE_M, velocity) {
-                    self.land.sheltered[cell] = true;
+        let low = (middle.truncate() + back - radius) / self.cell_m;
+        let high = (middle.truncate() + on + radius) / self.cell_m;
+        let span = |i: usize| {
+            let (low, high) = (low[i] - corner[i], high[i] - corner[i]);
+            low.ceil().max(0.0) as usize..(high.floor() + 1.0).clamp(0.0, size[i] as f64) as usize
+        };
+        let up = self.to_enu.row(2);
+        for row in span(1) {
+            for column in span(0) {
+                let cell = row * size[0] + column;
+                let plan = DVec2::new(corner[0] + column as f64, corner[1] + row as f64) * self.cell_m;
+                let ground = self.position(plan.extend(f64::from(patch.heights_m[cell])));
+                let slant = local.map_or(self.slant, |(local, fall)| {
+                    let on = [corner[0] as i32 + column as i32, corner[1] as i32 + row as i32];
+                    slant(local(on, patch.surface_m(cell)), fall)
+                });
+                if sheltered(shelter, ground + up * SURFACE_M, self.to_enu.transpose() * slant) {
+                    patch.sheltered.resize(size[0] * size[1], false);
+                    patch.sheltered[cell] = true;
                 }
-                if stands_anew {
-                    let height = self.stands_on(shelter, ground, up);
-                    self.land.obstacles_m[cell] = self.land.obstacles_m[cell].max(height);
+                let height = if stands_anew { self.stands_on(shelter, ground, up) } else { 0.0 };
+                if height > 0.0 {
+                    patch.obstacles_m.resize(size[0] * size[1], 0.0);
+                    patch.obstacles_m[cell] = patch.obstacles_m[cell].max(height);
                 }
             }
         }
@@ -157,29 +307,43 @@ impl Site {
         let at = shelter.axes.transpose() * (ground + up * over - shelter.center_m);
         let upright = (shelter.axes.transpose() * up).abs();
         let touches = (0..3).all(|i| {
-            let reach =
-                shelter.half_size_m[i] + 0.5 * self.land.cell_m * (1.0 - upright[i] * upright[i]).max(0.0).sqrt();
+            let reach = shelter.half_size_m[i] + 0.5 * self.cell_m * (1.0 - upright[i] * upright[i]).max(0.0).sqrt();
             at[i].abs() <= reach + 1e-9
         });
         if touches { top } else { 0.0 }
     }
 
-    /// The wind at 10 m at a time in the weather `c`: where it varies in space, that of each cell, by the logarithmic law from 2 m.
-    pub fn wind(&mut self, world: &World, time_s: f64, c: &Conditions, columns: &[Column]) -> WindOver<'_> {
+    /// The wind at 10 m over a place of the lattice where it varies in space, by the logarithmic law from 2 m over the snow; none where
+    /// it does not vary at that time in the weather `c`.
+    pub fn wind<'w>(
+        &self,
+        world: &'w World,
+        time_s: f64,
+        c: &Conditions,
+    ) -> Option<impl Fn([i32; 2], f64) -> DVec2 + use<'w>> {
         let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
-        let Some(volume) = world.wind_volume(time_s) else { return WindOver { mean, local: None } };
+        let volume = world.wind_volume(time_s)?;
         let asked_m = ASKED_M.max(volume.cell_m.z);
         let speed = c.wind.speed_m_s();
         let lower = if speed > 0.0 { c.wind.speed_at_height_m_s(asked_m) / speed } else { 1.0 };
-        let mut winds = std::mem::take(&mut self.winds);
-        winds.clear();
-        winds.extend((0..self.land.len()).map(|cell| {
-            let over = DVec3::Z * (columns[cell].depth_m() + asked_m);
-            let at = self.cell_position(cell) + self.terrain.to_enu.transpose() * over;
+        let (origin, from_enu, cell_m) = (self.origin, self.to_enu.transpose(), self.cell_m);
+        Some(move |place: [i32; 2], surface_m: f64| {
+            let plan = DVec2::new(f64::from(place[0]), f64::from(place[1])) * cell_m;
+            let at = origin + from_enu * plan.extend(surface_m + asked_m);
             let about = volume.wind(at, (mean * lower).extend(0.0));
             about.map_or(mean, |w| w.truncate() / lower.max(0.1))
-        }));
-        self.winds = winds;
-        WindOver { mean, local: Some(&self.winds) }
+        })
     }
+}
+
+/// How flakes of this fall speed go with a wind, m/s: over their fall, in sixteenths.
+fn slant(wind: DVec2, fall: f64) -> DVec3 {
+    // Eddies bring flakes into the lee, so that no shadow is longer than its box is high.
+    let across = wind * (fall / wind.length().max(fall));
+    ((across / fall * 16.0).round() / 16.0).extend(-1.0)
+}
+
+/// Height of the ground about a place, m.
+pub(super) fn ground_m(field: &Field, about: &About) -> f64 {
+    about.iter().flatten().map(|((patch, cell), share)| f64::from(field.patches[*patch].heights_m[*cell]) * share).sum()
 }

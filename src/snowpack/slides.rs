@@ -1,9 +1,9 @@
 //! Snow that is too steep slides down until no slope is above the angle of repose: to the neighbour below that is steepest, by half of
-//! what is too much.
+//! what is too much. Cells are looked at by the rows of the lattice, whatever patches they lie in.
 
 use super::{
-    column::{Column, UNITS},
-    field::Land,
+    column::UNITS,
+    field::{Field, NONE},
     laws::REPOSE_DEG,
 };
 
@@ -13,7 +13,7 @@ const SLACK_M: f64 = 5e-4;
 const MOST_MOVES: usize = 40;
 
 /// Places of the eight neighbours and how far away they are, in cells.
-const AROUND: [([isize; 2], f64); 8] = [
+const AROUND: [([i32; 2], f64); 8] = [
     ([1, 0], 1.0),
     ([0, 1], 1.0),
     ([-1, 0], 1.0),
@@ -24,57 +24,101 @@ const AROUND: [([isize; 2], f64); 8] = [
     ([1, -1], std::f64::consts::SQRT_2),
 ];
 
-/// The neighbours of a cell on which snow can lie.
-fn around(land: &Land, cell: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-    let [nx, ny] = land.nodes;
-    let place = [(cell % nx) as isize, (cell / nx) as isize];
-    AROUND.iter().filter_map(move |([dx, dy], cells)| {
-        let (x, y) = (place[0] + dx, place[1] + dy);
-        let inside = x >= 0 && y >= 0 && x < nx as isize && y < ny as isize;
-        let to = if inside { y as usize * nx + x as usize } else { return None };
-        (!land.is_blocked(to)).then_some((to, cells * land.cell_m))
+/// The cell that lies so far from one, in whatever patch.
+fn beside(field: &Field, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
+    let size = field.size.map(|n| n as i32);
+    let (x, y) = (cell as i32 % size[0] + dx, cell as i32 / size[0] + dy);
+    let out = [(x, 0), (y, 1)].map(|(v, i): (i32, usize)| v.div_euclid(size[i]));
+    let own = &field.patches[patch as usize];
+    let at = match out {
+        [0, 0] => patch,
+        [1, 0] => own.near[1],
+        [_, 0] => own.near[0],
+        [0, 1] => own.near[3],
+        [0, _] => own.near[2],
+        [east, north] => field.find([own.key[0] + east, own.key[1] + north]).map_or(NONE, |at| at as u32),
+    };
+    (at != NONE).then(|| (at, (y.rem_euclid(size[1]) * size[0] + x.rem_euclid(size[0])) as u32))
+}
+
+/// The neighbours of a cell on which snow can lie, and how far away they are, m.
+fn around(field: &Field, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u32), f64)> + '_ {
+    AROUND.iter().filter_map(move |(way, cells)| {
+        let to = beside(field, cell, *way)?;
+        (!field.patches[to.0 as usize].is_blocked(to.1 as usize)).then_some((to, cells * field.cell_m))
     })
 }
 
-fn surface_m(columns: &[Column], land: &Land, cell: usize) -> f64 {
-    land.heights_m[cell] + columns[cell].depth_m()
+fn surface_m(field: &Field, (patch, cell): (u32, u32)) -> f64 {
+    field.patches[patch as usize].surface_m(cell as usize)
 }
 
 /// The neighbour to which the snow of a cell slides, and how much higher it is than it may be, m.
-fn steepest(columns: &[Column], land: &Land, cell: usize, rise: f64) -> Option<(usize, f64)> {
-    let here = surface_m(columns, land, cell);
-    let over = |(to, way): (usize, f64)| (to, here - surface_m(columns, land, to) - rise * way);
-    let found = around(land, cell).map(over).filter(|(_, over)| *over > SLACK_M);
+fn steepest(field: &Field, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f64)> {
+    let here = surface_m(field, cell);
+    let over = |(to, way): ((u32, u32), f64)| (to, here - surface_m(field, to) - rise * way);
+    let found = around(field, cell).map(over).filter(|(_, over)| *over > SLACK_M);
     found.reduce(|a, b| if b.1 > a.1 { b } else { a })
 }
 
-/// Lets all snow slide that lies too steep. Answers whether all of it has come to rest.
-pub(super) fn relax(columns: &mut [Column], land: &Land) -> bool {
-    let rise = libm::tan(REPOSE_DEG.to_radians());
-    let mut left = MOST_MOVES * land.len();
-    let mut moving: Vec<u32> = Vec::new();
-    for first in 0..land.len() {
-        moving.push(first as u32);
-        while let Some(cell) = moving.pop() {
-            let cell = cell as usize;
-            if columns[cell].depth == 0 {
-                continue;
-            }
-            let Some((to, over)) = steepest(columns, land, cell, rise) else { continue };
-            if left == 0 {
-                return false;
-            }
-            left -= 1;
-            let depth = columns[cell].depth;
-            let down = ((0.5 * over * UNITS) as i64 + 1).min(depth);
-            let albedo = columns[cell].albedo;
-            let part = columns[cell].take(down, depth);
-            columns[to].add(part, albedo);
-            // Both may slide on, and what lies above the cell has lost its hold.
-            moving.push(to as u32);
-            moving.push(cell as u32);
-            moving.extend(around(land, cell).map(|(above, _)| above as u32));
+/// Lets the snow of a cell slide, and what loses its hold by that. Answers whether it has come to rest before `left` moves are done.
+fn settle(field: &mut Field, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
+    while let Some(cell) = moving.pop() {
+        let column = field.patches[cell.0 as usize].column(cell.1 as usize);
+        if column.depth == 0 {
+            continue;
         }
+        let Some((to, over)) = steepest(field, cell, rise) else { continue };
+        if *left == 0 {
+            return false;
+        }
+        *left -= 1;
+        let (mut column, mut below) = (column, field.patches[to.0 as usize].column(to.1 as usize));
+        let (depth, albedo) = (column.depth, column.albedo);
+        let down = ((0.5 * over * UNITS) as i64 + 1).min(depth);
+        below.add(column.take(down, depth), albedo);
+        for (at, column) in [(cell, column), (to, below)] {
+            let patch = &mut field.patches[at.0 as usize];
+            patch.put(at.1 as usize, column);
+            patch.changed(revision);
+        }
+        // Both may slide on, and what lies above the cell has lost its hold.
+        moving.push(to);
+        moving.push(cell);
+        moving.extend(around(field, cell).map(|(above, _)| above));
+    }
+    true
+}
+
+/// Lets all snow slide that lies too steep. `moving`: room for it. Answers whether all of it has come to rest.
+pub(super) fn relax(field: &mut Field, moving: &mut Vec<(u32, u32)>, revision: u64) -> bool {
+    let rise = libm::tan(REPOSE_DEG.to_radians());
+    let mut left = MOST_MOVES * field.len();
+    let [columns, rows] = field.size;
+    let mut first = 0;
+    while first < field.patches.len() {
+        // Patches beside each other from west to east.
+        let north = field.patches[first].key[1];
+        let end = first + field.patches[first..].iter().take_while(|p| p.key[1] == north).count();
+        if field.patches[first..end].iter().all(|p| p.is_bare()) {
+            first = end;
+            continue;
+        }
+        for row in 0..rows {
+            for patch in first..end {
+                for cell in row * columns..(row + 1) * columns {
+                    // What is bare now may get snow from above.
+                    if field.patches[patch].columns.get(cell).is_some_and(|c| c.depth > 0) {
+                        moving.clear();
+                        moving.push((patch as u32, cell as u32));
+                        if !settle(field, moving, rise, &mut left, revision) {
+                            return false;
+                        }
+                    }
+                }
+            }
+        }
+        first = end;
     }
     true
 }

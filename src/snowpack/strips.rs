@@ -1,12 +1,10 @@
 //! What a host does to lying snow: it ploughs and digs it away, and its wheels press tracks. Both are strips along a path.
 
-use std::ops::RangeInclusive;
-
 use glam::{DVec2, DVec3};
 
 use super::{
     column::{Column, UNITS},
-    field::{Field, Land},
+    field::Field,
     held::{HeldSnow, LyingSnowModel},
     site::Site,
 };
@@ -58,33 +56,46 @@ fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     along || path[1..path.len() - 1].iter().any(|bend| p.distance(*bend) <= half_m)
 }
 
-/// Cells between two places along an axis, those at half the width from them too.
-fn span(low: f64, high: f64, land: &Land, axis: usize) -> Option<RangeInclusive<usize>> {
-    let last = (land.nodes[axis] - 1) as f64;
-    let (low, high) = ((low / land.cell_m - 0.5).floor().max(0.0), (high / land.cell_m + 0.5).ceil().min(last));
-    (low <= high).then_some(low as usize..=high as usize)
-}
-
-/// Does `act` to the columns under a strip, with the share of each that it covers.
-fn each_under(site: &Site, field: &mut Field, strip: &SnowStrip, mut act: impl FnMut(&mut Column, f64)) {
-    let (land, half_m) = (&site.land, 0.5 * strip.width_m);
+/// Does `act` to the columns under a strip, with the share of each that it covers, and counts what it says. Patches on which it has acted
+/// are of this revision then.
+fn each_under(
+    (site, field): (&Site, &mut Field),
+    strip: &SnowStrip,
+    revision: u64,
+    mut act: impl FnMut(&mut Column, f64) -> i64,
+) -> i64 {
+    let half_m = 0.5 * strip.width_m;
     let path: Vec<DVec2> = strip.points.iter().map(|p| site.local(*p).truncate()).collect();
     let low = path.iter().fold(DVec2::INFINITY, |low, p| low.min(*p)) - half_m;
     let high = path.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p)) + half_m;
-    let (Some(columns), Some(rows)) = (span(low.x, high.x, land, 0), span(low.y, high.y, land, 1)) else { return };
+    let (size, cell_m) = (field.size, field.cell_m);
     let offset = |i: usize| (i as f64 + 0.5) / SAMPLES as f64 - 0.5;
-    for row in rows {
-        for column in columns.clone() {
-            let middle = DVec2::new(column as f64, row as f64);
+    let mut sum = 0;
+    for patch in field.patches.iter_mut().filter(|patch| !patch.is_bare()) {
+        let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
+        // Cells at half the width from it too.
+        let span = |i: usize| {
+            let low = (low[i] / cell_m - 0.5).floor() - corner[i];
+            let high = (high[i] / cell_m + 0.5).ceil() - corner[i] + 1.0;
+            low.max(0.0) as usize..high.clamp(0.0, size[i] as f64) as usize
+        };
+        let mut acted = false;
+        for (row, column) in span(1).flat_map(|row| span(0).map(move |column| (row, column))) {
+            let middle = DVec2::new(corner[0] + column as f64, corner[1] + row as f64);
             let samples = (0..SAMPLES * SAMPLES)
-                .map(|i| (middle + DVec2::new(offset(i % SAMPLES), offset(i / SAMPLES))) * land.cell_m)
+                .map(|i| (middle + DVec2::new(offset(i % SAMPLES), offset(i / SAMPLES))) * cell_m)
                 .filter(|p| lies_on(&path, half_m, *p));
             let covered = samples.count() as f64 / (SAMPLES * SAMPLES) as f64;
             if covered > 0.0 {
-                act(&mut field.columns[row * land.nodes[0] + column], covered);
+                sum += act(&mut patch.columns[row * size[0] + column], covered);
+                acted = true;
             }
         }
+        if acted {
+            patch.changed(revision);
+        }
     }
+    sum
 }
 
 impl HeldSnow {
@@ -92,7 +103,8 @@ impl HeldSnow {
     fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut Field)> {
         strip.validate()?;
         let wanted = "lying snow is changed on the host's terrain, where WK_LYING_SNOW_SIMULATED leads it";
-        if self.model == LyingSnowModel::Reported || world.set.terrain.is_none() {
+        let has_terrain = world.set.terrain.is_some() || world.set.tiles.is_some();
+        if self.model == LyingSnowModel::Reported || !has_terrain {
             return Err(Error::new(Status::WrongOrder, wanted));
         }
         self.be_there(world)?;
@@ -105,15 +117,13 @@ impl HeldSnow {
     /// As there.
     pub fn take(&mut self, world: &World, strip: &SnowStrip, left_m: f64) -> Result<f64> {
         check_range("left_m", left_m, 0.0, 100.0, "m")?;
+        let revision = self.next_revision();
         let (site, field) = self.field_for_change(world, strip)?;
-        let area = site.land.cell_m * site.land.cell_m;
-        let mut taken = 0;
-        each_under(site, field, strip, |column, covered| {
+        let area = field.cell_m * field.cell_m;
+        let taken = each_under((site, field), strip, revision, |column, covered| {
             let depth = column.depth;
             let over = ((column.depth_m() - left_m).max(0.0) * UNITS * covered) as i64;
-            if over > 0 {
-                taken += column.take(over.min(depth), depth).mass();
-            }
+            if over > 0 { column.take(over.min(depth), depth).mass() } else { 0 }
         });
         field.books.taken += taken;
         self.changed();
@@ -125,8 +135,12 @@ impl HeldSnow {
     /// # Errors
     /// As there.
     pub fn press(&mut self, world: &World, strip: &SnowStrip) -> Result<()> {
+        let revision = self.next_revision();
         let (site, field) = self.field_for_change(world, strip)?;
-        each_under(site, field, strip, |column, covered| column.press(PRESSED_KG_M3, covered));
+        each_under((site, field), strip, revision, |column, covered| {
+            column.press(PRESSED_KG_M3, covered);
+            0
+        });
         self.changed();
         Ok(())
     }

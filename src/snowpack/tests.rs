@@ -1,13 +1,63 @@
 use glam::DVec2;
 
 use super::{
-    column::{Column, Forcing, UNITS},
-    field::{Field, Land, Step, WindOver},
+    column::{Column, Forcing, Settling, UNITS},
+    field::{Field, Patch, Step, WindAt, WindOver},
     laws, slides,
 };
 use crate::weather::{Conditions, Falling, Weather, Wind, derive};
 
 const STEP_S: f64 = 60.0;
+
+/// Ground, cut into patches when snow comes onto it.
+struct Land {
+    nodes: [usize; 2],
+    cell_m: f64,
+    heights_m: Vec<f64>,
+    obstacles_m: Vec<f64>,
+    sheltered: Vec<bool>,
+}
+
+impl Land {
+    fn len(&self) -> usize {
+        self.nodes[0] * self.nodes[1]
+    }
+
+    /// In one patch.
+    fn field(&self, column: Column) -> Field {
+        self.cut(self.nodes, column)
+    }
+
+    /// In patches of this size, which counts from patch (-1, -1).
+    fn cut(&self, size: [usize; 2], column: Column) -> Field {
+        let mut field = Field::new(size, self.cell_m);
+        let off = if size == self.nodes { 0 } else { 1 };
+        for key in (0..self.nodes[1] / size[1]).flat_map(|y| (0..self.nodes[0] / size[0]).map(move |x| [x, y])) {
+            let cells: Vec<usize> = (0..size[0] * size[1])
+                .map(|i| (key[1] * size[1] + i / size[0]) * self.nodes[0] + key[0] * size[0] + i % size[0])
+                .collect();
+            let heights = cells.iter().map(|c| self.heights_m[*c] as f32).collect();
+            let mut patch = Patch::new(key.map(|k| k as i32 - off), heights, Vec::new(), column);
+            patch.obstacles_m = cells.iter().filter_map(|c| self.obstacles_m.get(*c).copied()).collect();
+            patch.sheltered = cells.iter().filter_map(|c| self.sheltered.get(*c).copied()).collect();
+            patch.clear_blocked();
+            field.add(patch);
+        }
+        field
+    }
+}
+
+/// The columns of all cells, by the rows of the lattice.
+fn columns(field: &Field) -> Vec<Column> {
+    let (low, size) = (field.patches[0].key, field.size);
+    let top = field.patches.last().unwrap().key;
+    let [nx, ny] = [0, 1].map(|i| (top[i] - low[i] + 1) * size[i] as i32);
+    let at = |x, y| {
+        let place = [low[0] * size[0] as i32 + x, low[1] * size[1] as i32 + y];
+        field.cell_at(place).map_or(Column::default(), |(patch, cell)| field.patches[patch].column(cell))
+    };
+    (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
+}
 
 fn flat(nodes: [usize; 2], cell_m: f64) -> Land {
     let heights_m = vec![0.0; nodes[0] * nodes[1]];
@@ -24,37 +74,53 @@ fn snow(rate_mm_h: f64) -> Falling {
     Falling { snow_mm_h: rate_mm_h, ..Falling::NONE }
 }
 
-/// Leads a field by steps with the same weather, amid bare country.
-fn lead(field: &mut Field, land: &Land, forcing: &Forcing, wind: DVec2, steps: usize) {
-    lead_amid(&Column::default(), (field, land), forcing, wind, steps);
+/// A forcing and how snow settles under it.
+struct Acts(Forcing, Settling);
+
+fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
+    let mut settling = Settling::new();
+    settling.set(c.air.temperature_c, STEP_S);
+    Acts(Forcing::new(c, falling, sunlight_w_m2, STEP_S), settling)
 }
 
-fn lead_amid(country: &Column, (field, land): (&mut Field, &Land), forcing: &Forcing, wind: DVec2, steps: usize) {
+/// Leads a field by steps with the same weather, amid bare country.
+fn lead(field: &mut Field, acts: &Acts, wind: DVec2, steps: usize) {
+    lead_amid(&Column::default(), field, acts, (wind, None), steps);
+}
+
+fn lead_amid(
+    country: &Column,
+    field: &mut Field,
+    Acts(even, settling): &Acts,
+    (mean, local): (DVec2, Option<WindAt<'_>>),
+    steps: usize,
+) {
     for i in 0..steps {
-        let step = Step {
+        field.step(&Step {
             seconds: STEP_S,
-            block: 1,
-            forcings: std::slice::from_ref(forcing),
-            wind: WindOver { mean: wind, local: None },
+            even,
+            falls: None,
+            settling,
+            wind: WindOver { mean, local },
             country,
             slides: i % 10 == 9,
-        };
-        field.step(land, &step);
+            revision: i as u64 + 1,
+        });
     }
 }
 
 #[test]
 fn what_falls_lies_to_the_last_bit() {
     let land = flat([4, 3], 2.0);
-    let mut field = Field::new(&land, Column::default());
+    let mut field = land.field(Column::default());
     let c = weather(-8.0, 0.0, 1.0);
-    let forcing = Forcing::new(&c, &snow(1.5), 0.0, STEP_S);
-    lead(&mut field, &land, &forcing, DVec2::ZERO, 600);
+    let forcing = acts(&c, &snow(1.5), 0.0);
+    lead(&mut field, &forcing, DVec2::ZERO, 600);
     // 10 hours of 1.5 mm/h.
-    let lies = field.columns[5].mass_kg_m2();
+    let lies = columns(&field)[5].mass_kg_m2();
     assert!((lies / 15.0 - 1.0).abs() < 1e-5, "{lies}");
     assert_eq!(field.lying(), field.books.balance());
-    let density = field.columns[5].density_kg_m3();
+    let density = columns(&field)[5].density_kg_m3();
     assert!((61.0..110.0).contains(&density), "{density} kg/m^3");
 }
 
@@ -68,8 +134,8 @@ fn the_books_close_over_ten_thousand_steps_of_drift_slides_and_thaw() {
     }
     land.obstacles_m =
         (0..land.len()).map(|c| if c % 32 == 22 && (8..20).contains(&(c / 32)) { 2.5 } else { 0.0 }).collect();
-    let mut field = Field::new(&land, Column::of(0.3, 150.0));
-    let forcing = |t, rate, wind, sun| Forcing::new(&weather(t, wind, 0.7), &snow(rate), sun, STEP_S);
+    let mut field = land.field(Column::of(0.3, 150.0));
+    let forcing = |t, rate, wind, sun| acts(&weather(t, wind, 0.7), &snow(rate), sun);
     let weathers = [
         (forcing(-9.0, 2.0, 12.0, 0.0), DVec2::new(12.0, 3.0)),
         (forcing(-4.0, 0.0, 15.0, 100.0), DVec2::new(-9.0, 12.0)),
@@ -78,9 +144,9 @@ fn the_books_close_over_ten_thousand_steps_of_drift_slides_and_thaw() {
     ];
     for i in 0..100 {
         let (forcing, wind) = &weathers[i % 4];
-        lead(&mut field, &land, forcing, *wind, 100);
+        lead(&mut field, forcing, *wind, 100);
         assert_eq!(field.lying(), field.books.balance(), "after {} steps", (i + 1) * 100);
-        assert!(field.columns.iter().all(Column::is_sound));
+        assert!(columns(&field).iter().all(Column::is_sound));
     }
     let b = field.books;
     assert!(b.blown_out > 0 && b.ran_off > 0 && b.sublimated > 0 && b.fallen > 0, "{b:?}");
@@ -91,19 +157,21 @@ fn the_books_close_over_ten_thousand_steps_of_drift_slides_and_thaw() {
 fn no_slope_is_above_repose_after_sliding_and_no_mass_is_lost() {
     let mut land = flat([40, 40], 0.5);
     land.heights_m[20 * 40 + 20] = 3.0;
-    let mut field = Field::new(&land, Column::of(0.05, 100.0));
-    field.columns[10 * 40 + 10] = Column::of(6.0, 200.0);
+    let mut field = land.field(Column::of(0.05, 100.0));
+    field.patches[0].put(10 * 40 + 10, Column::of(6.0, 200.0));
     let before = field.lying();
-    while !slides::relax(&mut field.columns, &land) {}
+    let mut moving = Vec::new();
+    while !slides::relax(&mut field, &mut moving, 1) {}
+    let lies = columns(&field);
     assert_eq!(field.lying(), before);
-    let surface = |c: usize| land.heights_m[c] + field.columns[c].depth_m();
+    let surface = |c: usize| land.heights_m[c] + lies[c].depth_m();
     let mut steepest: f64 = 0.0;
-    for cell in (0..land.len()).filter(|c| field.columns[*c].depth > 0) {
+    for cell in (0..land.len()).filter(|c| lies[*c].depth > 0) {
         let (x, y) = (cell % 40, cell / 40);
         for (to, way) in [(cell + 1, x < 39), (cell + 40, y < 39)].iter().filter(|t| t.1).map(|t| (t.0, 0.5)) {
             // Of two the higher one must be able to slide.
             let high = if surface(cell) > surface(to) { cell } else { to };
-            if field.columns[high].depth > 0 {
+            if lies[high].depth > 0 {
                 steepest = steepest.max((surface(cell) - surface(to)).abs() / way);
             }
         }
@@ -111,18 +179,18 @@ fn no_slope_is_above_repose_after_sliding_and_no_mass_is_lost() {
     let degrees = steepest.atan().to_degrees();
     println!("steepest slope after sliding: {degrees} deg");
     assert!((36.0..38.05).contains(&degrees), "{degrees}");
-    assert_eq!(field.columns[20 * 40 + 20].depth, 0, "too steep a rock keeps nothing");
+    assert_eq!(lies[20 * 40 + 20].depth, 0, "too steep a rock keeps nothing");
 }
 
 /// Snow that lies along a line of cells down a west wind after hours of drift, m.
 fn along(land: &Land, wind_m_s: f64, temperature_c: f64, hours: usize) -> Vec<f64> {
     let country = Column::of(0.3, 120.0);
-    let mut field = Field::new(land, country);
-    let forcing = Forcing::new(&weather(temperature_c, wind_m_s, 1.0), &Falling::NONE, 0.0, STEP_S);
-    lead_amid(&country, (&mut field, land), &forcing, DVec2::new(wind_m_s, 0.0), 60 * hours);
+    let mut field = land.field(country);
+    let forcing = acts(&weather(temperature_c, wind_m_s, 1.0), &Falling::NONE, 0.0);
+    lead_amid(&country, &mut field, &forcing, (DVec2::new(wind_m_s, 0.0), None), 60 * hours);
     assert_eq!(field.lying(), field.books.balance());
     let row = land.nodes[1] / 2;
-    field.columns[row * land.nodes[0]..][..land.nodes[0]].iter().map(Column::mass_kg_m2).collect()
+    columns(&field)[row * land.nodes[0]..][..land.nodes[0]].iter().map(Column::mass_kg_m2).collect()
 }
 
 #[test]
@@ -131,9 +199,9 @@ fn drift_starts_at_the_threshold_wind_of_dry_and_wet_snow() {
     let moved = |wind: f64, wet: bool| {
         let mut column = Column::of(0.3, 120.0);
         column.water = if wet { column.ice / 20 } else { 0 };
-        let mut field = Field::new(&land, column);
-        let forcing = Forcing::new(&weather(0.0, wind, 1.0), &Falling::NONE, 0.0, STEP_S);
-        lead(&mut field, &land, &forcing, DVec2::new(wind, 0.0), 30);
+        let mut field = land.field(column);
+        let forcing = acts(&weather(0.0, wind, 1.0), &Falling::NONE, 0.0);
+        lead(&mut field, &forcing, DVec2::new(wind, 0.0), 30);
         field.books.blown_out
     };
     assert_eq!((moved(7.6, false), moved(9.8, true)), (0, 0));
@@ -173,25 +241,26 @@ fn windward_and_lee_of_a_hill_differ() {
 fn a_roof_keeps_its_porch_bare_and_rain_takes_snow_away() {
     let mut land = flat([9, 9], 1.0);
     land.sheltered = (0..81).map(|c| c % 9 < 3).collect();
-    let mut field = Field::new(&land, Column::default());
-    let cold = Forcing::new(&weather(-3.0, 1.0, 1.0), &snow(2.0), 0.0, STEP_S);
-    lead(&mut field, &land, &cold, DVec2::ZERO, 300);
-    assert!(field.columns[1].mass() == 0 && field.columns[7].mass_kg_m2() > 9.9);
+    let mut field = land.field(Column::default());
+    let cold = acts(&weather(-3.0, 1.0, 1.0), &snow(2.0), 0.0);
+    lead(&mut field, &cold, DVec2::ZERO, 300);
+    assert!(columns(&field)[1].mass() == 0 && columns(&field)[7].mass_kg_m2() > 9.9);
     let rain = Falling { rain_mm_h: 6.0, ..Falling::NONE };
-    let warm = Forcing::new(&weather(6.0, 5.0, 1.0), &rain, 0.0, STEP_S);
-    lead(&mut field, &land, &warm, DVec2::ZERO, 60);
-    assert!(field.columns[7].wetness() > 0.9 && field.runoff_mm_h > 4.0, "{}", field.runoff_mm_h);
-    lead(&mut field, &land, &warm, DVec2::ZERO, 1200);
-    assert!(!field.is_any() && field.lying() == 0 && field.books.balance() == 0);
+    let warm = acts(&weather(6.0, 5.0, 1.0), &rain, 0.0);
+    lead(&mut field, &warm, DVec2::ZERO, 60);
+    assert!(columns(&field)[7].wetness() > 0.9 && field.runoff_mm_h > 4.0, "{}", field.runoff_mm_h);
+    lead(&mut field, &warm, DVec2::ZERO, 1200);
+    assert!(field.patches[0].is_bare() && field.lying() == 0 && field.books.balance() == 0);
 }
 
 #[test]
 fn snow_settles_and_ages_towards_old_snow() {
     let mut column = Column::of(0.5, 80.0);
     let c = weather(-5.0, 0.0, 1.0);
-    let forcing = Forcing::new(&c, &Falling::NONE, 0.0, STEP_S);
+    let forcing = acts(&c, &Falling::NONE, 0.0);
     let (mass, mut last) = (column.mass(), column.density_kg_m3());
-    let day = |column: &mut Column| (0..1440).for_each(|_| assert_eq!(column.step(&forcing, 1.0).ran_off, 0));
+    let day =
+        |column: &mut Column| (0..1440).for_each(|_| assert_eq!(column.step(&forcing.0, &forcing.1, 1.0).ran_off, 0));
     for _ in 0..10 {
         day(&mut column);
         assert!(column.density_kg_m3() > last);
@@ -201,4 +270,112 @@ fn snow_settles_and_ages_towards_old_snow() {
     assert!(column.mass() == mass && (130.0..260.0).contains(&last), "{last}");
     let wanted = laws::OLD_ALBEDO + (laws::NEW_ALBEDO - laws::OLD_ALBEDO) * (-8.64e5f64 / 3.6e6).exp();
     assert!((column.albedo() - wanted).abs() < 1e-3, "{}", column.albedo());
+}
+
+/// A hill, a steep step and a wall over the borders of patches of 32 x 32 cells.
+fn rough() -> Land {
+    let mut land = flat([96, 64], 1.0);
+    for cell in 0..land.len() {
+        let (x, y) = ((cell % 96) as f64, (cell / 96) as f64);
+        let hill = 7.0 * libm::exp(-((x - 33.0) * (x - 33.0) + (y - 30.0) * (y - 30.0)) / 90.0);
+        let step = if x + 0.3 * y > 80.0 { 3.0 } else { 0.0 };
+        land.heights_m[cell] = f64::from((hill + step + 0.2 * libm::sin(0.7 * x + 0.4 * y)) as f32);
+    }
+    land.obstacles_m =
+        (0..land.len()).map(|c| if c % 96 == 60 && (20..50).contains(&(c / 96)) { 2.0 } else { 0.0 }).collect();
+    land
+}
+
+#[test]
+fn snow_lies_over_the_borders_of_tiles_as_on_one_grid_to_the_bit() {
+    let land = rough();
+    let country = Column::of(0.3, 140.0);
+    let (mut one, mut six) = (land.field(country), land.cut([32, 32], country));
+    assert_eq!((one.patches.len(), six.patches.len()), (1, 6));
+    let weathers = [
+        (acts(&weather(-6.0, 13.0, 0.9), &snow(1.0), 0.0), DVec2::new(12.0, 5.0)),
+        (acts(&weather(-9.0, 15.0, 0.8), &snow(0.0), 50.0), DVec2::new(-9.0, 12.0)),
+        (acts(&weather(4.0, 3.0, 0.9), &Falling { rain_mm_h: 2.0, ..Falling::NONE }, 200.0), DVec2::new(0.0, -3.0)),
+        (acts(&weather(-12.0, 17.0, 0.8), &snow(2.0), 0.0), DVec2::new(6.0, -16.0)),
+        (acts(&weather(-12.0, 17.0, 0.8), &snow(0.5), 0.0), DVec2::new(-17.0, 0.0)),
+    ];
+    for round in 0..20 {
+        let (acts, wind) = &weathers[round % 5];
+        [&mut one, &mut six].into_iter().for_each(|f| lead_amid(&country, f, acts, (*wind, None), 50));
+        assert_eq!(six.books, one.books, "after {} steps", 50 * (round + 1));
+        assert_eq!(six.lying(), six.books.balance());
+        assert_eq!((six.cover, six.runoff_mm_h), (one.cover, one.runoff_mm_h));
+        assert!(columns(&six) == columns(&one), "after {} steps", 50 * (round + 1));
+    }
+    // A wind that varies in space is asked at the same places.
+    let local = |place: [i32; 2], _: f64| DVec2::new(10.0 + 4.0 * libm::sin(0.2 * f64::from(place[0] & 31)), 2.0);
+    let (acts, wind) = &weathers[1];
+    [&mut one, &mut six].into_iter().for_each(|f| lead_amid(&country, f, acts, (*wind, Some(&local)), 50));
+    assert!(columns(&six) == columns(&one) && six.books == one.books);
+    let b = one.books;
+    assert!(b.blown_in > 0 && b.blown_out > 0 && b.ran_off > 0 && b.sublimated > 0, "{b:?}");
+    println!("books of 1050 steps on tiles, kg/m^2: {:?}", b.to_array().map(|v| v as f64 / UNITS / land.len() as f64));
+}
+
+#[test]
+fn a_tiles_snow_blows_and_slides_onto_bare_tiles_and_over_holes() {
+    let mut land = flat([96, 32], 1.0);
+    land.heights_m = (0..land.len()).map(|c| if [32, 33].contains(&(c % 96)) { 8.0 } else { 0.0 }).collect();
+    let mut field = land.cut([32, 32], Column::default());
+    let mut holes = vec![false; 32 * 32];
+    holes[10 * 32..12 * 32].fill(true);
+    let heights = field.patches[2].heights_m.clone();
+    field.patches[2].set_ground(heights, holes);
+    // A pile on the edge of the middle tile, which slides to the west.
+    field.patches[1].put(16 * 32, Column::of(4.0, 150.0));
+    field.books.began = field.lying();
+    let calm = acts(&weather(-6.0, 0.0, 1.0), &Falling::NONE, 0.0);
+    lead(&mut field, &calm, DVec2::ZERO, 30);
+    assert_eq!(field.lying(), field.books.balance());
+    assert_eq!([0, 1, 2].map(|at| field.patches[at].is_bare()), [false, true, true]);
+    let blows = acts(&weather(-6.0, 14.0, 1.0), &Falling::NONE, 0.0);
+    lead(&mut field, &blows, DVec2::new(14.0, 0.0), 300);
+    assert!(!field.patches[2].is_bare() && field.lying() == field.books.balance() && field.books.blown_out > 0);
+    let snows = acts(&weather(-6.0, 1.0, 1.0), &snow(3.0), 0.0);
+    lead(&mut field, &snows, DVec2::new(1.0, 0.0), 60);
+    let east = &field.patches[2].columns;
+    assert!(east[10 * 32..12 * 32].iter().all(|c| c.mass() == 0), "holes hold none");
+    assert!(east[12 * 32..].iter().all(|c| c.mass() > 0) && field.lying() == field.books.balance());
+}
+
+#[test]
+fn quiet_tiles_hold_and_cost_nothing() {
+    let land = flat([8 * 32, 8 * 32], 1.0);
+    let mut field = land.cut([32, 32], Column::default());
+    let still = acts(&weather(-6.0, 15.0, 1.0), &Falling::NONE, 0.0);
+    lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
+    assert!(field.patches.iter().all(|p| p.is_bare() && p.columns.capacity() == 0 && p.revision == 0));
+    let begun = std::time::Instant::now();
+    lead(&mut field, &still, DVec2::new(15.0, 3.0), 1000);
+    let microseconds = begun.elapsed().as_secs_f64() * 1e3;
+    println!("a step over 64 bare tiles: {microseconds:.2} us");
+    assert!(microseconds < 50.0, "{microseconds} us");
+    // One snowy tile leaves those beside and behind it alone.
+    field.patches[27].put(0, Column::of(0.2, 600.0));
+    field.books.began = field.lying();
+    lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
+    assert_eq!(field.patches.iter().filter(|p| p.columns.capacity() > 0).count(), 1);
+}
+
+#[test]
+fn suspended_snow_moves_most_of_the_mass_where_the_wind_blows_a_long_way() {
+    let wind = 16.0;
+    // What leaves level country so long, kg/(m s).
+    let flux = |cells: usize| {
+        let land = flat([cells, 3], 5.0);
+        let mut field = land.field(Column::of(1.0, 200.0));
+        lead(&mut field, &acts(&weather(-6.0, wind, 1.0), &Falling::NONE, 0.0), DVec2::new(wind, 0.0), 20);
+        assert_eq!(field.lying(), field.books.balance());
+        field.books.blown_out as f64 / UNITS * 25.0 / (3.0 * 5.0 * 20.0 * STEP_S)
+    };
+    let (short, long) = (flux(20), flux(800));
+    let [hops, floats] =
+        [laws::saltation_kg_m_s, laws::suspension_kg_m_s].map(|law| law(wind, laws::DRY_THRESHOLD_M_S));
+    println!("over 100 m {short:.4}, over 4 km {long:.4} kg/(m s); {hops:.4} hop and {floats:.4} float");
+    assert!((long / (hops + floats) - 1.0).abs() < 0.03 && short > hops && short < 0.6 * long, "{short} {long}");
 }

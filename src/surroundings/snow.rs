@@ -1,6 +1,6 @@
 //! Lying snow as what is drawn on it, flows from under it or is lit by it reads it, whoever led it here.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 /// Meltwater is handed on by slots of this length, s.
 pub(crate) const MELT_SLOT_S: f64 = 60.0;
@@ -28,6 +28,15 @@ pub(crate) struct Meltwater {
     pub runoff_mm_h: f64,
 }
 
+/// The snow on a tile of the host's terrain.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TileSnow {
+    /// Of each cell in half floats: depth in m, density in kg/m^3, wetness, albedo.
+    pub cells: Vec<[u16; 4]>,
+    /// Other whenever they may be.
+    pub revision: u64,
+}
+
 /// The lying snow of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LyingSnow {
@@ -39,9 +48,11 @@ pub(crate) struct LyingSnow {
     pub threshold_m_s: f64,
     /// Of each node of the host's terrain, in its order: depth in m, density in kg/m^3, wetness, albedo. Empty without one.
     pub cells: Vec<[f32; 4]>,
-    /// Incremented whenever `cells` change.
+    /// The same of the host's tiles that have any snow, by how many tiles they lie east and north.
+    pub tiles: BTreeMap<[i32; 2], TileSnow>,
+    /// Incremented whenever `cells` or `tiles` change.
     pub revision: u64,
-    /// Whether any of them has snow.
+    /// Whether any of their cells has snow.
     pub has_cells: bool,
     melt: VecDeque<(i64, Meltwater)>,
 }
@@ -51,6 +62,7 @@ impl LyingSnow {
     pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
         let first = (from_s / MELT_SLOT_S).floor() as i64;
         let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;
+        self.melt.reserve(SLOTS - self.melt.len());
         for slot in first..last {
             if self.melt.back().is_some_and(|(known, _)| *known >= slot) {
                 continue;
@@ -69,9 +81,17 @@ impl LyingSnow {
         self.melt.iter().rev().find(|(slot, _)| *slot <= wanted).map(|(_, water)| *water)
     }
 
-    /// Forgets the water of the past.
+    /// Forgets the water of the past, and what lay on tiles.
     pub fn forget(&mut self) {
         self.melt.clear();
+        self.tiles.clear();
+    }
+
+    /// Shows no cells.
+    pub fn show_none(&mut self) {
+        self.cells.clear();
+        self.tiles.clear();
+        self.has_cells = false;
     }
 }
 

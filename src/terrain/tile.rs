@@ -44,6 +44,11 @@ impl Tile {
         mixed(mixed(cell as u64) ^ (class << 32 | height))
     }
 
+    /// Whether anything is said of what its cells are made of: else none of them is a hole.
+    pub fn says_classes(&self) -> bool {
+        !self.classes.is_empty()
+    }
+
     /// The number of a cell's class, or [`HOLE`].
     pub fn class_number(&self, cell: usize) -> u8 {
         self.classes.get(cell).copied().unwrap_or(0)

@@ -173,6 +173,7 @@ impl World {
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
         let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
+        let ground_albedo = land.albedo_on(&planet);
         let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
@@ -180,7 +181,6 @@ impl World {
             drift_m: wind.map_or([0.0; 2], |wind| wind.drift.displacement_m.to_array()),
             curtains_fallen_m: curtain::fallen_m(time_s),
             color: self.set.color,
-            land_albedo: land.albedo_on(&planet),
             planet,
             sun,
             moon,
@@ -189,6 +189,7 @@ impl World {
             deck_cover,
             medium_share: medium_share(&under_sun),
             ground: above_fog,
+            ground_albedo,
             above_fog,
             conditions,
         };

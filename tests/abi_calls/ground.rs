@@ -122,6 +122,16 @@ fn a_device_without_shaders_of_the_hosts_has_no_texture_for_them() {
         assert_eq!((texture.texture, texture.generation), (0, 77), "an error writes nothing");
         assert_eq!(wk_context_get_ground_texture(world.context, null_mut()), WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("out_texture must not be NULL"), "{}", message());
+        let center = [0.0; 3];
+        assert_eq!(wk_context_get_terrain_texture(world.context, &center, &mut texture), WK_ERROR_UNSUPPORTED);
+        assert!(message().contains("terrain textures are for hosts that draw"), "{}", message());
+        assert_eq!(
+            wk_context_get_terrain_texture(world.context, null(), &mut texture),
+            WK_ERROR_INVALID_ARGUMENT,
+            "a place is missing"
+        );
+        assert!(message().contains("center_m must not be NULL"), "{}", message());
+        assert_eq!((texture.texture, texture.generation), (0, 77), "an error writes nothing");
     }
 }
 

@@ -110,6 +110,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_ground_texture", "context", false, |h| unsafe {
             wk_context_get_ground_texture(h.cast(), null_mut())
         }),
+        case("wk_context_get_terrain_texture", "context", false, |h| unsafe {
+            wk_context_get_terrain_texture(h.cast(), null(), null_mut())
+        }),
         case("wk_context_set_terrain", "context", false, |h| unsafe { wk_context_set_terrain(h.cast(), null()) }),
         case("wk_context_set_terrain_tile", "context", false, |h| unsafe {
             wk_context_set_terrain_tile(h.cast(), null())

@@ -183,6 +183,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_ground_texture", "out_texture", false, move |p| unsafe {
             wk_context_get_ground_texture(context, p.cast())
         }),
+        case("wk_ground_texture", "out_texture", false, move |p| unsafe {
+            wk_context_get_terrain_texture(context, &ORIGIN, p.cast())
+        }),
         case("wk_budget", "budget", true, move |p| unsafe { wk_view_set_budget(view, p.cast()) }),
         case("wk_part_wish", "budget.wishes[0]", true, move |p| {
             let budget = wk_budget { wish_count: 1, wishes: p.cast(), wish_stride: 2 << 20, ..init("wk_budget") };

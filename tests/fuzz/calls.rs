@@ -572,7 +572,8 @@ pub const CALLS: &[(&str, Call)] = &[
         let (context, mut revision) = (tiled(d, &w.contexts), 0);
         let most = if d.one_in(2) { 1024 } else { d.below(1025) as u32 };
         let size = size_of_element::<wk_ground_cell>(d);
-        let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
+        let beside = |d: &mut Dice| if d.one_in(2) { 0 } else { d.below(3) as i32 - 1 };
+        let (east, north) = (beside(d), beside(d));
         unsafe { wk_context_get_terrain_water(context, east, north, cells.as_mut_ptr(), most, size, &mut revision) }
             .into()
     }),
@@ -596,7 +597,9 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
     ("wk_context_load", |d, w| {
         let mut state = w.saved.clone();
-        texts::damage(d, &mut state);
+        if !d.one_in(3) {
+            texts::damage(d, &mut state);
+        }
         unsafe { wk_context_load(handle(d, &w.contexts), state.as_ptr().cast(), state.len()) }.into()
     }),
     ("wk_context_state_hash", |d, w| {
@@ -757,6 +760,10 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_get_ground_texture", |d, w| {
         let context = handle(d, &w.contexts);
         get("wk_ground_texture", |p| unsafe { wk_context_get_ground_texture(context, p.cast()) })
+    }),
+    ("wk_context_get_terrain_texture", |d, w| {
+        let (context, at) = (handle(d, &w.contexts), [d.float(), d.float(), d.float()]);
+        get("wk_ground_texture", |p| unsafe { wk_context_get_terrain_texture(context, &at, p.cast()) })
     }),
     ("wk_weather_from_metar", |d, _| {
         let report = CString::new(texts::metar(d)).expect("no zeros");

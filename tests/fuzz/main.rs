@@ -110,6 +110,7 @@ fn random_calls_are_answered_by_name() {
             "wk_surface_",
             "wk_device_forget_vulkan_image",
             "wk_context_get_ground_texture",
+            "wk_context_get_terrain_texture",
             "wk_view_get_cloud_shadows",
             "wk_view_get_environment",
             "wk_view_get_frame_textures",

@@ -2,7 +2,9 @@
 //! the queries say.
 
 use glow::HasContext;
-use welkin::capi::{device::*, frame::*, ground::*, ground_grid::*, ground_texture::*, veil::*, view::*};
+use welkin::capi::{
+    device::*, frame::*, ground::*, ground_grid::*, ground_texture::*, status::*, terrain::*, veil::*, view::*,
+};
 use welkin::gpu::gl::GlMode;
 
 use crate::c_scene::{Scene, frame, ground::*, init, ok};
@@ -235,6 +237,45 @@ fn what_a_frame_draws_from_is_what_the_host_samples() {
     assert_cells(&drawn(&host, api, &before, 1, SAMPLED), &cells);
     let after = texture(&scene);
     assert_eq!((after.texture, after.generation, after.revision), (before.texture, before.generation, revision));
+    scene.destroy();
+    // SAFETY: a live handle.
+    ok(unsafe { wk_device_destroy(device) });
+}
+
+#[test]
+fn the_water_of_tiles_about_a_place_is_a_texture_of_the_hosts_too() {
+    let api = Api::Core(3, 3);
+    let host = Host::new(api, Window::None, GlMode::Shared);
+    let device = device(&host);
+    let scene = scene(device);
+    let desc = wk_terrain { tile_cells: 32, ..init("wk_terrain") };
+    let slope = |i: usize| 0.05 * ((i % 7) as f32 - 3.0).abs();
+    let heights: Vec<f32> = (0..32 * 32).map(|i| slope(i % 32) + slope(i / 32)).collect();
+    let tile = wk_terrain_cells { heights_m: heights.as_ptr(), height_count: 32 * 32, ..init("wk_terrain_cells") };
+    let center = [40.0, 8.0, 0.0];
+    let mut from: wk_ground_texture = init("wk_ground_texture");
+    let mut cells = vec![wk_ground_cell { film_mm: 0.0, soaked: 0.0, standing_mm: 0.0, ice: 0.0 }; 32 * 32];
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(wk_context_get_terrain_texture(scene.context, &center, &mut from), WK_ERROR_WRONG_ORDER);
+        ok(wk_context_set_terrain(scene.context, &desc));
+        ok(wk_context_set_terrain_tile(scene.context, &tile));
+        rain(&scene, 12.0, 0.0, 1800.0);
+        ok(wk_context_get_terrain_texture(scene.context, &center, &mut from));
+        let size = size_of::<wk_ground_cell>() as u32;
+        ok(wk_context_get_terrain_water(scene.context, 0, 0, cells.as_mut_ptr(), 32 * 32, size, &mut 0));
+    }
+    assert_eq!((from.width, from.height, from.snow_texture), (512, 512, 0));
+    let texels = drawn(&host, api, &from, 1, SAMPLED);
+    for (i, cell) in cells.iter().enumerate() {
+        let at = [(i % 32) as f64, (i / 32) as f64, 0.0, 1.0];
+        let [x, y] = from.uv_from_world.map(|row| row.iter().zip(at).map(|(a, b)| a * b).sum::<f64>() * 512.0);
+        let texel = texels[y as usize * 512 + x as usize];
+        let near = |got: f32, wanted: f32| (got - wanted).abs() <= 1e-3 * wanted.abs() + 1e-4;
+        let stands = if cell.standing_mm > 0.0 { near(texel[2], cell.standing_mm) } else { texel[2] <= 0.0 };
+        assert!(near(texel[0], cell.film_mm) && near(texel[1], cell.soaked) && stands, "{at:?}: {texel:?}");
+    }
+    assert!(cells.iter().any(|c| c.standing_mm > 1.0) && cells.iter().any(|c| c.film_mm > 0.0));
     scene.destroy();
     // SAFETY: a live handle.
     ok(unsafe { wk_device_destroy(device) });

@@ -277,6 +277,16 @@ fn an_overcast_sky_is_brighter_over_snow() {
     // Back and forth between albedos of 0.2 or 0.82 and the clouds' own: (1 - 0.2 a) / (1 - 0.82 a).
     assert!((1.4..2.6).contains(&more), "{more}");
     assert!(white.adaptation_cd_m2 > more * bare.adaptation_cd_m2);
+    // What lights flakes from below, too.
+    let albedo = |depth_m: f64| {
+        let mut context = context(&host, LyingSnowModel::Simulated);
+        let surface = Surface { snow_depth_m: depth_m, ..Surface::default() };
+        context.set_weather(&Weather { temperature_c: -5.0, surface, ..Weather::default() }, 0.0, 0.0).unwrap();
+        context.update(60.0).unwrap();
+        context.scene_at(DVec3::ZERO, 60.0).unwrap().ground_albedo[1]
+    };
+    let (bare, white) = (albedo(0.0), albedo(0.3));
+    assert!(bare == 0.15 && (0.85..0.89).contains(&white), "{bare} {white}");
 }
 
 #[test]

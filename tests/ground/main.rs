@@ -10,6 +10,8 @@ mod leaps;
 mod lying_snow;
 mod mirrors;
 mod rings;
+mod snow_in_wind;
+mod snow_on_tiles;
 mod state;
 mod terrain;
 mod texture;
