@@ -89,7 +89,6 @@ fn steady_m(map: &CloudMap) -> Vec<f64> {
     let [columns, rows] = map.cells.map(|n| n as usize);
     let most = (columns + rows) as u32;
     let is_other = |i: usize, j: usize| map.cover[i] != map.cover[j];
-    let mut away = vec![most; map.cover.len()];
     let near = |i: usize| {
         let (x, y) = ((i % columns) as i64, (i / columns) as i64);
         let steps = (0..9).map(move |k| (x + k % 3 - 1, y + k / 3 - 1));
@@ -97,11 +96,8 @@ fn steady_m(map: &CloudMap) -> Vec<f64> {
             .filter(move |(x, y)| (0..columns as i64).contains(x) && (0..rows as i64).contains(y))
             .map(move |(x, y)| y as usize * columns + x as usize)
     };
-    for i in 0..away.len() {
-        if near(i).any(|j| is_other(i, j)) {
-            away[i] = 1;
-        }
-    }
+    let mut away: Vec<u32> =
+        (0..map.cover.len()).map(|i| if near(i).any(|j| is_other(i, j)) { 1 } else { most }).collect();
     // Chebyshev's distance, forth and back.
     for i in (0..away.len()).chain((0..away.len()).rev()) {
         away[i] = near(i).map(|j| away[j] + 1).min().unwrap_or(most).min(away[i]);

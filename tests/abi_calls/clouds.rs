@@ -55,7 +55,7 @@ fn a_map_of_clouds_comes_through_and_goes_again() {
     refused(set(&wk_cloud_map { cover: null(), ..map }), "cloud_map.cover must not be NULL");
     refused(set(&wk_cloud_map { cells: [0, 2], ..map }), "cloud_map.cells[0] must be in [1, 128]");
     refused(set(&wk_cloud_map { cells: [129, 2], ..map }), "cloud_map.cells[0] must be in [1, 128]");
-    refused(set(&wk_cloud_map { cell_m: f64::NAN, ..map }), "cloud_map.cell_m must be in");
+    refused(set(&wk_cloud_map { cell_m: f64::NAN, ..map }), "cloud_map.cell_m must be finite and in [100, 50 000]");
     refused(set(&wk_cloud_map { first_m: [0.0, 1e9], ..map }), "cloud_map.first_m[1] must be in");
     assert_eq!(hash(), mapped, "an error changes nothing");
     assert_eq!(unsafe { wk_context_set_cloud_map(world.context, null()) }, WK_OK);

@@ -25,7 +25,12 @@ pub struct Sky {
 
 impl Sky {
     pub fn new(report: &str, model: CloudModel) -> Self {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        Self::on(&DeviceOptions::default(), report, model)
+    }
+
+    /// The same on a device of one's own choice.
+    pub fn on(options: &DeviceOptions, report: &str, model: CloudModel) -> Self {
+        let device = Device::headless(options).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 120.0, elevation_deg: 40.0 })).unwrap();

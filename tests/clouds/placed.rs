@@ -4,13 +4,14 @@ use glam::DVec3;
 use welkin::{
     clouds::CloudModel,
     frame::FrameFlags,
+    gpu::DeviceOptions,
     rain::{AreaMotion, AreaRain, AreaShape, RainArea},
     weather::{CloudKind, CloudLayer, CloudMap, Weather},
 };
 
 use crate::{
     asked::drawn_over_asked,
-    drawn::{BROKEN, Sky},
+    drawn::{BROKEN, Sky, p95},
     shadows::over_ground,
 };
 
@@ -189,4 +190,19 @@ fn a_cloud_goes_with_its_rain() {
     let share = |x: f64, t: f64| sky.context.sun_share(DVec3::new(x, 0.0, 1400.0), t).unwrap();
     assert!(share(0.0, 0.0) < 0.01 && share(12e3, 0.0) == 1.0, "{} {}", share(0.0, 0.0), share(12e3, 0.0));
     assert!(share(0.0, 6000.0) == 1.0 && share(12e3, 6000.0) < 0.01);
+}
+
+/// The OpenGL driver draws the cells that the Vulkan one draws.
+#[test]
+fn both_drivers_draw_the_same_cell() {
+    let pictures = [DeviceOptions::default().backends, wgpu::Backends::GL].map(|backends| {
+        let options = DeviceOptions { backends, force_tier0: true, ..DeviceOptions::default() };
+        let mut sky = Sky::on(&options, CLEAR, CloudModel::Volume);
+        let area = RainArea { center_m: [0.0, 9000.0, 0.0], rate_mm_h: 0.1, ..RainArea::default() };
+        sky.context.set_rain_areas(&[area]).unwrap();
+        sky.look(DVec3::new(0.0, 1.0, 0.2), 2.0, None, FrameFlags::NO_HISTORY)
+    });
+    let off = p95(&pictures[0], &pictures[1]);
+    println!("the drivers are {off:.4} apart at 95 %");
+    assert!(off < 0.01, "{off}");
 }
