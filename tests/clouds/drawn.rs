@@ -37,7 +37,10 @@ impl Sky {
         context.set_cloud_model(model);
         context.set_weather(&Weather::from_metar(report).unwrap().weather, 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+        // OpenGL cannot draw to whole floats.
+        let format =
+            if options.force_tier0 { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
+        let color = crate::textures::texture(&device, SIZE, format, 1);
         Self { device, context, view, color, frame_id: 0 }
     }
 
