@@ -293,6 +293,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_ENVIRONMENT 64
 /** wk_cloud_shadows */
 #define WK_STRUCT_TYPE_CLOUD_SHADOWS 85
+/** wk_cloud_map */
+#define WK_STRUCT_TYPE_CLOUD_MAP 86
 
 /**
  * The name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never freed.
@@ -4645,7 +4647,8 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
  * later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
  * From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
- * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas.
+ * queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where clouds are
+ * a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it.
  * wk_context_save keeps them.
  * ====================================================================================================
  */
@@ -5263,6 +5266,83 @@ wk_status wk_context_get_limiting_magnitude_at(const wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * Cloud map
+ *
+ * Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds in
+ * pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
+ * ====================================================================================================
+ */
+
+/**
+ * How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1, and
+ * the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go through it
+ * with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the outermost middles
+ * theirs hold on.
+ */
+typedef struct wk_cloud_map {
+    /** sizeof(wk_cloud_map) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CLOUD_MAP. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7], default
+     * 0, 0.
+     */
+    double first_m[2];
+    /** Side of a cell, m. Range [100, 50 000], default 1000. */
+    double cell_m;
+    /** Number of cells east and north. Range [1, 128], default 1, 1. */
+    uint32_t cells[2];
+    /**
+     * Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one first,
+     * default -1000, 20 000: all layers.
+     */
+    double base_m[2];
+    /**
+     * A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows from
+     * south to north. Copied by the call.
+     */
+    const float *cover;
+    /** Number of cells in `cover`: the product of `cells`. */
+    uint32_t cover_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+} wk_cloud_map;
+
+/** Every field of `wk_cloud_map` at its default. */
+#define WK_CLOUD_MAP_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cloud_map), \
+    /* struct_type */ WK_STRUCT_TYPE_CLOUD_MAP, \
+    /* next */ NULL, \
+    /* first_m */ { 0.0, 0.0 }, \
+    /* cell_m */ 1000.0, \
+    /* cells */ { 1, 1 }, \
+    /* base_m */ { -1000.0, 20000.0 }, \
+    /* cover */ NULL, \
+    /* cover_count */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/**
+ * Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the saved
+ * state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_cloud_map(wk_context *context,
+                                   const wk_cloud_map *cloud_map);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CLOUD_MAP_INIT`. `struct_size` is `sizeof(wk_cloud_map)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

@@ -19,30 +19,59 @@ struct CloudHere {
     excess: f32,
     // 1/m.
     extinction: f32,
+    // The same less what is wanting under the dome: above 0 in cloud.
+    inside: f32,
     // As `gap`, frayed.
     frayed_gap: f32,
     // Excess at which the place reaches the layer's top.
     dome: f32,
+    // Distance within which the place's threshold stays, m, and how much it changes a metre beyond.
+    steady: f32,
+    slope: f32,
+    // How far there is no cloud whatever the map holds, m.
+    clear: f32,
 }
 
-fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
+fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
+    let local = cloud_local(whole, cloud_unleaned(whole, at));
+    let layer = local.layer;
     let over = cloud_over(layer, at);
     let frays = cloud_frays(layer, at);
     let excess = over - cloud_dome(layer, over, at.height);
     let dome = cloud_dome_over(layer, over);
     // Rounded bases only take away, and an anvil may lie above.
     let gap = min(dome * at.height * at.height, layer.lean.z) - over;
-    return CloudHere(gap, over + frays, cloud_extinction(layer, excess + frays), gap - frays, dome);
+    let inside = excess + frays;
+    let clear = select(0.0, local.steady, CLOUD_PLACED && layer.shape.x > CLOUD_CLEAR_FROM);
+    let extinction = cloud_extinction(layer, inside);
+    return CloudHere(gap, over + frays, extinction, inside, gap - frays, dome, local.steady, local.slope, clear);
+}
+
+// How far a place is in cloud, or out of it, below 0.
+fn cloud_inside(here: CloudHere) -> f32 {
+    return here.inside;
 }
 
 // Distance along a ray from a place outside of clouds within which there is none, m: strength changes no faster than map, noise and dome
 // do, and noise adds no more than it can.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
-    let level = layer.size.z * (length(direction.xy) + leaning);
+    let level = length(direction.xy) + leaning;
     let dome = 2.0 * here.dome * height * layer.size.y * max(-direction.z, 0.0);
-    let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (MAP_SKIP * level + dome + 1e-6);
-    let by_noise = here.frayed_gap / (MAP_SKIP * level + dome + SOLID_SKIP * layer.shape.z * layer.medium.w);
+    let steep = MAP_SKIP * layer.size.z * level + dome;
+    let skip = cloud_skip_by(layer, here, steep);
+    if !CLOUD_PLACED {
+        return skip;
+    }
+    // Within some distance the threshold stays; beyond, it may change.
+    let near = max(min(skip, here.steady / max(level, 1e-3)), here.clear / max(level, 1e-3));
+    return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
+}
+
+// The same where what is wanting falls no faster than `steep` a metre, but for what the noise adds.
+fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
+    let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (steep + 1e-6);
+    let by_noise = here.frayed_gap / (steep + SOLID_SKIP * layer.shape.z * layer.medium.w);
     return max(by_map, by_noise);
 }
 
@@ -92,25 +121,29 @@ fn cloud_sun_way(layer: CloudLayer, at: CloudPlace) -> f32 {
         let end = min(SUN_WAY[i] / layer.size.z, way);
         let t = 0.5 * (gone + end);
         let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
-        let over = cloud_over(layer, p);
-        let excess = over - cloud_dome(layer, over, p.height) + cloud_frays(layer, p);
+        let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
+        let over = cloud_over(there, p);
+        let excess = over - cloud_dome(there, over, p.height) + cloud_frays(there, p);
         depth += clamp(excess * layer.shape.w, 0.0, 1.0) * (end - gone);
         gone = end;
     }
     for (var i = SUN_FRAYED; i < SUN_STEPS && gone < way; i++) {
         let end = min(SUN_WAY[i] / layer.size.z, way);
         let t = 0.5 * (gone + end);
-        let over = cloud_over(layer, CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t));
-        depth += cloud_stretch(layer, over, at.height + rise * gone, rise, end - gone);
+        let p = CloudPlace(at.level + clouds.to_sun.xy * t, at.height + rise * t);
+        let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
+        depth += cloud_stretch(there, cloud_over(there, p), at.height + rise * gone, rise, end - gone);
         gone = end;
     }
     return depth;
 }
 
-fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
+fn cloud_depths(whole: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
+    // About a place the cloud counts as it is there.
+    let layer = cloud_local(whole, cloud_unleaned(whole, at)).layer;
     let scaled = layer.size.w * layer.medium.y;
     let about = cloud_about(layer, excess, at.height) * scaled;
-    let to_sun = cloud_sun_way(layer, at) * scaled;
+    let to_sun = cloud_sun_way(whole, at) * scaled;
     let sine = length(clouds.to_sun.xy);
     let edge = max(about.z, 0.02);
     let other = max(layer.below.w - edge, edge);

@@ -17,6 +17,11 @@ fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
     return CloudHere(0.0, layer.size.w);
 }
 
+// All of a box is cloud.
+fn cloud_inside(here: CloudHere) -> f32 {
+    return 1.0;
+}
+
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     return 0.0;
 }

@@ -24,6 +24,20 @@ struct CloudLayer {
     stretch: vec4f,
     // How far the top lies downwind of the base (east, north), m; least excess with an anvil over it; length of the first two.
     lean: vec4f,
+    // Of a host's map of it (placed.wgsl): where the camera stands, in cells from the middle of the first, 1/cell, 1/m, row of its first texels.
+    mapped: vec4f,
+    // Cells of the map east and north, 0 without; held domes times dome squared; most change of threshold a metre.
+    cells: vec4f,
+    // Where it is filled over rain areas: threshold, dome, extinction, 1/m; how many areas there are, 0 for other layers.
+    filled: vec4f,
+}
+
+// A cell of cloud over a rain area: an ellipse.
+struct CloudArea {
+    // Its middle, m east and north of the camera; the way to the right.
+    place: vec4f,
+    // Half its extent to the right and ahead, width over which it sets in, smaller half extent, m.
+    extent: vec4f,
 }
 
 struct CloudMedium {
@@ -44,6 +58,7 @@ struct CloudsUniform {
     unused: f32,
     media: array<CloudMedium, 2>,
     layers: array<CloudLayer, 16>,
+    areas: array<CloudArea, 16>,
 }
 
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;

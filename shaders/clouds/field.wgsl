@@ -1,5 +1,6 @@
 // Where there is cloud. Twin of src/clouds/field.rs, where the model is described.
 //!include "clouds/block.wgsl"
+//!include "clouds/placed.wgsl"
 
 @group(0) @binding(2) var cloud_map: texture_2d<f32>;
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
@@ -22,15 +23,23 @@ struct CloudPlace {
     height: f32,
 }
 
+// Height over which a base is round at its edges: share of the thickness, and m at most.
+const EDGE_SHARE: f32 = 0.08;
+const EDGE_M: f32 = 40.0;
 // Heights between which an anvil is whole, and over which its faces fade.
 const ANVIL: vec2f = vec2f(0.84, 0.95);
 const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // How much smoother an anvil is than its towers.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
-// A place as the pattern has it: what is above the base leans, and is drawn out along the wind.
+// A place over the ground, as it is at the base: what is above that leans.
+fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
+    return at.level - layer.lean.xy * (at.height * at.height);
+}
+
+// The same as the pattern has it: drawn out along the wind.
 fn cloud_upright(layer: CloudLayer, at: CloudPlace) -> vec2f {
-    let level = at.level - layer.lean.xy * (at.height * at.height);
+    let level = cloud_unleaned(layer, at);
     return vec2f(dot(layer.stretch.xy, level), dot(layer.stretch.yz, level));
 }
 
@@ -58,9 +67,10 @@ fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
 
 // Excess that a place of this excess needs at a height: a flat base with round edges, and a dome or an anvil.
 fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
-    let edge = max(1.0 - height / 0.08, 0.0);
+    let share = min(EDGE_M * layer.size.y, EDGE_SHARE);
+    let edge = max(1.0 - height / share, 0.0);
     let off = max(vec2f(ANVIL.x - height, height - ANVIL.y), vec2f(0.0)) / ANVIL_FACES;
-    return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge, layer.lean.z + 3.0 * dot(off, off));
+    return min(cloud_dome_over(layer, excess) * height * height + 0.25 * edge * edge * share / EDGE_SHARE, layer.lean.z + 3.0 * dot(off, off));
 }
 
 // What the solid noise adds to the excess.

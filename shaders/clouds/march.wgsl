@@ -54,6 +54,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     let halo = cloud_halo(layer.medium.x, direction);
     var gone = first;
     var tried = 0u;
+    // The last place without cloud since the last with some, and how much is wanting there, or 0.
+    var before = vec2f(first, 0.0);
     while out.transmittance > CLOUD_LEAST {
         // To the next step with cloud in it: light is looked up for those alone, all rays of a wave together.
         var step = 0.0;
@@ -67,8 +69,27 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
             at = cloud_place(layer, direction, t);
             here = cloud_here(layer, at);
             here.extinction *= cloud_fades(t - first);
-            gone += select(max(step, cloud_skip(layer, here, at.height, direction)), step, here.extinction > 0.0);
             tried++;
+            if here.extinction > 0.0 {
+                // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
+                let face = before.x + (t - before.x) * before.y / max(before.y + cloud_inside(here), 1e-6);
+                if before.y > 0.0 && face > 0.0 {
+                    let at_face = cloud_place(layer, direction, face + jitter * step);
+                    var behind = cloud_here(layer, at_face);
+                    behind.extinction *= cloud_fades(t - first);
+                    if behind.extinction > 0.0 {
+                        here = behind;
+                        at = at_face;
+                        t = face + jitter * step;
+                        gone = face;
+                    }
+                }
+                before.y = 0.0;
+                gone += step;
+            } else {
+                before = vec2f(t, -cloud_inside(here));
+                gone += max(step, cloud_skip(layer, here, at.height, direction));
+            }
         }
         if here.extinction <= 0.0 {
             break;

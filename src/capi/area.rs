@@ -4,7 +4,8 @@
 //! weather's rain and drizzle give way to the area's, smoothly over the rim inside its border. Where areas overlap, a
 //! later one in the list lies over the earlier ones. A camera inside sees drops of the rate at each drop's own place.
 //! From outside the rain is a shaft with falling curtains, which leans as the drops fall behind their cloud. All
-//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas.
+//! queries of rain and visibility, and the ground's wetness by the weather of the moment, include the areas. Where clouds are
+//! a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud over it.
 //! wk_context_save keeps them.
 
 use std::{ffi::c_void, ptr::null};

@@ -69,6 +69,7 @@ pub mod light;
 
 pub mod stars;
 
+pub mod cloud_map;
 pub mod clouds;
 
 pub mod cloud_shadow;

@@ -173,6 +173,8 @@ pub const WK_STRUCT_TYPE_SNOW_STRIP: wk_struct_type = 80;
 pub const WK_STRUCT_TYPE_ENVIRONMENT: wk_struct_type = 64;
 /// wk_cloud_shadows
 pub const WK_STRUCT_TYPE_CLOUD_SHADOWS: wk_struct_type = 85;
+/// wk_cloud_map
+pub const WK_STRUCT_TYPE_CLOUD_MAP: wk_struct_type = 86;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

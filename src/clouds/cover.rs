@@ -156,7 +156,7 @@ pub fn is_ice(slab: &CloudSlab) -> bool {
 
 /// A layer's clouds with a threshold, in still air.
 pub fn field<'a>(slab: &CloudSlab, (map, solid): &'a (Map, Solid), threshold: f64) -> Field<'a> {
-    Field { shape: Shape::still(slab, threshold), map, solid }
+    Field { shape: Shape::still(slab, threshold), map, solid, placed: Default::default() }
 }
 
 /// Cover that a kind is seen to have where it is asked for: the mean over seeds, and how far they spread.

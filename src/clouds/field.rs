@@ -15,6 +15,8 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
+use super::placed::Placed;
+
 /// Texels of the map along a side.
 pub const MAP_SIZE: usize = 256;
 /// Largest number that the map holds.
@@ -120,6 +122,8 @@ pub struct Field<'a> {
     pub map: &'a Map,
     /// What frays their edges.
     pub solid: &'a Solid,
+    /// Where they are other than the layer's cover says.
+    pub(super) placed: Placed,
 }
 
 /// [`Shape::anvil`] of a layer without.
@@ -151,10 +155,16 @@ impl Shape {
     }
 }
 
+/// Height over which a base is round at its edges: share of the thickness, and m at most. Bases of deep layers are the flatter.
+const EDGE_SHARE: f64 = 0.08;
+const EDGE_M: f64 = 40.0;
+
 /// Excess that a place of this excess needs at a height, 0 at the base to 1 at the top: a flat base with round edges, and a dome or an anvil.
 pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
-    let edge = (1.0 - height / 0.08).max(0.0);
-    (shape.dome_over(excess) * height * height + 0.25 * edge * edge).min(anvil_needs(shape, height))
+    let share = (EDGE_M / shape.thickness_m).min(EDGE_SHARE);
+    let edge = (1.0 - height / share).max(0.0);
+    let edge = edge * edge * share / EDGE_SHARE;
+    (shape.dome_over(excess) * height * height + 0.25 * edge).min(anvil_needs(shape, height))
 }
 
 impl Field<'_> {
@@ -168,6 +178,13 @@ impl Field<'_> {
         let c = s.cellular;
         let scale = 1.0 / (2.0 * (c * c + (1.0 - c) * (1.0 - c))).sqrt();
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
+    }
+
+    /// The clouds about a place as they are there, within which distance that holds, m, and how much the threshold changes a metre beyond.
+    pub(super) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
+        let mut shape = self.shape;
+        let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
+        (Self { shape, placed: Placed::default(), ..*self }, steady)
     }
 
     /// A place of the layer as its pattern has it: what is above the base leans.
@@ -198,17 +215,17 @@ impl Field<'_> {
 
     /// Extinction, 1/m, at a place `position_m` (east and north of the world's origin, above the sea).
     pub fn extinction_per_m(&self, position_m: DVec3) -> f64 {
-        let s = &self.shape;
-        let height = (position_m.z - s.base_m) / s.thickness_m;
+        let height = (position_m.z - self.shape.base_m) / self.shape.thickness_m;
         if !(0.0..=1.0).contains(&height) {
             return 0.0;
         }
-        let over = self.over(position_m);
-        let excess = over - dome(s, over, height);
-        if excess < -MOST_FRAYED * s.rough {
+        let (here, _) = self.here(position_m);
+        let over = here.over(position_m);
+        let excess = over - dome(&here.shape, over, height);
+        if excess < -MOST_FRAYED * here.shape.rough {
             return 0.0;
         }
-        self.dense(excess + self.frays(position_m))
+        here.dense(excess + here.frays(position_m))
     }
 }
 

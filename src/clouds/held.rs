@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::{
     CloudModel,
-    field::{Map, Shape, Solid},
+    field::{Field, Map, Solid},
+    layer_map::LayerMaps,
     light::Sources,
     march::CloudRays,
     overhead::Overhead,
@@ -15,8 +16,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    moment::Scene,
-    wind::LayerDrifts,
+    moment::{Scene, WeatherOver},
     world::{HeldEffect, parse_error},
 };
 
@@ -33,6 +33,7 @@ pub(super) struct Grown {
     pub map: Map,
     pub solid: Solid,
     lit: Mutex<Option<Lit>>,
+    maps: Mutex<LayerMaps>,
 }
 
 /// Light in droplets of a diameter and in ice, under a sun.
@@ -44,7 +45,13 @@ struct Lit {
 
 impl Grown {
     fn new(seed: u64) -> Result<Self> {
-        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Mutex::new(None) })
+        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Mutex::new(None), maps: Mutex::default() })
+    }
+
+    /// The clouds of one of all layers over a place.
+    pub fn field(&self, overhead: &Overhead, layer: usize) -> Field<'_> {
+        let placed = overhead.placed(layer);
+        Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
     }
 
     /// Light in droplets of a diameter and in ice, under a sun.
@@ -87,18 +94,33 @@ impl HeldClouds {
     }
 
     /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: by the clouds that a
-    /// volume draws there, or with a deck on the mean over places. The wind has carried the layers so far.
+    /// volume draws there, or with a deck on the mean over places. `eye` is the place in the host's world.
     ///
     /// # Errors
-    /// As [`Solid::new`].
-    pub fn sun_share(&self, seed: u64, scene: &Scene, drifts: &LayerDrifts) -> Result<f64> {
-        let c = &scene.conditions;
+    /// As [`Solid::new`], and for a time that the weather does not know.
+    pub fn sun_share(&self, seed: u64, (scene, eye): (&Scene, DVec3), at: (&WeatherOver<'_>, f64)) -> Result<f64> {
         if self.model == CloudModel::Deck {
             return Ok(scene.brighter().direct_share);
         }
         let grown = self.grown(seed)?;
-        let slots = c.clouds.iter().zip(&drifts.slots).filter(|(slab, _)| slab.cover > 0.0);
-        Ok(sun_share(slots.map(|(slab, drift)| Shape::new(c, slab, drift)), &grown.map, &grown.solid, scene))
+        let Some(overhead) = self.overhead(grown, (scene, eye), at)? else { return Ok(1.0) };
+        Ok(sun_share((0..overhead.all().len()).map(|i| grown.field(&overhead, i)), scene))
+    }
+
+    /// What there is over a scene's place.
+    fn overhead(
+        &self,
+        grown: &Grown,
+        (scene, eye): (&Scene, DVec3),
+        (over, time_s): (&WeatherOver<'_>, f64),
+    ) -> Result<Option<Overhead>> {
+        let drifts = over.layers_until(time_s)?;
+        let mut overhead = Overhead::new(self.model, scene, &drifts, Shape::of);
+        if let Some(overhead) = &mut overhead {
+            let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            overhead.place((scene, eye), (over, time_s), &mut maps)?;
+        }
+        Ok(overhead.filter(|o| !o.all().is_empty()))
     }
 
     /// What clouds are cut out of.
@@ -110,13 +132,24 @@ impl HeldClouds {
         Ok(self.grown.get_or_init(|| grown))
     }
 
-    /// The clouds about a scene's place, where the model draws them as a volume. The wind has carried the layers so far.
+    /// The clouds about a scene's place, which is `eye` in the host's world, where the model draws them as a volume.
     ///
     /// # Errors
-    /// As [`Solid::new`].
-    pub fn rays(&self, seed: u64, scene: &Scene, drifts: &LayerDrifts, radius_m: f64) -> Result<Option<CloudRays<'_>>> {
-        let Some(overhead) = Overhead::new(self.model, scene, drifts, Shape::of) else { return Ok(None) };
-        Ok(Some(CloudRays::new(&overhead, self.grown(seed)?, scene, radius_m.min(1e9))))
+    /// As [`HeldClouds::sun_share`].
+    pub fn rays(
+        &self,
+        seed: u64,
+        (scene, eye): (&Scene, DVec3),
+        at: (&WeatherOver<'_>, f64),
+        radius_m: f64,
+    ) -> Result<Option<CloudRays<'_>>> {
+        // Nothing is made for a sky that has no clouds.
+        if scene.conditions.cloud_slabs().next().is_none() && at.0.regions.is_empty() {
+            return Ok(None);
+        }
+        let grown = self.grown(seed)?;
+        let overhead = self.overhead(grown, (scene, eye), at)?;
+        Ok(overhead.map(|overhead| CloudRays::new(&overhead, grown, scene, radius_m.min(1e9))))
     }
 }
 

@@ -13,6 +13,7 @@ use super::{
     held::Grown,
     light::{Depths, Sources},
     overhead::{ICE, Overhead, light_on},
+    placed::CLEAR,
     uniforms::{LayerLight, WIDTH_CELLS},
 };
 use crate::moment::Scene;
@@ -32,6 +33,9 @@ const SUN_FRAYED: usize = 3;
 /// Slope of the map, a distance from cloud to cloud, and of the solid noise, a side of it, by which rays skip.
 const MAP_SKIP: f64 = 6.0;
 const SOLID_SKIP: f64 = 12.0;
+
+/// Threshold from which on there is no cloud: just below [`CLEAR`].
+const CLEAR_FROM: f64 = CLEAR - 0.05;
 
 /// What a ray sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +80,8 @@ struct March {
 /// A place inside of a layer's cloud.
 struct AtPlace<'a> {
     of: &'a Lit<'a>,
+    /// The layer's clouds as they are here.
+    field: Field<'a>,
     position_m: DVec3,
     height: f64,
     excess: f64,
@@ -86,15 +92,15 @@ impl<'a> CloudRays<'a> {
     pub(super) fn new(overhead: &Overhead, grown: &'a Grown, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
         let sources = grown.sources(overhead.liquid_um, to_sun);
-        let lit = |layer: &super::overhead::Layer| Lit {
-            field: Field { shape: layer.shape, map: &grown.map, solid: &grown.solid },
+        let lit = |(i, layer): (usize, &super::overhead::Layer)| Lit {
+            field: grown.field(overhead, i),
             share: layer.share,
             light: light_on(scene, &layer.shape, 1.0),
             medium: layer.medium(),
             scale: sources[layer.medium()].scattering.scale(),
         };
         Self {
-            layers: overhead.all().iter().map(lit).collect(),
+            layers: overhead.all().iter().enumerate().map(lit).collect(),
             place_m: overhead.place_m.extend(scene.place.altitude_m),
             radius_m,
             has_deck: overhead.has_deck,
@@ -180,15 +186,16 @@ impl<'a> CloudRays<'a> {
             let t = gone + 0.5 * step;
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;
-            let over = of.field.over(position_m);
-            let frays = of.field.frays(position_m);
+            let (field, steady) = of.field.here(position_m);
+            let over = field.over(position_m);
+            let frays = field.frays(position_m);
             let fades = ((first + FARTHEST_M - t) / FADES_M).clamp(0.0, 1.0);
-            let extinction = of.field.dense(over - dome(s, over, height) + frays) * of.scale * fades;
+            let extinction = field.dense(over - dome(&field.shape, over, height) + frays) * of.scale * fades;
             if extinction <= 0.0 {
-                gone += step.max(skip(s, [over, frays], height, d));
+                gone += step.max(skip((&field.shape, steady), [over, frays], height, d));
                 continue;
             }
-            let place = AtPlace { of, position_m, height, excess: over + frays };
+            let place = AtPlace { of, field, position_m, height, excess: over + frays };
             let left = (-extinction * step).exp();
             let share = seen.transmittance * (1.0 - left);
             seen.light += self.scattered(&place, -d, seen.transmittance) * share;
@@ -230,21 +237,28 @@ impl<'a> CloudRays<'a> {
 }
 
 /// Distance along a ray from a place outside of clouds within which there is none, m: `cloud_skip`.
-fn skip(s: &Shape, [over, frays]: [f64; 2], height: f64, d: DVec3) -> f64 {
+fn skip((s, [steady_m, slope_per_m]): (&Shape, [f64; 2]), [over, frays]: [f64; 2], height: f64, d: DVec3) -> f64 {
     let domed = s.dome_over(over);
     let gap = (domed * height * height).min(s.anvil) - over;
     let leaning = 2.0 * s.lean_m.length() / s.thickness_m * d.z.abs();
-    let level = (d.truncate().length() + leaning) / s.scale_m;
+    let level = d.truncate().length() + leaning;
     let round = 2.0 * domed * height / s.thickness_m * (-d.z).max(0.0);
-    let by_map = (gap - super::field::MOST_FRAYED * s.rough) / (MAP_SKIP * level + round + 1e-6);
-    let by_noise = (gap - frays) / (MAP_SKIP * level + round + SOLID_SKIP * s.rough / s.solid_m);
-    by_map.max(by_noise)
+    let within = |slope_per_m: f64| {
+        let steep = (MAP_SKIP / s.scale_m + slope_per_m) * level + round;
+        let by_map = (gap - super::field::MOST_FRAYED * s.rough) / (steep + 1e-6);
+        let by_noise = (gap - frays) / (steep + SOLID_SKIP * s.rough / s.solid_m);
+        by_map.max(by_noise)
+    };
+    // Within some distance the threshold stays; beyond, it may change.
+    let steady = steady_m / level.max(1e-3);
+    let near = if s.threshold > CLEAR_FROM { steady } else { within(0.0).min(steady) };
+    near.max(within(slope_per_m))
 }
 
 impl AtPlace<'_> {
     /// Metres of full extinction towards the sun: `cloud_sun_way`.
     fn sun_way(&self, to_sun: DVec3) -> f64 {
-        let (field, s) = (&self.of.field, &self.of.field.shape);
+        let s = &self.field.shape;
         let z = if to_sun.z >= 0.0 { to_sun.z.max(1e-3) } else { to_sun.z.min(-1e-3) };
         let rise = z / s.thickness_m;
         let way = if rise > 0.0 { 1.0 - self.height } else { self.height } / rise.abs();
@@ -258,12 +272,13 @@ impl AtPlace<'_> {
             let height = self.height + rise * t;
             let at = self.position_m.truncate() + to_sun.truncate() * t;
             let at = at.extend(s.base_m + height * s.thickness_m);
-            let over = field.over(at);
+            let (there, _) = self.of.field.here(at);
+            let over = there.over(at);
             if i < SUN_FRAYED {
-                let excess = over - dome(s, over, height) + field.frays(at);
+                let excess = over - dome(&there.shape, over, height) + there.frays(at);
                 depth += (excess / s.soft).clamp(0.0, 1.0) * (end - gone);
             } else {
-                depth += stretch(s, over, [self.height + rise * gone, rise], end - gone);
+                depth += stretch(&there.shape, over, [self.height + rise * gone, rise], end - gone);
             }
             gone = end;
         }
@@ -272,7 +287,7 @@ impl AtPlace<'_> {
 
     /// Scaled depths of cloud about it: `cloud_depths`.
     fn depths(&self, to_sun: DVec3) -> Depths {
-        let s = &self.of.field.shape;
+        let s = &self.field.shape;
         let scaled = s.extinction_per_m * self.of.scale;
         let about = about(s, self.excess, self.height);
         let [above, below, level] = [about.above_m, about.below_m, about.edge_m].map(|m| m * scaled);

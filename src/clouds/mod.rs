@@ -7,6 +7,7 @@
 //!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
+//! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`.
 //! * [`shadow`]: the light that it lets through to a place, and a map of that for pictures and for a host's own materials (`handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
@@ -21,12 +22,14 @@ pub mod field;
 pub mod halo;
 mod handed;
 mod held;
+mod layer_map;
 pub mod light;
 pub mod map;
 mod march;
 mod overhead;
 mod passes;
 mod picture;
+mod placed;
 pub mod probe;
 pub mod reference;
 mod round;

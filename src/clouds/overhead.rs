@@ -1,12 +1,14 @@
 //! What there is of clouds at a camera or a place that is asked about: layers as volumes, how much of them is a deck, and the light on them.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
 use super::{
     CloudModel,
     field::Shape,
+    layer_map::LayerMap,
+    placed::AreaCells,
     uniforms::{LAYERS, LayerLight},
 };
 use crate::{
@@ -49,6 +51,10 @@ pub(super) struct Overhead {
     pub liquid_um: f64,
     /// How far the wind has carried the layers.
     pub drifts: LayerDrifts,
+    /// Of each layer, where its clouds are other than its cover says; and the cells over rain areas ([`super::placed`]).
+    pub maps: [Option<Arc<LayerMap>>; LAYERS],
+    /// See `maps`.
+    pub areas: Option<AreaCells>,
 }
 
 /// How much of the lowest layer above the camera is drawn as a volume. A closed one that hides the sky, seen from further below, is a deck
@@ -76,8 +82,8 @@ fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
 }
 
 impl Overhead {
-    /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume or there
-    /// are no clouds. `still`: [`Shape::of`], or what remembers it.
+    /// What there is at a scene's place for a model, where the wind has carried the layers so far; `None` where the model is no volume.
+    /// `still`: [`Shape::of`], or what remembers it.
     pub fn new(
         model: CloudModel,
         scene: &Scene,
@@ -100,13 +106,15 @@ impl Overhead {
             share: if is_above(slab) { share } else { 1.0 },
         };
         let mut overhead = Self {
-            layers: [layer(slots().next()?); LAYERS],
+            layers: [layer(slots().next().unwrap_or((0, &CloudSlab::NONE))); LAYERS],
             has_deck: share < 1.0,
             count: 0,
             drawn: 0,
             place_m: DVec2::from_array(scene.map_m),
             liquid_um: nearest_diameter(slabs()),
             drifts: *drifts,
+            maps: Default::default(),
+            areas: None,
         };
         for layer in slots().map(layer) {
             overhead.layers[overhead.count] = layer;
@@ -134,7 +142,30 @@ impl Overhead {
 
     /// Whether some of it leaves gaps.
     pub fn is_broken(&self) -> bool {
-        self.layers().iter().any(|layer| layer.slab.cover < 1.0)
+        self.is_placed() || self.layers().iter().any(|layer| layer.slab.cover < 1.0)
+    }
+
+    /// Draws nothing as a deck.
+    pub fn show_all(&mut self) {
+        self.layers.iter_mut().for_each(|layer| layer.share = 1.0);
+        (self.drawn, self.has_deck) = (self.count, false);
+    }
+
+    /// Puts a layer among the others by its base; answers its place, or none where there is no room.
+    pub fn insert(&mut self, layer: Layer) -> Option<usize> {
+        if self.count == LAYERS {
+            return None;
+        }
+        let place = self.all().iter().take_while(|other| other.shape.base_m <= layer.shape.base_m).count();
+        self.layers[place..=self.count].rotate_right(1);
+        self.maps[place..=self.count].rotate_right(1);
+        (self.layers[place], self.maps[place]) = (layer, None);
+        self.count += 1;
+        if self.count == 1 {
+            self.liquid_um = nearest_diameter([CloudSlab { cover: 1.0, ..layer.slab }].iter());
+        }
+        self.show_all();
+        Some(place)
     }
 }
 

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use super::{
-    picture::{BEHIND, PAIR, Picture, SEEN},
+    overhead::Overhead,
+    picture::{BEHIND, PAIR, Picture, SEEN, marched},
     round::{Around, Round},
     shadow_map::{Lie, Past, ShadowMap},
     tables::CloudTables,
@@ -35,8 +36,8 @@ struct Resolve {
 struct Pipelines {
     picture_layout: wgpu::BindGroupLayout,
     shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// By its fineness ([`super::CloudSettings`]).
-    march: (f64, wgpu::RenderPipeline),
+    /// By its fineness ([`super::CloudSettings`]), and whether clouds are placed ([`super::placed`]).
+    march: ((f64, bool), wgpu::RenderPipeline),
     follow: wgpu::RenderPipeline,
     /// Those of the march and of the sky, which the clouds of all directions are marched with too.
     march_layouts: [wgpu::BindGroupLayout; 2],
@@ -55,7 +56,7 @@ fn make(
 }
 
 impl Pipelines {
-    fn new(device: &Device, sky: &wgpu::BindGroupLayout, fineness: f64) -> Result<Self> {
+    fn new(device: &Device, sky: &wgpu::BindGroupLayout, march: (f64, bool)) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);
         let march_layout = layout(&[
@@ -67,6 +68,7 @@ impl Pipelines {
             (5, Slot::Sampler),
             (6, Slot::Sampler),
             (7, Slot::Uniform(size_of::<PictureUniform>())),
+            (8, Slot::Filtered),
         ]);
         let picture_layout = layout(&[
             (0, Slot::Uniform(size_of::<FrameUniform>())),
@@ -90,7 +92,7 @@ impl Pipelines {
         let march_layouts = [march_layout, sky.clone()];
         let follow = ("clouds/follow.wgsl", "follow");
         Ok(Self {
-            march: (fineness, Self::march(device, &march_layouts, fineness)?),
+            march: (march, Self::march(device, &march_layouts, march)?),
             march_layouts,
             follow: make(device, follow, &[&picture_layout], &[SEEN, SEEN, PAIR], &[])?,
             resolve: Vec::new(),
@@ -99,9 +101,14 @@ impl Pipelines {
         })
     }
 
-    fn march(device: &Device, layouts: &[wgpu::BindGroupLayout; 2], fineness: f64) -> Result<wgpu::RenderPipeline> {
+    fn march(
+        device: &Device,
+        layouts: &[wgpu::BindGroupLayout; 2],
+        (fineness, is_placed): (f64, bool),
+    ) -> Result<wgpu::RenderPipeline> {
         let march = ("clouds/march_view.wgsl", "march");
-        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &[("CLOUD_FINENESS", fineness)])
+        let constants = [("CLOUD_FINENESS", fineness), ("CLOUD_PLACED", yes(is_placed))];
+        make(device, march, &layouts.each_ref(), &[SEEN, PAIR], &constants)
     }
 
     fn resolve(&mut self, device: &Device, wanted: Resolve) -> Result<wgpu::RenderPipeline> {
@@ -136,6 +143,8 @@ pub(super) struct CloudPasses {
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
     no_block: wgpu::Buffer,
+    /// Some clouds are elsewhere than their layer's cover says ([`super::placed`]).
+    is_placed: bool,
 }
 
 /// What shadows are made of, and what they fall on.
@@ -223,7 +232,27 @@ impl CloudPasses {
             shaded: None,
             none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             no_block: bind::block(&device.device, "no shadows of clouds", size_of::<ShadowUniform>()),
+            is_placed: false,
         })
+    }
+
+    /// Brings what is made of the clouds' places up to what there is of them.
+    pub fn place(&mut self, device: &Device, overhead: &Overhead) -> Result<()> {
+        let is_other = self.tables.place(device, overhead.maps.iter().flatten());
+        if !is_other && self.is_placed == overhead.is_placed() {
+            return Ok(());
+        }
+        self.is_placed = overhead.is_placed();
+        (self.marched_of, self.round, self.shaded) = (None, None, None);
+        if let Some(map) = self.shadows.take() {
+            self.shadows = Some(self.shadow_map(device, map.view.texture())?);
+        }
+        Ok(())
+    }
+
+    /// A map of shadows in a texture.
+    fn shadow_map(&self, device: &Device, of: &wgpu::Texture) -> Result<ShadowMap> {
+        ShadowMap::new(device, &self.tables, (&self.block, self.is_placed), of)
     }
 
     /// Makes textures for a picture of this size, and answers whether the last one's are kept.
@@ -274,6 +303,7 @@ impl CloudPasses {
                 bind::sampler(5, &self.tables.repeating),
                 bind::sampler(6, &self.tables.clamping),
                 bind::buffer(7, &self.picture_block),
+                bind::view(8, &self.tables.placed),
             ],
         });
         self.marched_of = Some((of.sky.1.clone(), group.clone()));
@@ -292,22 +322,31 @@ impl CloudPasses {
         let none = [&self.none; 4];
         let [least, most, back] = &picture.followed;
         let from = |i: usize| [&picture.whole[i].written[0], least, most, back];
-        [none, from(0), from(1)].map(|[last, least, most, back]| {
-            device.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("clouds of a picture"),
-                layout,
-                entries: &[
-                    bind::buffer(0, frame),
-                    bind::buffer(1, &self.picture_block),
-                    bind::view(2, &picture.marched[0]),
-                    bind::view(3, &picture.marched[1]),
-                    bind::view(4, last),
-                    bind::sampler(5, &self.tables.clamping),
-                    bind::view(6, least),
-                    bind::view(7, most),
-                    bind::view(8, back),
-                ],
-            })
+        [none, from(0), from(1)].map(|past| self.picture_group(device, layout, frame, (&picture.marched, past)))
+    }
+
+    /// What a pass after the march is bound to: the marched pixels, and the past.
+    fn picture_group(
+        &self,
+        device: &Device,
+        layout: &wgpu::BindGroupLayout,
+        frame: &wgpu::Buffer,
+        (marched, [last, least, most, back]): (&[wgpu::TextureView; 2], [&wgpu::TextureView; 4]),
+    ) -> wgpu::BindGroup {
+        device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("clouds of a picture"),
+            layout,
+            entries: &[
+                bind::buffer(0, frame),
+                bind::buffer(1, &self.picture_block),
+                bind::view(2, &marched[0]),
+                bind::view(3, &marched[1]),
+                bind::view(4, last),
+                bind::sampler(5, &self.tables.clamping),
+                bind::view(6, least),
+                bind::view(7, most),
+                bind::view(8, back),
+            ],
         })
     }
 
@@ -320,7 +359,7 @@ impl CloudPasses {
         (shaded, past): (Option<&Shaded<'_>>, Past),
     ) -> Result<(wgpu::BindGroup, u32)> {
         if shaded.is_some() && self.shadows.is_none() {
-            let map = ShadowMap::new(device, &self.tables, &self.block, &ShadowMap::texture(device))?;
+            let map = self.shadow_map(device, &ShadowMap::texture(device))?;
             (self.shadows, self.shaded) = (Some(map), None);
         }
         let passes = match (shaded, &mut self.shadows) {
@@ -363,10 +402,10 @@ impl CloudPasses {
         texture: &wgpu::Texture,
     ) -> Result<()> {
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(clouds));
-        let map = match &mut self.shadows {
-            Some(map) => map,
-            none => none.insert(ShadowMap::new(device, &self.tables, &self.block, texture)?),
-        };
+        if self.shadows.is_none() {
+            self.shadows = Some(self.shadow_map(device, texture)?);
+        }
+        let Some(map) = &mut self.shadows else { return Ok(()) };
         map.draw(device, encoder, lie, past);
         Ok(())
     }
@@ -375,10 +414,11 @@ impl CloudPasses {
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, of: &CloudFrame<'_>) -> Result<u32> {
         let mut pipelines = match self.pipelines.take() {
             Some(pipelines) => pipelines,
-            None => Pipelines::new(device, of.sky.0, of.fineness)?,
+            None => Pipelines::new(device, of.sky.0, (of.fineness, self.is_placed))?,
         };
-        if pipelines.march.0 != of.fineness {
-            pipelines.march = (of.fineness, Pipelines::march(device, &pipelines.march_layouts, of.fineness)?);
+        let march = (of.fineness, self.is_placed);
+        if pipelines.march.0 != march {
+            pipelines.march = (march, Pipelines::march(device, &pipelines.march_layouts, march)?);
         }
         let Some(mut picture) = self.picture.take() else { return Ok(0) };
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&of.clouds));
@@ -395,7 +435,7 @@ impl CloudPasses {
             let [march, sky] = &pipelines.march_layouts;
             let round = match &mut self.round {
                 Some(round) => round,
-                none => none.insert(Round::new(device, &[march, sky])?),
+                none => none.insert(Round::new(device, &[march, sky], self.is_placed)?),
             };
             if of.wanted.round {
                 passes += round.draw(encoder, &[&group, of.sky.1], of.around, (of.past, of_shadows > 0));
@@ -429,8 +469,18 @@ impl CloudPasses {
             None => self.picture_groups(device, &pipelines.picture_layout, of.frame, picture),
         };
         let mut passes = 1;
+        // A picture begins with more pixels than later frames march.
+        let begins = of.picture.side < picture.of.1;
+        if !begins {
+            picture.begun = None;
+        } else if picture.begun.is_none() {
+            let marched = marched(device, picture.of.0, of.picture.side);
+            let past = [&self.none; 4];
+            let group = self.picture_group(device, &pipelines.picture_layout, of.frame, (&marched, past));
+            picture.begun = Some((marched, group));
+        }
         if of.wanted.march {
-            let [seen, reach] = &picture.marched;
+            let [seen, reach] = picture.begun.as_ref().map_or(&picture.marched, |(marched, _)| marched);
             run(encoder, (&[seen, reach], None), &pipelines.march.1, &[group, of.sky.1]);
             passes += 1;
         }
@@ -441,7 +491,8 @@ impl CloudPasses {
         }
         let made = picture.to_make(of.wanted.is_begun);
         let [seen, reach] = &picture.whole[made].written;
-        run(encoder, (&[seen, reach], Some(picture.of.0)), &resolve, &[&groups[1 + (1 - made)], &shaded]);
+        let group = picture.begun.as_ref().map_or(&groups[1 + (1 - made)], |(_, group)| group);
+        run(encoder, (&[seen, reach], Some(picture.of.0)), &resolve, &[group, &shaded]);
         picture.newest = made;
         picture.groups = Some(groups);
         Ok((passes, of_shadows))

@@ -72,6 +72,17 @@ pub(super) struct Picture {
     pub newest: usize,
     /// What the passes after the march are bound to.
     pub groups: Option<[wgpu::BindGroup; 3]>,
+    /// As `marched`, of a first frame, which has none before it: of squares of [`BEGUN_SIDE`] on a side. With what the pass after it is bound to.
+    pub begun: Option<([wgpu::TextureView; 2], wgpu::BindGroup)>,
+}
+
+/// Side of the squares of which a frame marches one pixel that begins a picture, at most.
+pub(super) const BEGUN_SIDE: u32 = 2;
+
+/// Where marched pixels of a picture are kept.
+pub(super) fn marched(device: &Device, size: (u32, u32), side: u32) -> [wgpu::TextureView; 2] {
+    let low = (size.0.div_ceil(side), size.1.div_ceil(side));
+    [SEEN, PAIR].map(|format| texture(device, low, format, 1).create_view(&Default::default()))
 }
 
 impl Picture {
@@ -80,11 +91,12 @@ impl Picture {
         let one = |format| texture(device, low, format, 1).create_view(&Default::default());
         Self {
             of: (size, side),
-            marched: [one(SEEN), one(PAIR)],
+            marched: marched(device, size, side),
             followed: [one(SEEN), one(SEEN), one(PAIR)],
             whole: [Whole::new(device, size), Whole::new(device, size)],
             newest: 0,
             groups: None,
+            begun: None,
         }
     }
 
@@ -98,6 +110,8 @@ impl Picture {
         let ((width, height), side) = self.of;
         let low = u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));
         let whole = with_round((width, height));
-        2 * 8 * u64::from(LAYERS) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low
+        let begun = self.begun.as_ref().map_or(0, |_| u64::from(BEGUN_SIDE));
+        let first = u64::from(width) * u64::from(height) * 12 / begun.max(1).pow(2) * begun.min(1);
+        2 * 8 * u64::from(LAYERS) * u64::from(whole.0) * u64::from(whole.1) + (3 * 8 + 2 * 4) * low + first
     }
 }

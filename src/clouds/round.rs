@@ -12,6 +12,7 @@ use crate::{
         Device, flat_texture,
         pass::{self, FullscreenDesc},
     },
+    stage::yes,
 };
 
 /// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
@@ -42,7 +43,7 @@ pub(super) struct Round {
 
 impl Round {
     /// With the layouts of the march.
-    pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout]) -> Result<Self> {
+    pub fn new(device: &Device, layouts: &[&wgpu::BindGroupLayout], is_placed: bool) -> Result<Self> {
         let texture = flat_texture(
             &device.device,
             "clouds all round",
@@ -55,7 +56,7 @@ impl Round {
             entry: "round",
             layouts,
             targets: &[SEEN.into()],
-            constants: &[],
+            constants: &[("CLOUD_PLACED", yes(is_placed))],
             samples: 1,
         };
         Ok(Self {

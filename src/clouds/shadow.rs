@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::field::{Field, Map, Shape, Solid};
+use super::field::Field;
 use crate::moment::Scene;
 
 /// Steps of the way through a layer.
@@ -32,9 +32,8 @@ fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
 }
 
 /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place.
-pub fn sun_share(shapes: impl Iterator<Item = Shape>, map: &Map, solid: &Solid, scene: &Scene) -> f64 {
+pub fn sun_share<'a>(fields: impl Iterator<Item = Field<'a>>, scene: &Scene) -> f64 {
     let place_m = DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m);
     let to_light = scene.brighter().direction;
-    let one = |shape| depth(&Field { shape, map, solid }, place_m, to_light);
-    (-shapes.map(one).sum::<f64>()).exp()
+    (-fields.map(|field| depth(&field, place_m, to_light)).sum::<f64>()).exp()
 }

@@ -5,7 +5,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    field::Shape,
+    overhead::Overhead,
     rows::{self, Rows},
     shadow::LOWEST,
     tables::CloudTables,
@@ -20,7 +20,7 @@ use crate::{
         pass::{self, FullscreenDesc},
     },
     moment::Moment,
-    stage::{Frame, FrameFlags},
+    stage::{Frame, FrameFlags, yes},
     weather::smoothstep,
 };
 
@@ -71,6 +71,8 @@ pub(super) struct Standing {
     /// How far the layer to which it is fixed has come, m.
     pub drift_m: DVec2,
     pub camera_m: DVec2,
+    /// Of where they are other than their cover says ([`super::placed`]): changes with it; other for another map.
+    pub placed: (f64, usize),
 }
 
 /// How the map lies about a camera.
@@ -116,7 +118,8 @@ struct Coarse {
 
 impl Lie {
     /// Of a moment's clouds.
-    pub fn new<'a>(now: &Moment<'_>, shapes: impl Iterator<Item = &'a Shape> + Clone) -> Self {
+    pub fn new(now: &Moment<'_>, overhead: &Overhead) -> Self {
+        let shapes = overhead.layers().iter().map(|layer| &layer.shape);
         let scene = &now.scene;
         let plane_m = scene.conditions.air.station_altitude_m;
         let light = scene.brighter();
@@ -131,6 +134,7 @@ impl Lie {
                 threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
                 camera_m: DVec2::from_array(scene.map_m),
                 drift_m,
+                placed: overhead.placed_told(),
             },
             to_light: light.direction.with_z(light.direction.z.max(LOWEST)),
             plane_m,
@@ -171,16 +175,29 @@ fn pipeline(
     device: &Device,
     (shader, entry): (&str, &str),
     layout: &wgpu::BindGroupLayout,
-    side: u32,
+    constants: &[(&str, f64)],
 ) -> Result<wgpu::RenderPipeline> {
-    let constants = [("SHADOW_TEXELS", f64::from(side))];
     let (layouts, targets) = ([layout], [FORMAT.into()]);
-    let of = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants: &constants, samples: 1 };
+    let of = FullscreenDesc { shader, entry, layouts: &layouts, targets: &targets, constants, samples: 1 };
     pass::fullscreen(device, &of)
 }
 
+/// One that makes a map of so many texels along a side.
+fn shadow_pipeline(
+    device: &Device,
+    layout: &wgpu::BindGroupLayout,
+    (side, is_placed): (u32, bool),
+) -> Result<wgpu::RenderPipeline> {
+    let constants = [("SHADOW_TEXELS", f64::from(side)), ("CLOUD_PLACED", yes(is_placed))];
+    pipeline(device, ("clouds/shadow.wgsl", "shadow"), layout, &constants)
+}
+
 impl Coarse {
-    fn new(device: &Device, shadow: &wgpu::BindGroupLayout, repeating: &wgpu::Sampler) -> Result<Self> {
+    fn new(
+        device: &Device,
+        (shadow, is_placed): (&wgpu::BindGroupLayout, bool),
+        repeating: &wgpu::Sampler,
+    ) -> Result<Self> {
         let slots = [(2, Slot::Filtered), (5, Slot::Sampler)];
         let layout = bind::layout(&device.device, "coarse shadows", wgpu::ShaderStages::FRAGMENT, &slots);
         let view = texture(device, COARSE).create_view(&Default::default());
@@ -190,8 +207,13 @@ impl Coarse {
             entries: &[bind::view(2, &view), bind::sampler(5, repeating)],
         });
         Ok(Self {
-            pipeline: pipeline(device, ("clouds/shadow.wgsl", "shadow"), shadow, COARSE)?,
-            spread: pipeline(device, ("clouds/shadow_spread.wgsl", "spread"), &layout, TEXELS)?,
+            pipeline: shadow_pipeline(device, shadow, (COARSE, is_placed))?,
+            spread: pipeline(
+                device,
+                ("clouds/shadow_spread.wgsl", "spread"),
+                &layout,
+                &[("SHADOW_TEXELS", f64::from(TEXELS))],
+            )?,
             view,
             group,
         })
@@ -205,13 +227,19 @@ impl ShadowMap {
     }
 
     /// Of clouds in these tables and this block, in a texture.
-    pub fn new(device: &Device, tables: &CloudTables, clouds: &wgpu::Buffer, of: &wgpu::Texture) -> Result<Self> {
+    pub fn new(
+        device: &Device,
+        tables: &CloudTables,
+        (clouds, is_placed): (&wgpu::Buffer, bool),
+        of: &wgpu::Texture,
+    ) -> Result<Self> {
         let slots = [
             (1, Slot::Uniform(size_of::<super::uniforms::CloudsUniform>())),
             (2, Slot::Filtered),
             (3, Slot::FilteredVolume),
             (5, Slot::Sampler),
             (7, Slot::Uniform(size_of::<ShadowUniform>())),
+            (8, Slot::Filtered),
         ];
         let layout = bind::layout(&device.device, "shadows of clouds", wgpu::ShaderStages::FRAGMENT, &slots);
         let block = bind::block(&device.device, "shadows of clouds", size_of::<ShadowUniform>());
@@ -225,12 +253,13 @@ impl ShadowMap {
                 bind::view(3, &solid),
                 bind::sampler(5, &tables.repeating),
                 bind::buffer(7, &block),
+                bind::view(8, &tables.placed),
             ],
         });
         Ok(Self {
             view: of.create_view(&Default::default()),
-            pipeline: pipeline(device, ("clouds/shadow.wgsl", "shadow"), &layout, TEXELS)?,
-            coarse: Coarse::new(device, &layout, &tables.repeating)?,
+            pipeline: shadow_pipeline(device, &layout, (TEXELS, is_placed))?,
+            coarse: Coarse::new(device, (&layout, is_placed), &tables.repeating)?,
             clouds: group,
             block,
             standing: None,
@@ -279,6 +308,8 @@ impl Standing {
             || self.to_light.dot(before.to_light) < turn.cos()
             || (self.threshold_sum - before.threshold_sum).abs() > threshold
             || self.drift_m.distance(before.drift_m) > LEAP_OF_DRIFT_M
+            || self.placed.1 != before.placed.1
+            || (self.placed.0 - before.placed.0).abs() > LEAP_OF_DRIFT_M
             || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
     }
 }

@@ -7,6 +7,7 @@ use half::f16;
 use super::{
     cover::{SOLID_SIZE, solid_settings},
     field::{MAP_SIZE, Map},
+    layer_map::LayerMap,
     transport::{DEPTHS, LEAKS, Scattering, Table, Transport},
 };
 use crate::{
@@ -110,6 +111,9 @@ pub(super) struct CloudTables {
     pub repeating: wgpu::Sampler,
     pub clamping: wgpu::Sampler,
     liquid_um: f64,
+    /// Maps of layers, one below the other, and which of them are in it.
+    pub placed: wgpu::TextureView,
+    in_placed: Vec<Arc<LayerMap>>,
 }
 
 fn medium(phase: Phase) -> Transport {
@@ -135,6 +139,8 @@ impl CloudTables {
             clamping: sampler(device, wgpu::AddressMode::ClampToEdge),
             liquid_um,
             light: LightTables::new(device, media),
+            placed: texture(device, "no maps of layers of cloud", (1, 1)).create_view(&Default::default()),
+            in_placed: Vec::new(),
         })
     }
 
@@ -147,6 +153,30 @@ impl CloudTables {
             self.light.replace(0, medium(Phase::Droplets { diameter_um: liquid_um }));
         }
         self.light.update(device, cosine);
+    }
+
+    /// Brings the texture up to maps of layers; answers whether it is another one.
+    pub fn place<'a>(&mut self, device: &Device, maps: impl Iterator<Item = &'a Arc<LayerMap>> + Clone) -> bool {
+        let is_same = |(a, b): (&Arc<LayerMap>, &Arc<LayerMap>)| Arc::ptr_eq(a, b);
+        if maps.clone().count() == self.in_placed.len() && maps.clone().zip(&self.in_placed).all(is_same) {
+            return false;
+        }
+        let sizes = maps.clone().map(|made| made.map.cells);
+        let size = sizes.fold((1, 0), |(width, height): (u32, u32), [x, y]| (width.max(x), height + y));
+        let before = self.placed.texture().size();
+        let is_other = (before.width, before.height) != (size.0, size.1.max(1));
+        if is_other {
+            let new = texture(device, "maps of layers of cloud", (size.0, size.1.max(1)));
+            self.placed = new.create_view(&Default::default());
+        }
+        let mut row = 0;
+        for made in maps.clone() {
+            write_halves(device, self.placed.texture(), (0, row), made.map.cells[0], &made.texels);
+            row += made.map.cells[1];
+        }
+        self.in_placed.clear();
+        self.in_placed.extend(maps.cloned());
+        is_other
     }
 
     /// Bytes of GPU memory.

@@ -7,6 +7,7 @@ use super::{
     field::{MAP_CELLS, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD, Shape},
     transport::Scattering,
 };
+use crate::falling::MAX_AREAS;
 
 /// Most layers.
 pub(super) const LAYERS: usize = crate::weather::MAX_CLOUD_LAYERS;
@@ -25,6 +26,17 @@ pub(super) struct LayerUniform {
     pub medium: [f32; 4],
     pub stretch: [f32; 4],
     pub lean: [f32; 4],
+    pub mapped: [f32; 4],
+    pub cells: [f32; 4],
+    pub filled: [f32; 4],
+}
+
+/// A cell over a rain area.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct AreaUniform {
+    pub place: [f32; 4],
+    pub extent: [f32; 4],
 }
 
 /// One medium.
@@ -47,6 +59,7 @@ pub(super) struct CloudsUniform {
     pub unused: f32,
     pub media: [MediumUniform; 2],
     pub layers: [LayerUniform; LAYERS],
+    pub areas: [AreaUniform; MAX_AREAS],
 }
 
 /// How a picture's clouds are spread over frames.
@@ -122,6 +135,7 @@ impl LayerUniform {
             medium: [medium.0 as f32, scaled as f32, share as f32, 1.0 / s.solid_m as f32],
             stretch: [s.stretch.x_axis.x, s.stretch.x_axis.y, s.stretch.y_axis.y, s.held].map(|v| v as f32),
             lean: [s.lean_m.x, s.lean_m.y, s.anvil, s.lean_m.length()].map(|v| v as f32),
+            ..Self::zeroed()
         }
     }
 }
@@ -144,7 +158,7 @@ mod tests {
             "clouds/block.wgsl",
             "CloudsUniform",
             CloudsUniform,
-            [to_sun, layer_count, altitude, radius, jitter, media, layers]
+            [to_sun, layer_count, altitude, radius, jitter, media, layers, areas]
         );
         shader::assert_layout!(
             "clouds/picture.wgsl",

@@ -7,8 +7,10 @@ use super::{
     candidates::{CLOUDS, clouds_work},
     field::Shape,
     handed::{CloudShadows, Handed},
+    layer_map::LayerMaps,
     overhead::{Overhead, light_on},
     passes::{CloudFrame, CloudPasses, Shaded, Wanted},
+    picture::BEGUN_SIDE,
     round::Around,
     shadow::LOWEST,
     shadow_map::{Lie, Past, ShadowMap},
@@ -55,6 +57,8 @@ pub(crate) struct CloudsView {
     overhead: Option<Overhead>,
     /// Of the layers, which most frames have in common with the last one.
     shapes: Recent<CloudSlab, Shape, LAYERS>,
+    /// Of layers that a host's map is laid on.
+    maps: LayerMaps,
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
     made: Option<Made>,
@@ -74,8 +78,13 @@ impl CloudsView {
     /// # Errors
     /// For a time that the weather does not know.
     pub fn gather(&mut self, now: &Moment<'_>, model: CloudModel) -> Result<()> {
+        let is_clear = now.scene.conditions.cloud_slabs().next().is_none() && now.weather.regions.is_empty();
         let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
-        let overhead = Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still);
+        let new = || Ok(Overhead::new(model, &now.scene, &now.weather.layers_until(now.time_s)?, still));
+        let mut overhead = if is_clear { None } else { new()? };
+        if let Some(overhead) = &mut overhead {
+            overhead.place((&now.scene, now.eye), (&now.weather, now.time_s), &mut self.maps)?;
+        }
         self.overhead = overhead.filter(|o| !o.layers().is_empty());
         if self.overhead.is_none() {
             self.before = None;
@@ -151,6 +160,7 @@ impl Overhead {
             let light = light_on(scene, &layer.shape, exposure);
             *to = LayerUniform::new(&layer.shape, layer.share, self.place_m, &light, of);
         }
+        self.place_uniforms(&mut layers);
         CloudsUniform {
             to_sun: light.direction.as_vec3().to_array(),
             layer_count: self.layers().len() as u32,
@@ -160,6 +170,7 @@ impl Overhead {
             unused: 0.0,
             media: [0, 1].map(|i| MediumUniform::new(&passes.tables.light.media[i].scattering)),
             layers,
+            areas: self.area_uniforms(),
         }
     }
 }
@@ -191,6 +202,8 @@ impl CloudsView {
         let last = self.before.filter(|_| self.kept && !frame.is_pure());
         let size = shot.color.texture.size();
         let side = self.side(frame);
+        // Without a past a picture begins finer.
+        let side = if last.is_none() { side.min(BEGUN_SIDE) } else { side };
         let moved = last.map_or(DVec3::ZERO, |b| {
             let carried = self.overhead.as_ref().map_or(DVec2::ZERO, |o| o.carried_since(&b.drifts));
             carried.extend(0.0) - now.scene.world_to_enu * (here.eye - b.eye)
@@ -227,8 +240,9 @@ impl DrawnEffect for CloudsView {
         };
         let cosine = at.now.scene.brighter().direction.z;
         passes.tables.update(to.device, to.encoder, cosine, overhead.liquid_um);
+        passes.place(to.device, overhead)?;
         let told = cosine > LOWEST && overhead.is_broken();
-        let lie = told.then(|| Lie::new(at.now, overhead.layers().iter().map(|l| &l.shape)));
+        let lie = told.then(|| Lie::new(at.now, overhead));
         if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
             // Shadows do not ask for the exposure.
             let clouds = overhead.uniform(at.now, 1.0, passes);
@@ -295,7 +309,7 @@ impl DrawnEffect for CloudsView {
         else {
             return Ok(());
         };
-        let lie = Lie::new(shot.now, overhead.layers().iter().map(|l| &l.shape));
+        let lie = Lie::new(shot.now, overhead);
         let around =
             Around { standing: lie.standing, altitude_m: shot.now.scene.place.altitude_m, exposure: shot.exposure };
         let shaded = shot.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });

@@ -34,7 +34,7 @@ impl Context {
         if distance < 1e-3 {
             return Err(Error::range("to", "at least a millimetre from the other end", to));
         }
-        let clouds = self.cloud_rays(&scene, time_s)?;
+        let clouds = self.cloud_rays((&scene, from), time_s)?;
         let through = self.through(&scene, clouds.as_ref(), from, offset, time_s)?;
         // The logarithm of 1 has a sign of its own.
         let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
@@ -55,7 +55,7 @@ impl Context {
         let Some((_, end, _)) = Ray::new(&medium, scene.place.altitude_m, unit.z).in_air(&medium) else {
             return Ok(f64::INFINITY);
         };
-        let clouds = self.cloud_rays(&scene, time_s)?;
+        let clouds = self.cloud_rays((&scene, position), time_s)?;
         let is_seen =
             |d: f64| Ok(self.through(&scene, clouds.as_ref(), position, unit * d, time_s)?[1] > CONTRAST_THRESHOLD);
         let (mut near, mut far) = (0.0, 1f64.min(end));

@@ -6,6 +6,7 @@ use crate::{
     clouds::{CloudModel, CloudRays},
     context::{Context, Scene},
     error::Result,
+    weather::CloudMap,
 };
 
 impl Context {
@@ -20,6 +21,22 @@ impl Context {
         self.held.clouds.model
     }
 
+    /// Lays a map on layers of cloud, in place of the one before: where over the ground they stand ([`CloudMap`]); `None` takes it off. It holds
+    /// in pictures, shadows and questions, and in the light of a place ([`Context::light_at`]); what falls does not change with it. With
+    /// [`CloudModel::Deck`] it holds for light alone. Clouds change at once. Part of the saved state.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_cloud_map(&mut self, map: Option<CloudMap>) -> Result<()> {
+        self.world.set_cloud_map(map)?;
+        self.refresh()
+    }
+
+    /// The map that is laid on layers of cloud.
+    pub fn cloud_map(&self) -> Option<&CloudMap> {
+        self.world.set.cloud_map.as_deref()
+    }
+
     /// The share of the direct light of sun or moon, whichever is brighter, that clouds let through to `position` at simulation time
     /// `time_s`, 0 to 1: in the shadow of a cloud that [`CloudModel::Volume`] draws, or between two. The light of
     /// [`Context::light_at`] is that on the mean over places: times this over [`Light::direct_share`](crate::moment::Light::direct_share),
@@ -31,15 +48,15 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] if the position is no place; for times as [`Context::conditions_at`].
     pub fn sun_share(&self, position: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
-        self.held.clouds.sun_share(self.world.seed, &scene, &self.world.over().layers_until(time_s)?)
+        self.held.clouds.sun_share(self.world.seed, (&scene, position), (&self.world.over(), time_s))
     }
 
-    /// The clouds about a scene's place, where they are drawn as a volume.
-    pub(super) fn cloud_rays(&self, scene: &Scene, time_s: f64) -> Result<Option<CloudRays<'_>>> {
+    /// The clouds about the place of a scene, where they are drawn as a volume.
+    pub(super) fn cloud_rays(&self, (scene, position): (&Scene, DVec3), time_s: f64) -> Result<Option<CloudRays<'_>>> {
         if self.held.clouds.model == CloudModel::Deck {
             return Ok(None);
         }
         let radius_m = self.world.set.planet.bottom_radius_m;
-        self.held.clouds.rays(self.world.seed, scene, &self.world.over().layers_until(time_s)?, radius_m)
+        self.held.clouds.rays(self.world.seed, (scene, position), (&self.world.over(), time_s), radius_m)
     }
 }

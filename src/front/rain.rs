@@ -10,7 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Regions with rain of their own, in place of those before.
+    /// Regions with rain of their own, in place of those before. Where clouds are a volume ([`Context::set_cloud_model`]), they have cloud over
+    /// them.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field; nothing changes then.

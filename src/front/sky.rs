@@ -47,7 +47,7 @@ impl Context {
         let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?;
         let fog_depth = fog.depth_above(scene.place.altitude_m);
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
-        let clouds = self.cloud_rays(&scene, time_s)?;
+        let clouds = self.cloud_rays((&scene, position), time_s)?;
         let bows = bow::in_low_air(&scene.conditions).filter(|_| bow::is_lit(&scene));
         let seen = Seen { skies: &skies, solved: OnceCell::new(), scene: &scene, fog, bows, night, clouds };
         units.into_iter().map(|d| Ok(seen.with_fog(d)?.to_array())).collect()

@@ -1,5 +1,7 @@
 //! The weather over all places and times of a context: its timeline, its wind, and the regions that have rain of their own.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +13,7 @@ use crate::{
         sizes::DropSizes,
     },
     scene::WorldFrame,
-    weather::{Conditions, Falling, Timeline, timeline::MAX_TIME_S},
+    weather::{CloudMap, Conditions, Falling, Timeline, timeline::MAX_TIME_S},
     wind::{Blowing, Carrying, LayerDrifts, WindOver},
 };
 
@@ -34,6 +36,8 @@ pub(crate) struct WeatherOver<'a> {
     pub world: &'a WorldFrame,
     pub wind: WindOver<'a>,
     pub regions: &'a [Region],
+    /// Where over the ground layers of cloud stand, where the host says so.
+    pub cloud_map: Option<&'a Arc<CloudMap>>,
 }
 
 impl<'a> WeatherOver<'a> {

@@ -8,6 +8,7 @@ pub mod air;
 mod aloft;
 mod blend;
 mod cloud_light;
+mod cloud_map;
 mod conditions;
 mod derive;
 pub mod hydrometeors;
@@ -25,6 +26,7 @@ pub(crate) use blend::smoothstep;
 pub use cloud_light::{
     CloudLight, cloud_optical_depth, slab_diffuse_reflectance, slab_reflectance, water_path_for_rate_kg_m2,
 };
+pub use cloud_map::{CloudMap, MAX_CLOUD_MAP_CELLS};
 pub use conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, Falling, GroundLayer, LN_20, SeaState, SurfaceCover,
     WindProfile,

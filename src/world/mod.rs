@@ -48,7 +48,7 @@ use crate::{
     scene::{HostLight, Place, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, Shelter, TerrainHeights, WindTexture},
     terrain::Terrain,
-    weather::{Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
+    weather::{CloudMap, Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindGrid, WindOver, WindVolume},
 };
 
@@ -97,6 +97,8 @@ pub(crate) struct Settings {
     /// The same in tiles, of which the host keeps the heights; never both.
     pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
+    /// Where over the ground layers of cloud stand.
+    pub cloud_map: Option<Arc<CloudMap>>,
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
     /// Universal time at simulation time 0.
@@ -199,6 +201,7 @@ impl World {
                 terrain: None,
                 tiles: None,
                 regions: Vec::new(),
+                cloud_map: None,
                 given_sun: None,
                 given_moon: None,
                 utc_at_zero,
@@ -236,7 +239,7 @@ impl World {
         let revision = self.timeline_revision;
         let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
         let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept, kept_layers, revision };
-        WeatherOver { world: &self.frame, wind, regions: &self.set.regions }
+        WeatherOver { world: &self.frame, wind, regions: &self.set.regions, cloud_map: self.set.cloud_map.as_ref() }
     }
 
     /// The weather at a time, with what its wind lifts of the snow that lies now.
@@ -259,6 +262,17 @@ impl World {
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.frame.place_at("position", position)?;
         Ok(self.over().falling_at(position, time_s, self.weather_at(time_s)?))
+    }
+
+    /// Lays a map on layers of cloud, in place of the one before.
+    ///
+    /// # Errors
+    /// As [`CloudMap::validate`]; nothing changes then.
+    pub fn set_cloud_map(&mut self, map: Option<CloudMap>) -> Result<()> {
+        map.as_ref().map_or(Ok(()), CloudMap::validate)?;
+        self.set.cloud_map = map.map(Arc::new);
+        self.surroundings_revision += 1;
+        Ok(())
     }
 
     /// Universal time at simulation time `time_s`.

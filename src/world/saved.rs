@@ -158,6 +158,7 @@ impl World {
             terrain: _,
             tiles: _,
             regions,
+            cloud_map,
             given_sun,
             given_moon,
             utc_at_zero,
@@ -169,6 +170,7 @@ impl World {
         let (drifted, carried) = (&self.drifted, self.drifted.displacement_m);
         let mut settings = SavedSettings::of(self.exposure, shelters, &self.lights, self.wind_grid.as_deref());
         (settings.tone_curve, settings.planet) = (Some(self.tone), Some(*planet));
+        settings.set_cloud_map(cloud_map.as_deref());
         Ok(SavedWorld {
             time_s: self.time_s,
             utc_at_zero: utc_at_zero.0,
@@ -214,6 +216,7 @@ impl World {
             terrain: None,
             tiles: None,
             regions: saved.areas,
+            cloud_map: beside.cloud_map.take(),
             given_sun,
             given_moon,
             utc_at_zero,

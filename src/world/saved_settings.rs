@@ -11,6 +11,7 @@ use crate::{
     planet::Planet,
     scene::{HostLight, MAX_LIGHTS},
     surroundings::{MAX_SHELTERS, Planes, Shelter},
+    weather::{CloudMap, MAX_CLOUD_MAP_CELLS},
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
@@ -30,6 +31,8 @@ pub(super) struct SavedSettings {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     lights: Vec<SavedLight>,
     wind_grid: Option<SavedWindGrid>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cloud_map: Option<SavedCloudMap>,
 }
 
 /// The same as a context holds them.
@@ -40,6 +43,7 @@ pub(super) struct SetBeside {
     pub shelters: Vec<Shelter>,
     pub lights: Vec<HostLight>,
     pub wind_grid: Option<Arc<WindGrid>>,
+    pub cloud_map: Option<Arc<CloudMap>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -73,7 +77,23 @@ struct SavedWindGrid {
     velocities_m_s: String,
 }
 
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedCloudMap {
+    first_m: [f64; 2],
+    cell_m: f64,
+    cells: [u32; 2],
+    base_m: [f64; 2],
+    /// Bits of each cell's number ([`words`]).
+    cover: String,
+}
+
 impl SavedSettings {
+    /// Keeps the map of layers of cloud.
+    pub fn set_cloud_map(&mut self, map: Option<&CloudMap>) {
+        self.cloud_map = map.map(SavedCloudMap::of);
+    }
+
     pub fn of(exposure: Exposure, shelters: &[Shelter], lights: &[HostLight], wind_grid: Option<&WindGrid>) -> Self {
         Self {
             exposure,
@@ -82,6 +102,7 @@ impl SavedSettings {
             shelters: shelters.iter().map(SavedShelter::of).collect(),
             lights: lights.iter().map(SavedLight::of).collect(),
             wind_grid: wind_grid.map(SavedWindGrid::of),
+            cloud_map: None,
         }
     }
 
@@ -101,8 +122,9 @@ impl SavedSettings {
         let shelters = self.shelters.iter().map(SavedShelter::shelter).collect::<Result<_>>()?;
         let lights = self.lights.iter().map(SavedLight::light).collect::<Result<_>>()?;
         let wind_grid = self.wind_grid.as_ref().map(SavedWindGrid::grid).transpose()?.map(Arc::new);
+        let cloud_map = self.cloud_map.as_ref().map(SavedCloudMap::map).transpose()?.map(Arc::new);
         let Self { exposure, tone_curve: tone, planet, .. } = *self;
-        Ok(SetBeside { exposure, tone, planet, shelters, lights, wind_grid })
+        Ok(SetBeside { exposure, tone, planet, shelters, lights, wind_grid, cloud_map })
     }
 }
 
@@ -181,6 +203,29 @@ impl SavedWindGrid {
         };
         grid.validate()?;
         Ok(grid)
+    }
+}
+
+impl SavedCloudMap {
+    fn of(m: &CloudMap) -> Self {
+        let CloudMap { first_m, cell_m, cells, base_m, cover } = m;
+        let cover = words(cover.iter().map(|v| u64::from(v.to_bits())));
+        Self { first_m: *first_m, cell_m: *cell_m, cells: *cells, base_m: *base_m, cover }
+    }
+
+    fn map(&self) -> Result<CloudMap> {
+        let unfit = || Error::range("cloud_map", "cells within the limits and a number for each", "others");
+        if self.cells.iter().any(|n| *n > MAX_CLOUD_MAP_CELLS) {
+            return Err(unfit());
+        }
+        let count = self.cells.iter().map(|n| *n as usize).product::<usize>();
+        let bits = values(&self.cover, count).ok_or_else(unfit)?;
+        let numbers = bits.into_iter().map(|b| Some(f32::from_bits(b.try_into().ok()?)));
+        let cover = numbers.collect::<Option<_>>().ok_or_else(unfit)?;
+        let Self { first_m, cell_m, cells, base_m, .. } = *self;
+        let map = CloudMap { first_m, cell_m, cells, base_m, cover };
+        map.validate()?;
+        Ok(map)
     }
 }
 

@@ -162,9 +162,13 @@ impl World {
     ) -> Result<(Scene, Option<Blowing>)> {
         let local = self.frame.place_at(name, position)?;
         let planet = planet_under(&self.set.planet, &conditions);
-        let lights = self.lights_over(&local.place, (&conditions, land.albedo), time_s)?;
+        let map_m = self.map_place(position, &local);
+        // Light is that of the clouds over the place, all else the weather's.
+        let mapped = self.set.cloud_map.as_ref().map(|map| conditions.under_map(map, DVec2::from_array(map_m)));
+        let overhead = mapped.as_ref().unwrap_or(&conditions);
+        let lights = self.lights_over(&local.place, (overhead, land.albedo), time_s)?;
         let (night_floor_cd_m2, night_lux) = self.night(&planet, &local.place, &lights[0].0, time_s)?;
-        let above_fog = self.ground_light((&planet, &local.place), &conditions, &lights, night_lux);
+        let above_fog = self.ground_light((&planet, &local.place), overhead, &lights, night_lux);
         let [(sun, under_sun), (moon, _)] = lights;
         // Only patches and curtains show where the air has gone.
         let patchy =
@@ -172,12 +176,12 @@ impl World {
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
         // Broken cloud is left to the clouds' own effect; a closed deck is what the sky looks like.
-        let deck_cover = smoothstep(0.55, 0.95, conditions.opaque_cover(local.place.altitude_m));
+        let deck_cover = smoothstep(0.55, 0.95, overhead.opaque_cover(local.place.altitude_m));
         let ground_albedo = land.albedo_on(&planet);
         let mut scene = Scene {
             place: local.place,
             world_to_enu: local.world_to_enu,
-            map_m: self.map_place(position, &local),
+            map_m,
             drift_m: wind.map_or([0.0; 2], |wind| wind.drift.displacement_m.to_array()),
             curtains_fallen_m: curtain::fallen_m(time_s),
             color: self.set.color,

@@ -1,8 +1,10 @@
 //! Clouds: the model, and the sun's share at a place.
 
-use welkin::capi::{clouds::*, status::*};
+use std::ptr::null;
 
-use super::world::{World, message};
+use welkin::capi::{cloud_map::*, clouds::*, status::*, timeline::*};
+
+use super::world::{World, init, message};
 
 fn refused(status: wk_status, wanted: &str) {
     assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
@@ -29,4 +31,33 @@ fn a_host_chooses_how_clouds_are_drawn_and_asks_for_the_suns_share() {
     assert_eq!(share(&[0.0; 3], f64::NAN).1, -1.0, "nothing is written");
     let null = std::ptr::null_mut();
     refused(unsafe { wk_context_get_sun_share(world.context, &[0.0; 3], 0.0, null) }, "out_share");
+}
+
+#[test]
+fn a_map_of_clouds_comes_through_and_goes_again() {
+    let world = World::new();
+    let hash = || {
+        let mut hash = 0;
+        assert_eq!(unsafe { wk_context_state_hash(world.context, &mut hash) }, WK_OK);
+        hash
+    };
+    let before = hash();
+    let cover = [0.0f32, 0.5, 1.0, 1.0];
+    let map = wk_cloud_map { cells: [2, 2], cover: cover.as_ptr(), cover_count: 4, ..init("wk_cloud_map") };
+    // SAFETY, for all: live pointers.
+    let set = |map: &wk_cloud_map| unsafe { wk_context_set_cloud_map(world.context, map) };
+    assert_eq!(set(&map), WK_OK, "{}", message());
+    let mapped = hash();
+    assert_ne!(mapped, before);
+    let bad = [0.0f32, 2.0, f32::NAN, 0.0];
+    refused(set(&wk_cloud_map { cover: bad.as_ptr(), ..map }), "cloud_map.cover[1] must be in [0, 1]");
+    refused(set(&wk_cloud_map { cover_count: 3, ..map }), "cloud_map.cover_count must be 4");
+    refused(set(&wk_cloud_map { cover: null(), ..map }), "cloud_map.cover must not be NULL");
+    refused(set(&wk_cloud_map { cells: [0, 2], ..map }), "cloud_map.cells[0] must be in [1, 128]");
+    refused(set(&wk_cloud_map { cells: [129, 2], ..map }), "cloud_map.cells[0] must be in [1, 128]");
+    refused(set(&wk_cloud_map { cell_m: f64::NAN, ..map }), "cloud_map.cell_m must be finite and in [100, 50 000]");
+    refused(set(&wk_cloud_map { first_m: [0.0, 1e9], ..map }), "cloud_map.first_m[1] must be in");
+    assert_eq!(hash(), mapped, "an error changes nothing");
+    assert_eq!(unsafe { wk_context_set_cloud_map(world.context, null()) }, WK_OK);
+    assert_eq!(hash(), before);
 }

@@ -5,10 +5,10 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
-    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
-    radiance::*, rain::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*, texture::*,
-    timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
+    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
+    query::*, radiance::*, rain::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
+    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -97,6 +97,7 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_get_wind_field_report(h.cast(), null_mut())
         }),
         case("wk_context_set_wind_grid", "context", false, |h| unsafe { wk_context_set_wind_grid(h.cast(), null()) }),
+        case("wk_context_set_cloud_map", "context", false, |h| unsafe { wk_context_set_cloud_map(h.cast(), null()) }),
         case("wk_context_set_cloud_model", "context", false, |h| unsafe { wk_context_set_cloud_model(h.cast(), 0) }),
         case("wk_context_set_default_surface_class", "context", false, |h| unsafe {
             wk_context_set_default_surface_class(h.cast(), 0)

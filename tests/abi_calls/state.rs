@@ -7,9 +7,9 @@ use std::{
 };
 
 use welkin::capi::{
-    area::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*, lightning::*,
-    query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_field::*,
-    wind_grid::*,
+    area::*, cloud_map::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*,
+    lightning::*, query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
+    wind_field::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -209,17 +209,24 @@ unsafe fn set_cloud_model(context: *mut wk_context) {
     ok(unsafe { wk_context_set_cloud_model(context, WK_CLOUD_MODEL_DECK) });
 }
 
+unsafe fn set_cloud_map(context: *mut wk_context) {
+    let cover = [0.0f32, 0.25, 1.0, 1.0, 0.1, 0.0];
+    let map = wk_cloud_map { cells: [3, 2], cover: cover.as_ptr(), cover_count: 6, ..init("wk_cloud_map") };
+    ok(unsafe { wk_context_set_cloud_map(context, &map) });
+}
+
 unsafe fn set_time(context: *mut wk_context) {
     ok(unsafe { wk_context_update(context, 7.25) });
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..20].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..21].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 21] = [
+const SETTERS: [(&str, Set); 22] = [
     ("wk_context_set_clock", set_clock),
+    ("wk_context_set_cloud_map", set_cloud_map),
     ("wk_context_set_cloud_model", set_cloud_model),
     ("wk_context_set_default_surface_class", set_default_surface_class),
     ("wk_context_set_exposure", set_exposure),

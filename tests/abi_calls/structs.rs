@@ -7,9 +7,9 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
-    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*, plan::*,
-    query::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
+    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
+    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*,
+    plan::*, query::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
     texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*,
     windscreen::*,
 };
@@ -124,6 +124,7 @@ fn cases(world: &World) -> Vec<Case> {
             wk_context_get_wind_field_report(context, p.cast())
         }),
         case("wk_wind_grid", "wind_grid", true, move |p| unsafe { wk_context_set_wind_grid(context, p.cast()) }),
+        case("wk_cloud_map", "cloud_map", true, move |p| unsafe { wk_context_set_cloud_map(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_terrain", "terrain", true, move |p| unsafe { wk_context_set_terrain(context, p.cast()) }),
         case("wk_terrain_cells", "terrain_cells", false, move |p| unsafe {

@@ -24,7 +24,7 @@ fn directions(camera: &Camera, pixels: &[usize]) -> Vec<DVec3> {
 }
 
 /// The sky's radiance in a picture over that which the question answers, by pixels.
-fn drawn_over_asked(sky: &mut Sky, forward: DVec3, height_m: f64) -> Vec<f64> {
+pub fn drawn_over_asked(sky: &mut Sky, forward: DVec3, height_m: f64) -> Vec<f64> {
     let camera = Camera::look_to(DVec3::Z * height_m, forward, DVec3::new(0.1, 0.0, 1.0), 1.0, 16.0 / 9.0, 0.1);
     let picture = sky.look(forward, height_m, None, FrameFlags::NO_HISTORY);
     let sun = sky.context.light_at(camera.position, 0.0).unwrap().sun.apparent;

@@ -25,14 +25,22 @@ pub struct Sky {
 
 impl Sky {
     pub fn new(report: &str, model: CloudModel) -> Self {
-        let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
+        Self::on(&DeviceOptions::default(), report, model)
+    }
+
+    /// The same on a device of one's own choice.
+    pub fn on(options: &DeviceOptions, report: &str, model: CloudModel) -> Self {
+        let device = Device::headless(options).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 120.0, elevation_deg: 40.0 })).unwrap();
         context.set_cloud_model(model);
         context.set_weather(&Weather::from_metar(report).unwrap().weather, 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
-        let color = crate::textures::texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);
+        // OpenGL cannot draw to whole floats.
+        let format =
+            if options.force_tier0 { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
+        let color = crate::textures::texture(&device, SIZE, format, 1);
         Self { device, context, view, color, frame_id: 0 }
     }
 

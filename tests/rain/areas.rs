@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use welkin::{
+    clouds::CloudModel,
     context::{Context, ContextDesc, GivenDirection},
     frame::{Shared, Stages},
     gpu::{Device, DeviceOptions},
@@ -45,6 +46,8 @@ pub fn fair(wind_m_s: f64) -> Weather {
 
 pub fn host(weather: &Weather, areas: &[RainArea]) -> Host {
     let mut host = Host::new((160, 90));
+    // Rain alone: tests/clouds has the cloud over it.
+    host.context.set_cloud_model(CloudModel::Deck);
     host.context.set_weather(weather, 0.0, 0.0).unwrap();
     host.context.set_rain_areas(areas).unwrap();
     host
@@ -500,6 +503,7 @@ fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
         .map(|backends| {
             let options = DeviceOptions { backends, force_tier0: true, ..DeviceOptions::default() };
             let mut host = Host::on(Device::headless(&options).unwrap(), (160, 90));
+            host.context.set_cloud_model(CloudModel::Deck);
             host.context.set_weather(&fair(6.0), 0.0, 0.0).unwrap();
             let mut drawn = Vec::new();
             for north_m in [6500.0, 1300.0] {

@@ -1,0 +1,56 @@
+// Where over the ground a layer's clouds are other than its cover says. Twin of src/clouds/placed.rs, where the model is described.
+
+// Of layers that a host's map is laid on: threshold, dome, extinction, distance within which the threshold stays; one below the other.
+@group(0) @binding(8) var cloud_maps: texture_2d<f32>;
+
+// There is a map, or a rain area.
+override CLOUD_PLACED: bool = false;
+
+// Threshold from which on there is no cloud: just below CLEAR of src/clouds/placed.rs.
+const CLOUD_CLEAR_FROM: f32 = 6.95;
+
+// A layer as it is at a place.
+struct CloudLocal {
+    layer: CloudLayer,
+    // Distance within which its threshold stays, m, and how much that changes a metre beyond.
+    steady: f32,
+    slope: f32,
+}
+
+// How far a place is filled over a rain area, and how far away all of that is, m.
+fn cloud_filled_over(area: CloudArea, level: vec2f) -> vec2f {
+    let away = level - area.place.xy;
+    let p = vec2f(dot(away, area.place.zw), dot(away, vec2f(-area.place.w, area.place.z)));
+    let k = p / area.extent.xy;
+    let k1 = length(k);
+    let depth = (1.0 - k1) * select(k1 / max(length(k / area.extent.xy), 1e-12), area.extent.w, k1 < 1e-4);
+    return vec2f(clamp(depth / max(area.extent.z, 1e-6), 0.0, 1.0), max(k1 - 1.0, 0.0) * area.extent.w);
+}
+
+// `level`: metres east and north of the camera, of what the layer leans by taken off.
+fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
+    var here = CloudLocal(layer, 1e9, layer.cells.w);
+    if !CLOUD_PLACED {
+        return here;
+    }
+    var cut = vec3f(layer.shape.xy, layer.size.w);
+    if layer.cells.x > 0.0 {
+        let cell = clamp(layer.mapped.xy + level * layer.mapped.z, vec2f(0.0), layer.cells.xy - 1.0);
+        let uv = (cell + vec2f(0.5, 0.5 + layer.mapped.w)) / vec2f(textureDimensions(cloud_maps));
+        let found = textureSampleLevel(cloud_maps, cloud_sampler, uv, 0.0);
+        cut = found.xyz;
+        here.steady = found.w;
+    }
+    var most = 0.0;
+    for (var i = 0u; i < u32(layer.filled.w); i++) {
+        let over = cloud_filled_over(clouds.areas[i], level);
+        most = max(most, over.x);
+        here.steady = min(here.steady, over.y);
+    }
+    cut = mix(cut, layer.filled.xyz, most);
+    here.layer.shape.x = cut.x;
+    here.layer.shape.y = cut.y;
+    here.layer.size.w = cut.z;
+    here.layer.stretch.w = layer.cells.z / (cut.y * cut.y);
+    return here;
+}

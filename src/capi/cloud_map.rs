@@ -1,0 +1,99 @@
+//! Cloud map
+//!
+//! Where over the ground layers of cloud stand: a storm ahead of the runway, a clearing over the harbour. The map holds in
+//! pictures, shadows, the light of a place and all questions about clouds. docs/clouds.md has an example.
+
+use std::{ffi::c_void, ptr::null};
+
+use super::{
+    boundary::guard,
+    context::{ContextObject, wk_context},
+    input::{self, Named},
+    layout::{self, init_struct, struct_size},
+    status::*,
+};
+use crate::{
+    error::{Error, Status},
+    weather::{CloudMap, MAX_CLOUD_MAP_CELLS},
+};
+
+include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
+
+/// How much of the cover that layers have in the weather they have over each part of the ground. Give a layer cover 1, and
+/// the map says its cover. The map is level, aligned to true north and stands still over the ground; clouds go through it
+/// with their wind, and grow and dissolve as it says. Linear between the middles of cells; beyond the outermost middles
+/// theirs hold on.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_cloud_map {
+    /// sizeof(wk_cloud_map) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_CLOUD_MAP.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Middle of the cell farthest to the south-west, east and north of the world's origin, m. Range [-1e7, 1e7], default
+    /// 0, 0.
+    pub first_m: [f64; 2],
+    /// Side of a cell, m. Range [100, 50 000], default 1000.
+    pub cell_m: f64,
+    /// Number of cells east and north. Range [1, 128], default 1, 1.
+    pub cells: [u32; 2],
+    /// Layers whose base above the station lies between these follow the map, m. Range [-1000, 20 000], the lower one first,
+    /// default -1000, 20 000: all layers.
+    pub base_m: [f64; 2],
+    /// A number for each cell in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows from
+    /// south to north. Copied by the call.
+    pub cover: *const f32,
+    /// Number of cells in `cover`: the product of `cells`.
+    pub cover_count: u32,
+    /// Must be 0.
+    pub reserved0: u32,
+}
+
+impl wk_cloud_map {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_CLOUD_MAP,
+        next: null(),
+        first_m: [0.0, 0.0],
+        cell_m: 1000.0,
+        cells: [1, 1],
+        base_m: [-1000.0, 20000.0],
+        cover: null(),
+        cover_count: 0,
+        reserved0: 0,
+    };
+}
+
+/// Lays a map on layers of cloud, in place of the one before; NULL takes it off. Clouds change at once. Part of the saved
+/// state. With WK_CLOUD_MODEL_DECK it holds for light alone. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_cloud_map(
+    context: *mut wk_context,
+    cloud_map: *const wk_cloud_map,
+) -> wk_status {
+    guard("wk_context_set_cloud_map", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        if cloud_map.is_null() {
+            object.write().set_cloud_map(None)?;
+            return Ok(Status::Ok);
+        }
+        let most = (MAX_CLOUD_MAP_CELLS * MAX_CLOUD_MAP_CELLS) as usize;
+        // SAFETY: the caller's promise about `cloud_map`.
+        let c = unsafe { layout::read(&"cloud_map", cloud_map)? };
+        // SAFETY: the caller's promise about its pointers.
+        let cover: &[f32] = unsafe {
+            layout::check_chain(&"cloud_map", c.next, &[])?;
+            let count = Named("cloud_map.cover_count", c.cover_count as usize);
+            input::slice("cloud_map.cover", c.cover, count, most)?
+        };
+        let map =
+            CloudMap { first_m: c.first_m, cell_m: c.cell_m, cells: c.cells, base_m: c.base_m, cover: cover.to_vec() };
+        let named = |e: Error| e.renamed("cloud_map.cover.len", "cloud_map.cover_count");
+        object.write().set_cloud_map(Some(map)).map_err(named)?;
+        Ok(Status::Ok)
+    })
+}
