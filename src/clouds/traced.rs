@@ -348,7 +348,7 @@ mod tests {
             // Directions spread as the cosine: the mean radiance times pi is the flux.
             let (mut chance, mut flux, rays) = (Chance::new(9, 2), 0.0, 4000);
             for i in 0..rays {
-                let (u, azimuth) = (chance.even().max(1e-4), 6.283_185 * chance.even());
+                let (u, azimuth) = (chance.even().max(1e-4), std::f64::consts::TAU * chance.even());
                 let level = (1.0 - u).sqrt();
                 let d = DVec3::new(level * azimuth.cos(), level * azimuth.sin(), up * u.sqrt());
                 let from = DVec3::Z * (layer.shape.base_m - up * 1e4);
