@@ -11,7 +11,7 @@ use welkin::{
     weather::{CloudKind, CloudLayer, Weather},
 };
 
-use crate::copies::{Scene, measured, median, quantile, texture, world};
+use crate::copies::{Scene, measured, median, processor_ns, quantile, texture, world};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -40,8 +40,11 @@ fn cumulus() -> [CloudLayer; 1] {
 const STEPS: f64 = 96.0;
 /// 95th percentile of the difference of luminance up to which steps need not be doubled.
 const SAME: f64 = 0.01;
+/// Finenesses that are tried; the last is the most that there is.
+const TRIED: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// The least fineness of those tried whose picture of broken cumulus, marched in every pixel, is that of twice the steps.
+/// The least fineness of those tried whose picture of broken cumulus, marched in every pixel, is that of twice the steps; the most that
+/// there is where none is.
 fn brute_force() -> Fallible<f64> {
     let device = Device::headless(&DeviceOptions::default())?;
     let context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
@@ -56,25 +59,73 @@ fn brute_force() -> Fallible<f64> {
         device.wait()?;
         Ok(readback::rgba(&device, &color)?.iter().map(|t| luminance(&[t[0], t[1], t[2]].map(f64::from))).collect())
     };
-    let mut fineness = 1.0;
-    let mut fewer = picture(fineness)?;
-    while fineness < 8.0 {
-        let more = picture(2.0 * fineness)?;
+    let pictures = TRIED.into_iter().map(&mut picture).collect::<Fallible<Vec<_>>>()?;
+    let off = |fewer: &[f64], more: &[f64]| {
         let white = more.iter().sum::<f64>() / more.len() as f64;
-        let mut off: Vec<f64> = fewer.iter().zip(&more).map(|(a, b)| (a - b).abs() / (b + 0.01 * white)).collect();
-        let off = quantile(&mut off, 0.95);
+        let mut off: Vec<f64> = fewer.iter().zip(more).map(|(a, b)| (a - b).abs() / (b + 0.01 * white)).collect();
+        quantile(&mut off, 0.95)
+    };
+    let mut enough = TRIED[TRIED.len() - 1];
+    for i in (0..TRIED.len() - 1).rev() {
+        let (twice, finest) = (off(&pictures[i], &pictures[i + 1]), off(&pictures[i], &pictures[TRIED.len() - 1]));
         println!(
-            "broken cumulus, every pixel in at most {} steps: {:.2} % from twice as many",
-            STEPS * fineness,
-            1e2 * off
+            "broken cumulus, every pixel in at most {} steps: {:.2} % from twice as many, {:.2} % from {}",
+            STEPS * TRIED[i],
+            1e2 * twice,
+            1e2 * finest,
+            STEPS * TRIED[TRIED.len() - 1]
         );
-        if off <= SAME {
-            break;
+        if twice <= SAME && enough == TRIED[i + 1] {
+            enough = TRIED[i];
         }
-        (fineness, fewer) = (2.0 * fineness, more);
     }
-    Ok(fineness)
+    Ok(enough)
 }
+
+/// Frames before a change of weather and after it, each a twentieth of a second; the change takes [`COMES_S`].
+const FRAMES: [u64; 2] = [60, 120];
+const COMES_S: f64 = 3.0;
+
+/// Prints what frames take while fair cumulus becomes a layer of stratocumulus under cirrus, over the median after it.
+fn changed() -> Fallible<()> {
+    let device = Device::headless(&DeviceOptions::default())?;
+    let mut context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;
+    let mut scene = Scene::new("", &context.clone(), PITCH_RAD)?;
+    // The scene's own hold on its context ends here, or nobody may change it.
+    scene.context = under(&device, &Arc::new(Shared::new(&device)?), &[], CloudModel::Volume)?;
+    let (color, mut times) = (texture(&device, wgpu::TextureFormat::Rgba16Float), Vec::new());
+    for id in 1..=FRAMES[0] + FRAMES[1] {
+        let time_s = id as f64 / 20.0;
+        let before = processor_ns()?;
+        let changing = Arc::get_mut(&mut context).ok_or("the world is shared already")?;
+        if id == FRAMES[0] {
+            let clouds = [(CloudKind::Stratocumulus, 0.8, 900.0), (CloudKind::Cirrus, 0.5, 9000.0)];
+            let clouds = clouds.map(|(kind, cover, base_m)| CloudLayer::of(kind, cover, base_m)).to_vec();
+            changing.set_weather(&Weather { clouds, ..Weather::default() }, time_s, COMES_S)?;
+        }
+        changing.update(time_s)?;
+        let frame = Frame::new(id, scene.camera, &color, None);
+        scene.view.record(&context, &frame, Stages::BACKGROUND.with(Stages::MEDIUM))?;
+        device.wait()?;
+        if id >= FRAMES[0] {
+            times.push((processor_ns()? - before) as f64);
+        }
+    }
+    let settled = median(&mut times[(COMES_S * 20.0) as usize + 1..].to_vec());
+    let coming = &mut times[..(COMES_S * 20.0) as usize + 1];
+    let first = coming[0];
+    let (middle, most) = (median(coming), coming[coming.len() - 1]);
+    println!(
+        "a change of weather: its first frame takes {:.2} times the median after it, the slowest while it comes {:.2}, the median of those {:.2}",
+        first / settled,
+        most / settled,
+        middle / settled
+    );
+    Ok(())
+}
+
+/// What the brute force is called.
+const BRUTE: &str = "broken cumulus, every pixel in as many steps as it takes";
 
 fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let shared = Arc::new(Shared::new(device)?);
@@ -89,7 +140,7 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
     let (clear, deck) = (volume(&[])?, under(device, &shared, &closed, CloudModel::Deck)?);
     let (broken, closed, several) = (volume(&broken)?, volume(&closed)?, volume(&several)?);
     let scene = |name, context| Scene::new(name, context, PITCH_RAD);
-    let mut brute = scene("broken cumulus, every pixel in these steps", &broken)?;
+    let mut brute = scene(BRUTE, &broken)?;
     brute.flags = FrameFlags::NO_HISTORY;
     brute.view.set_clouds(CloudSettings { fineness, square_side: 1 })?;
     Ok(vec![
@@ -107,11 +158,23 @@ fn scenes(device: &Arc<Device>, fineness: f64) -> Fallible<Vec<Scene>> {
 /// Prints the cost of each sky.
 pub fn run() -> Fallible<()> {
     let fineness = brute_force()?;
+    changed()?;
     let mut scenes = measured(PITCH_RAD, |device| scenes(device, fineness))?;
-    let clear = median(&mut scenes[0].copies);
+    let (clear, bytes) = (median(&mut scenes[0].copies), scenes[0].view.report().bytes);
+    let mut turning = f64::NAN;
     for mut scene in scenes {
         let copies = median(&mut scene.copies);
-        println!("  {}: {copies:.1} copies, {:.2} of a clear sky", scene.name, copies / clear);
+        let more = scene.view.report().bytes as i64 - bytes as i64;
+        println!("  {}: {copies:.1} copies, {:.2} of a clear sky, {more} bytes more", scene.name, copies / clear);
+        if scene.turn_rad != 0.0 {
+            turning = copies;
+        } else if scene.name == BRUTE {
+            println!(
+                "  the default, turning, takes 1/{:.1} of every pixel in {} steps",
+                copies / turning,
+                STEPS * fineness
+            );
+        }
     }
     Ok(())
 }

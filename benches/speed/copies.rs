@@ -30,7 +30,7 @@ const ROUNDS: usize = 9;
 const SETTLED: u32 = 12;
 
 /// Nanoseconds that the threads of this process have run.
-fn processor_ns() -> Fallible<u64> {
+pub fn processor_ns() -> Fallible<u64> {
     let mut sum = 0;
     for thread in fs::read_dir("/proc/self/task")? {
         // A thread may end between the list and its file.

@@ -1,10 +1,11 @@
-//! Thresholds of the clouds' map, found by looking at skies of other seeds than the tests'.
+//! Thresholds of the clouds' map, found by looking at skies of other seeds than the tests', and the clouds' light against photons.
 
 use welkin::{
     Result,
     clouds::{
         cover,
         field::{Map, Solid},
+        traced::CASES,
     },
     weather::CloudKind,
 };
@@ -21,5 +22,33 @@ pub fn print_thresholds() -> Result<()> {
         println!("    (CloudKind::{kind:?}, {:.3?}),", cover::find_thresholds(*kind, &seeds, PLACES)?);
     }
     println!("]");
+    Ok(())
+}
+
+/// Rays of a sky, and photons along each: of the quick run, and of the whole one.
+const RAYS: [usize; 2] = [20, 100];
+const PHOTONS: [u32; 2] = [500, 4000];
+
+/// Prints how far the clouds' light is from photons that are followed through the same field.
+///
+/// # Errors
+/// As [`Solid::new`].
+pub fn print_photons(quick: bool) -> Result<()> {
+    let which = usize::from(!quick);
+    println!("per cent of the radiance; {} rays of each sky, {} photons along each", RAYS[which], PHOTONS[which]);
+    for case in &CASES {
+        let c = case.compare(RAYS[which], PHOTONS[which])?;
+        let [sun, above, below] = c.parts.map(|p| 1e2 * p);
+        let [one, mean] = c.chance.map(|p| 1e2 * p);
+        let [both, depth, angle] = c.steps.map(|p| 1e2 * p);
+        println!(
+            "{}: off by {:.1} in the median, {:.1} at 95 %, {:+.1} in the mean (sun {sun:+.1}, sky {above:+.1}, ground {below:+.1}); \
+             chance {one:.1} a ray, {mean:.1} in the mean; at 95 % {both:.2} from 64 times the steps, {depth:.2} by depth, {angle:.2} by angle",
+            case.name,
+            1e2 * c.p50,
+            1e2 * c.p95,
+            1e2 * c.bias
+        );
+    }
     Ok(())
 }

@@ -16,6 +16,7 @@ const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature
        lab scenes OLD NEW                 what differs between two such folders
        lab genera DIR [--scene PART]      a PNG of every kind of cloud, to be looked at
        lab thresholds                     of the clouds' map, as src/clouds/thresholds.in has them
+       lab photons                        how far the clouds' light is from photons
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
 
 /// What was asked for.
@@ -85,6 +86,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["scenes", ..] => Err(usage("scenes needs one folder to draw into, or two to compare")),
         ["genera", dir] => genera::draw(dir.as_ref(), options.scene.as_deref()),
         ["thresholds"] => clouds::print_thresholds(),
+        ["photons"] => clouds::print_photons(options.quick),
         [] => Err(usage("no command")),
         other => Err(usage(&format!("unknown command `{}`", other.join(" ")))),
     }

@@ -147,9 +147,6 @@ fn cloud_depths(whole: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let sine = length(clouds.to_sun.xy);
     let edge = max(about.z, 0.02);
     let other = max(layer.below.w - edge, edge);
-    // Where the sun's rays have less cloud before them than straight up through the top, they come in at a side.
-    let by_side = clamp(4.0 - 4.0 * to_sun * max(clouds.to_sun.z, 0.02) / max(about.x, 1e-3), 0.0, 1.0);
-    let sideways = max(to_sun * sine, 0.02);
-    let near = mix(max(edge, sideways), sideways, by_side);
+    let near = max(edge, to_sun * sine);
     return CloudDepths(about.x, about.y, to_sun, near, other, edge, other);
 }

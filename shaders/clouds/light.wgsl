@@ -9,7 +9,7 @@ const CLOUD_DEPTHS: f32 = 28.0;
 const CLOUD_LEAKS: f32 = 16.0;
 const CLOUD_THINNEST: f32 = 0.05;
 const CLOUD_PI: f32 = 3.1415927;
-const PART_RATE: f32 = 1.5;
+const PART_RATE: f32 = 1.0;
 
 // Scaled depths of cloud about a place.
 struct CloudDepths {
@@ -122,17 +122,18 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let widths = vec3f(at.near + at.far, at.left + at.right, above + below);
     let spread = (1.0 - turning) / turning;
     let leak = cloud_leak(widths.xy, turning);
-    let rate = PART_RATE * turning;
-    let by_top = exp(-rate * above / cosine);
-    let by_side = select(0.0, exp(-rate * at.near / max(sine, 1e-6)), sine > 1e-6);
-    let both = max(by_top + by_side, 1e-12);
-    let share = min(exp(-rate * at.to_sun) / both, 1.0);
+    let by_top = above / cosine;
+    let by_side = select(1e9, at.near / max(sine, 1e-6), sine > 1e-6);
+    let top_share = 1.0 / (1.0 + exp(min(PART_RATE * turning * (by_top - by_side), 80.0)));
+    // Longer than the box's: what has been scattered often falls off slowly.
+    let aside = min((1.0 + turning * min(by_top, by_side)) / (1.0 + turning * at.to_sun), 1.0);
+    let share = aside * aside * max(top_share, 1.0 - top_share);
     let top = cloud_through(cloud_table(0.0, medium_index, above, below, leak), down, a, c, spread);
     let side_terms = cloud_table(1.0, medium_index, at.near, at.far, cloud_leak(widths.zy, turning));
     let side = select(0.0, cloud_through(side_terms, along, u, across, spread), sine > 1e-6);
     let momentum = exp(-turning * at.to_sun) - exp(-at.to_sun);
     let kept = albedo * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum;
-    let level_kept = kept * (by_top * sine * along + by_side * cosine * down) / both;
+    let level_kept = kept * (top_share * sine * along + (1.0 - top_share) * cosine * down);
     let versine = 1.0 + dot(direction, sun);
     let phase = cloud_phase(medium, versine);
     let smooth_phase = min(phase, medium.rest.y) / (1.0 - medium.rest.x);
@@ -146,7 +147,11 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let once = out.once * (smooth_phase + peak);
     let often = share * (max(top, 0.0) + max(side, 0.0));
     out.sun = once + often + clamp(level_kept, -often, often);
-    out.sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);
-    out.ground = max(cloud_through(cloud_table(2.0, medium_index, at.below, at.above, leak), direction.z, a, c, spread), 0.0);
+    let sky = max(cloud_through(cloud_table(2.0, medium_index, at.above, at.below, leak), -direction.z, a, c, spread), 0.0);
+    let ground = max(cloud_through(cloud_table(2.0, medium_index, at.below, at.above, leak), direction.z, a, c, spread), 0.0);
+    // As much as leaves through the sides comes in there, half of it from above.
+    let by_sides = 0.5 * (albedo - sky - ground);
+    out.sky = max(sky + by_sides, 0.0);
+    out.ground = max(ground + by_sides, 0.0);
     return out;
 }

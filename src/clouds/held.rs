@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     CloudModel,
-    field::{Field, Map, Solid},
+    field::{Field, Map, Shape, Solid},
     layer_map::LayerMaps,
     light::Sources,
     march::CloudRays,
@@ -62,16 +62,7 @@ impl Grown {
         if let Some(of) = lit.as_ref().filter(holds) {
             return of.sources.clone();
         }
-        let sources = media(liquid_um).map(|medium| {
-            let (cosine, sine) = (to_sun.z.clamp(-1.0, 1.0).abs(), to_sun.truncate().length());
-            Arc::new(Sources {
-                top: medium.under_beam(cosine),
-                side: medium.under_beam(sine),
-                sky: medium.under_sky(),
-                scattering: medium.scattering,
-                to_sun,
-            })
-        });
+        let sources = media(liquid_um).map(|medium| Arc::new(Sources::new(&medium, to_sun)));
         *lit = Some(Lit { liquid_um, to_sun, sources: sources.clone() });
         sources
     }

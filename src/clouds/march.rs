@@ -67,6 +67,8 @@ pub(crate) struct CloudRays<'a> {
     radius_m: f64,
     /// Some of what is above the place is a deck.
     pub has_deck: bool,
+    /// Lengths of steps over the usual ones: by depth, and by the distance from the eye.
+    longer: [f64; 2],
 }
 
 /// What a ray has seen so far.
@@ -105,6 +107,26 @@ impl<'a> CloudRays<'a> {
             radius_m,
             has_deck: overhead.has_deck,
             sources,
+            longer: [1.0; 2],
+        }
+    }
+
+    /// Of one layer in given light over level ground, seen from a place; without a halo. In steps so much longer in depth and in angle.
+    pub(super) fn given(
+        field: Field<'a>,
+        sources: &Arc<Sources>,
+        light: LayerLight,
+        place_m: DVec3,
+        longer: [f64; 2],
+    ) -> Self {
+        let scale = sources.scattering.scale();
+        Self {
+            layers: vec![Lit { field, share: 1.0, light, medium: 0, scale }],
+            sources: [sources.clone(), sources.clone()],
+            place_m,
+            radius_m: 1e9,
+            has_deck: false,
+            longer,
         }
     }
 
@@ -179,10 +201,10 @@ impl<'a> CloudRays<'a> {
     fn layer(&self, of: &Lit<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: March) -> March {
         let s = &of.field.shape;
         let scaled = s.extinction_per_m * of.scale;
-        let fine = (STEP_DEPTH / scaled).clamp(s.thickness_m / 128.0, s.thickness_m / 24.0);
+        let fine = self.longer[0] * (STEP_DEPTH / scaled).clamp(s.thickness_m / 128.0, s.thickness_m / 24.0);
         let mut gone = first;
         while gone < last && seen.transmittance > LEAST {
-            let step = fine.max(STEP_ANGLE * gone).min(last - gone);
+            let step = fine.max(self.longer[1] * STEP_ANGLE * gone).min(last - gone);
             let t = gone + 0.5 * step;
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;
@@ -237,7 +259,12 @@ impl<'a> CloudRays<'a> {
 }
 
 /// Distance along a ray from a place outside of clouds within which there is none, m: `cloud_skip`.
-fn skip((s, [steady_m, slope_per_m]): (&Shape, [f64; 2]), [over, frays]: [f64; 2], height: f64, d: DVec3) -> f64 {
+pub(super) fn skip(
+    (s, [steady_m, slope_per_m]): (&Shape, [f64; 2]),
+    [over, frays]: [f64; 2],
+    height: f64,
+    d: DVec3,
+) -> f64 {
     let domed = s.dome_over(over);
     let gap = (domed * height * height).min(s.anvil) - over;
     let leaning = 2.0 * s.lean_m.length() / s.thickness_m * d.z.abs();
@@ -295,10 +322,7 @@ impl AtPlace<'_> {
         let sine = to_sun.truncate().length();
         let edge = level.max(0.02);
         let other = (WIDTH_CELLS * s.scale_m * scaled - edge).max(edge);
-        // Where the sun's rays have less cloud before them than straight up through the top, they come in at a side.
-        let by_side = (4.0 - 4.0 * to_sun_depth * to_sun.z.max(0.02) / above.max(1e-3)).clamp(0.0, 1.0);
-        let sideways = (to_sun_depth * sine).max(0.02);
-        let near = edge.max(sideways) + (sideways - edge.max(sideways)) * by_side;
+        let near = edge.max(to_sun_depth * sine);
         Depths { above, below, to_sun: to_sun_depth, near, far: other, left: edge, right: other }
     }
 }

@@ -4,7 +4,7 @@
 //! * Where there is cloud, [`field`]: a map that says how strongly cloud grows, fixed to the air that carries it, and solid noise that
 //!   frays its edges; [`cover`] finds how much of the map is cloud where a cover is asked for.
 //! * What light does in it, [`light`] with the tables of [`transport`]: scattered once as it is, more often as in a box of the depths about
-//!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons.
+//!   a place. Ice makes a [`halo`]. [`mod@reference`] follows photons through boxes, [`traced`] through the field itself.
 //! * What a picture shows of it: rays are marched at one pixel of sixteen a frame, the others are taken over from the frame before.
 //! * What mirrors and cube maps show of it: `round`, a small map of all directions.
 //! * A host's map of where clouds stand, and cloud over rain areas: `placed`, `layer_map`.
@@ -14,7 +14,8 @@
 //!
 //! # Error
 //! Of the drawn light: even slabs within 5 % or 0.01 of discrete ordinates, each face of a cube within 15 % or 0.03 of what falls on the cube
-//! (`cargo test --lib clouds::probe -- --nocapture`). Of the cover that is seen: 3 points (`clouds::cover`).
+//! (`cargo test --lib clouds::probe -- --nocapture`); along rays through the field, against photons, what `lab photons` prints, most under
+//! a low sun. Of the cover that is seen: 3 points (`clouds::cover`).
 //!
 pub mod candidates;
 pub mod cover;
@@ -39,6 +40,7 @@ pub mod shadow;
 mod shadow_map;
 mod shape;
 mod tables;
+pub mod traced;
 pub mod transport;
 mod uniforms;
 mod view;

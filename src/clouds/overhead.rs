@@ -70,7 +70,7 @@ fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
 }
 
 /// Of the diameters that there are tables for, the one nearest to the droplets of these layers.
-fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
+pub(super) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
     let add = |(water, sum): (f64, f64), s: &CloudSlab| {
         let liquid = s.cover * (1.0 - s.ice_fraction);
         (water + liquid, sum + liquid * s.droplet_radius_um)

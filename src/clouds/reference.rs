@@ -20,9 +20,15 @@ fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
     ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
 }
 
-/// The way on after a droplet of this phase function; the Draine lobe by rejection from Henyey and Greenstein's of the same g.
+/// The way on after a droplet of this phase function.
 pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> DVec3 {
-    let cosine = if chance.even() < lobes.w_draine {
+    turned(lobes, direction, chance).0
+}
+
+/// The same, and whether it was the Draine lobe that turned it: by rejection from Henyey and Greenstein's of the same g.
+pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> (DVec3, bool) {
+    let by_draine = chance.even() < lobes.w_draine;
+    let cosine = if by_draine {
         loop {
             let c = lobe_cosine(lobes.g_draine, chance);
             if chance.even() * (1.0 + lobes.alpha) < 1.0 + lobes.alpha * c * c {
@@ -34,7 +40,8 @@ pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> D
     };
     let (sine, azimuth) = ((1.0 - cosine * cosine).max(0.0).sqrt(), 2.0 * PI * chance.even());
     let (a, b) = direction.any_orthonormal_pair();
-    (DMat3::from_cols(a, b, direction) * DVec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine)).normalize()
+    let way = DMat3::from_cols(a, b, direction) * DVec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine);
+    (way.normalize(), by_draine)
 }
 
 /// Cloud within a box from the origin to `sides`.

@@ -46,11 +46,6 @@ fn filled_share(of: &Shape) -> f64 {
 }
 
 impl Shape {
-    /// Of a layer that has come so far.
-    pub(crate) fn new(c: &Conditions, slab: &CloudSlab, drift: &LayerDrift) -> Self {
-        Self::of(slab).carried(c, slab, drift)
-    }
-
     /// Of a layer in still air over the sea.
     pub(super) fn of(slab: &CloudSlab) -> Self {
         Self::still(slab, threshold(slab))
