@@ -4,7 +4,6 @@
 
 @group(0) @binding(2) var cloud_map: texture_2d<f32>;
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
-@group(0) @binding(5) var cloud_sampler: sampler;
 
 const MAP_CELLS: f32 = 16.0;
 const SECOND_PERIOD: f32 = 1.618034;

@@ -4,10 +4,11 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*, fog_law::*,
-    frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*, query::*,
-    radiance::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
+    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
+    query::*, radiance::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
+    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
+    windscreen::*,
 };
 
 use crate::{
@@ -530,6 +531,17 @@ pub const CALLS: &[(&str, Call)] = &[
             grid.set("surface_class_count", if d.one_in(10) { d.below(400) as u32 } else { count });
         }
         unsafe { wk_context_set_ground_grid(handle(d, &w.contexts), grid.ptr().cast()) }.into()
+    }),
+    ("wk_context_set_cloud_map", |d, w| {
+        let mut map = Struct::random(d, "wk_cloud_map", 10);
+        let cells: [u32; 2] = std::array::from_fn(|_| 1 + d.below(9) as u32);
+        map.set("cells", cells);
+        map.set("cover_count", if d.one_in(10) { d.below(100) as u32 } else { cells.iter().product::<u32>() });
+        map.set_numbers(
+            "cover",
+            (0..100).map(|_| if d.one_in(300) { d.float() as f32 } else { d.unit() as f32 }).collect(),
+        );
+        unsafe { wk_context_set_cloud_map(handle(d, &w.contexts), map.ptr().cast()) }.into()
     }),
     ("wk_context_set_terrain", |d, w| {
         let mut terrain = Struct::random(d, "wk_terrain", 10);

@@ -430,11 +430,15 @@ fn tiles_at_rest_cost_nothing() {
     let mut many = Bench::new(32, [[0, 0], [8, 8]], |p| 0.01 * p[0] as f32);
     let seconds = |bench: &mut Bench| {
         bench.step(0.0, 0.1);
-        let begun = Instant::now();
-        (0..200).for_each(|_| {
-            bench.step(0.0, 0.1);
-        });
-        begun.elapsed().as_secs_f64() / 200.0
+        // The least of some batches: whatever else the machine does is not theirs.
+        let batch = |_| {
+            let begun = Instant::now();
+            (0..40).for_each(|_| {
+                bench.step(0.0, 0.1);
+            });
+            begun.elapsed().as_secs_f64() / 40.0
+        };
+        (0..10).map(batch).fold(f64::INFINITY, f64::min)
     };
     let (empty, quiet) = (seconds(&mut none), seconds(&mut many));
     println!("a step: {:.2} us without tiles, {:.2} us with 64 dry ones", empty * 1e6, quiet * 1e6);
