@@ -38,7 +38,7 @@ static bool set(demo *d, wk_weather *w, const wk_cloud_layer *cloud)
     return weather_check(wk_context_set_weather(d->weather.context, w, 0.0, 0.0));
 }
 
-static bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
+bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
 {
     wk_given_direction sun = WK_GIVEN_DIRECTION_INIT;
     sun.azimuth_deg = azimuth_deg;

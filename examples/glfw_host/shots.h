@@ -23,6 +23,9 @@ typedef struct shot {
 extern const shot SHOTS[];
 extern const int SHOT_COUNT;
 
+/* Puts the sun there from now on. */
+bool sun_at(demo *d, double azimuth_deg, double elevation_deg);
+
 camera shot_camera(const shot *s, const ground *g);
 
 #endif

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "shots.h"
+
 #define NODES 512
 #define CELL_M 0.5
 #define ROAD_HALF_WIDTH_M 4.0
@@ -48,14 +50,6 @@ static bool tell_ground(demo *d)
     free(heights);
     free(classes);
     return ok;
-}
-
-static bool sun_at(demo *d, double azimuth_deg, double elevation_deg)
-{
-    wk_given_direction sun = WK_GIVEN_DIRECTION_INIT;
-    sun.azimuth_deg = azimuth_deg;
-    sun.elevation_deg = elevation_deg;
-    return weather_check(wk_context_set_sun(d->weather.context, &sun));
 }
 
 /* From now on. */

@@ -84,8 +84,8 @@ impl HeldClouds {
         Ok(Self { model, ..Self::default() })
     }
 
-    /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: by the clouds that a
-    /// volume draws there, or with a deck on the mean over places. `eye` is the place in the host's world.
+    /// The share of the direct light of the brighter of sun and moon that clouds let through to a scene's place: of a volume
+    /// through the clouds that it draws there, of a deck the mean over all places. `eye` is the place in the host's world.
     ///
     /// # Errors
     /// As [`Solid::new`], and for a time that the weather does not know.

@@ -350,7 +350,8 @@ impl CloudPasses {
         })
     }
 
-    /// The group of what shadows fall on, with the map brought up to the frame, and the passes that took; of nothing where there are none.
+    /// Brings the map of shadows up to the frame. Answers the bind group of the depth that they fall on and of the map, empty where there are
+    /// no shadows, and the number of passes.
     fn shade(
         &mut self,
         device: &Device,

@@ -36,7 +36,7 @@ use crate::{
 
 /// Threshold above all of the map: no cloud.
 pub(super) const CLEAR: f64 = 7.0;
-/// Least cover that has clouds; below, thresholds go over to [`CLEAR`].
+/// Least cover that has clouds: below it the threshold rises to [`CLEAR`].
 const LEAST: f64 = 1e-3;
 /// Cover from which on dome and extinction follow it.
 const SHAPED_FROM: f64 = 0.02;
@@ -140,7 +140,7 @@ impl AreaCell {
         Self { center_m: center_m + middle, right: shaft.right, semi_m: semi, rim_m: 0.0 }
     }
 
-    /// The same with an edge of this width, of which [`BORDER`] lies beyond the area.
+    /// The same area with a soft edge `rim_m` wide, of which the share [`BORDER`] lies outside.
     fn with_edge(self, rim_m: f64) -> Self {
         Self { semi_m: self.semi_m + BORDER * rim_m, rim_m, ..self }
     }

@@ -25,7 +25,7 @@ pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> D
     turned(lobes, direction, chance).0
 }
 
-/// The same, and whether it was the Draine lobe that turned it: by rejection from Henyey and Greenstein's of the same g.
+/// The same, and whether the Draine lobe turned the photon. Its angle is drawn by rejection from Henyey and Greenstein's lobe of the same g.
 pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> (DVec3, bool) {
     let by_draine = chance.even() < lobes.w_draine;
     let cosine = if by_draine {

@@ -111,7 +111,7 @@ pub(super) struct CloudTables {
     pub repeating: wgpu::Sampler,
     pub clamping: wgpu::Sampler,
     liquid_um: f64,
-    /// Maps of layers, one below the other, and which of them are in it.
+    /// The hosts' maps of layers as one texture, one below the other; and which maps it holds.
     pub placed: wgpu::TextureView,
     in_placed: Vec<Arc<LayerMap>>,
 }
@@ -155,7 +155,7 @@ impl CloudTables {
         self.light.update(device, cosine);
     }
 
-    /// Brings the texture up to maps of layers; answers whether it is another one.
+    /// Writes maps of layers into the texture where it does not hold them yet; answers whether it had to be made anew.
     pub fn place<'a>(&mut self, device: &Device, maps: impl Iterator<Item = &'a Arc<LayerMap>> + Clone) -> bool {
         let is_same = |(a, b): (&Arc<LayerMap>, &Arc<LayerMap>)| Arc::ptr_eq(a, b);
         if maps.clone().count() == self.in_placed.len() && maps.clone().zip(&self.in_placed).all(is_same) {

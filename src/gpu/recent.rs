@@ -44,7 +44,7 @@ impl<K, V, const MOST: usize> Recent<K, V, MOST> {
         Ok(&self.all[at].value)
     }
 
-    /// The same of what is copied, and made without fail.
+    /// The same for a value that is copied out and whose making cannot fail.
     pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
     where
         K: Copy + PartialEq,

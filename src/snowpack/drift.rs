@@ -125,7 +125,7 @@ struct Through {
     sum: f64,
     /// Share of the flux that goes east or west.
     across: f64,
-    /// Shares by which the fluxes of what hops and what is suspended grow and fall.
+    /// Share of the way to its new flux that drift goes within a cell, where it grows and where it falls: of hopping and of suspended snow.
     grown: [[f64; 2]; 2],
 }
 

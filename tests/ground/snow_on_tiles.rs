@@ -163,7 +163,7 @@ fn tiles_that_change_keep_the_snow_of_cells_that_stay_and_account_for_the_rest()
     change(&mut context);
     let after = context.snow_books().unwrap();
     assert!(is_balanced(&after) && after.taken_kg > before.taken_kg + 2000.0, "{before:?} {after:?}");
-    // The tile that came back has as much as level ground.
+    // The tile that was set again begins with the snow of level ground.
     let began = f64::from(SIDE * SIDE) * country.mass_kg_m2;
     assert!((after.began_kg - before.began_kg - began).abs() < 1e-6 * began, "{before:?} {after:?} {began}");
     assert_eq!(context.snow_at(at(-10.0, 20.0)).unwrap().depth_m, country.depth_m);
