@@ -8,7 +8,7 @@
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 @group(0) @binding(2) var marched: texture_2d<f32>;
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
-@group(0) @binding(4) var last: texture_2d<f32>;
+@group(0) @binding(4) var last: texture_2d_array<f32>;
 @group(0) @binding(5) var linear: sampler;
 @group(0) @binding(6) var least: texture_2d<f32>;
 @group(0) @binding(7) var most: texture_2d<f32>;
@@ -56,7 +56,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     let size = vec2f(picture.size);
     let lost = any(was < vec2f(0.0)) || any(was > size);
     let within = clamp(was, vec2f(0.5), size - 0.5) / vec2f(textureDimensions(last));
-    let kept = textureSampleLevel(last, linear, within, 0.0) * vec4f(vec3f(picture.exposed), 1.0);
+    let kept = textureSampleLevel(last, linear, within, 0, 0.0) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, square, 0), textureLoad(most, square, 0));
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(held, now, lost || is_marched), reach);

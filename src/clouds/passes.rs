@@ -75,7 +75,7 @@ impl Pipelines {
             (1, Slot::Uniform(size_of::<PictureUniform>())),
             (2, Slot::Filtered),
             (3, Slot::Filtered),
-            (4, Slot::Filtered),
+            (4, Slot::FilteredArray),
             (5, Slot::Sampler),
             (6, Slot::Texels),
             (7, Slot::Texels),
@@ -142,6 +142,7 @@ pub(super) struct CloudPasses {
     /// What shadows fall on, and of which of the host's depth images that is.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
     none: wgpu::TextureView,
+    no_layers: wgpu::TextureView,
     no_block: wgpu::Buffer,
     /// Some clouds are elsewhere than their layer's cover says ([`super::placed`]).
     is_placed: bool,
@@ -220,7 +221,10 @@ fn run(
 
 impl CloudPasses {
     pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
+        let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Ok(Self {
+            no_layers: bind::as_layers(none.texture()),
+            none,
             tables: CloudTables::new(device, seed)?,
             block: bind::block(&device.device, "clouds", size_of::<CloudsUniform>()),
             picture_block: bind::block(&device.device, "clouds of a picture", size_of::<PictureUniform>()),
@@ -230,7 +234,6 @@ impl CloudPasses {
             shadows: None,
             round: None,
             shaded: None,
-            none: bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm),
             no_block: bind::block(&device.device, "no shadows of clouds", size_of::<ShadowUniform>()),
             is_placed: false,
         })
@@ -319,10 +322,16 @@ impl CloudPasses {
         frame: &wgpu::Buffer,
         picture: &Picture,
     ) -> [wgpu::BindGroup; 3] {
-        let none = [&self.none; 4];
+        let none = self.no_past();
         let [least, most, back] = &picture.followed;
-        let from = |i: usize| [&picture.whole[i].written[0], least, most, back];
+        // All layers: OpenGL finds nothing in a single one.
+        let from = |i: usize| [&picture.whole[i].layers, least, most, back];
         [none, from(0), from(1)].map(|past| self.picture_group(device, layout, frame, (&picture.marched, past)))
+    }
+
+    /// What stands for the past where there is none.
+    fn no_past(&self) -> [&wgpu::TextureView; 4] {
+        [&self.no_layers, &self.none, &self.none, &self.none]
     }
 
     /// What a pass after the march is bound to: the marched pixels, and the past.
@@ -476,8 +485,7 @@ impl CloudPasses {
             picture.begun = None;
         } else if picture.begun.is_none() {
             let marched = marched(device, picture.of.0, of.picture.side);
-            let past = [&self.none; 4];
-            let group = self.picture_group(device, &pipelines.picture_layout, of.frame, (&marched, past));
+            let group = self.picture_group(device, &pipelines.picture_layout, of.frame, (&marched, self.no_past()));
             picture.begun = Some((marched, group));
         }
         if of.wanted.march {

@@ -1,7 +1,7 @@
 //! A picture's clouds from frame to frame: the pixels that a frame marches, and the whole picture that is made of them and of the last.
 
 use super::round;
-use crate::gpu::{Device, bind};
+use crate::gpu::{Device, Layer, bind};
 
 /// Of what is seen of clouds.
 pub(super) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -46,15 +46,7 @@ impl Whole {
     fn new(device: &Device, size: (u32, u32)) -> Self {
         let texture = texture(device, with_round(size), SEEN, LAYERS);
         let layers = bind::as_layers(&texture);
-        let layer = |base_array_layer| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
-        };
-        let written = [layer(0), layer(1)];
+        let written = [0, 1].map(|index| Layer { texture: &texture, index }.attached_view());
         Self { texture, layers, written }
     }
 }

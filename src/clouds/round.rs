@@ -3,7 +3,7 @@
 
 use super::{
     picture::SEEN,
-    rows::{self, Rows},
+    rows::{self, Rows, Turn},
     shadow_map::{Past, Standing},
 };
 use crate::{
@@ -17,8 +17,11 @@ use crate::{
 
 /// Texels along a side: 1.5 degrees each, as a mirror of still water shows broken clouds.
 pub(super) const SIDE: u32 = 96;
-/// Rows that every second frame makes anew: all of them in 16 frames.
+/// Rows that a frame makes anew, once as many have grown old.
 const ROWS: u32 = 12;
+/// What makes all of them old: the camera's way, m, which turns a cloud 500 m up by a texel; the times in which a shadow grows old, as clouds
+/// go by as much of their way as of the camera's; a change of exposure.
+const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
 /// The camera's way between two frames, m, and the change of exposure after which nothing holds.
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
@@ -37,8 +40,6 @@ pub(super) struct Round {
     pipeline: wgpu::RenderPipeline,
     around: Option<Around>,
     rows: Rows,
-    /// The last frame made some rows.
-    made_some: bool,
 }
 
 impl Round {
@@ -65,7 +66,6 @@ impl Round {
             texture,
             around: None,
             rows: Rows::default(),
-            made_some: false,
         })
     }
 
@@ -80,11 +80,15 @@ impl Round {
         here: Around,
         (past, waits): (Past, bool),
     ) -> u32 {
-        let rests = self.around == Some(here);
-        let holds = self.around.is_some_and(|before| past == Past::Kept && !here.leaps_from(&before));
-        self.around = Some(here);
-        let due = self.rows.due((SIDE, ROWS), [rests, holds, waits || self.made_some]);
-        self.made_some = due.is_some();
+        let before = self.around.replace(here);
+        let turn = Turn {
+            rests: before == Some(here),
+            holds: past == Past::Kept && before.is_some_and(|b| !here.leaps_from(&b)),
+            aged: before.map_or(1.0, |b| here.aged_since(&b)),
+            waits,
+            is_coarse: false,
+        };
+        let due = self.rows.due((SIDE, ROWS), &turn);
         let Some((first, count)) = due else { return 0 };
         rows::draw(encoder, &self.view, (SIDE, first, count), &self.pipeline, groups);
         1
@@ -105,6 +109,20 @@ impl Around {
             || self.standing.camera_m.distance(before.standing.camera_m) > way_m
             || (self.altitude_m - before.altitude_m).abs() > way_m
             || (self.exposure / before.exposure).ln().abs() > exposed
+    }
+
+    /// The share of the map that has grown old since what it was made of before.
+    fn aged_since(&self, before: &Self) -> f64 {
+        let (way_m, times, exposed) = AGES;
+        let (here, there) = (&self.standing, &before.standing);
+        let shares = [
+            times * here.aged_since(there),
+            here.camera_m.distance(there.camera_m) / way_m,
+            (self.altitude_m - before.altitude_m).abs() / way_m,
+            (here.drift_m - there.drift_m).length() / way_m,
+            (self.exposure / before.exposure).ln().abs() / exposed,
+        ];
+        shares.into_iter().fold(0.0, f64::max)
     }
 }
 

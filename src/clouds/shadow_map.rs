@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     overhead::Overhead,
-    rows::{self, Rows},
+    rows::{self, Rows, Turn},
     shadow::LOWEST,
     tables::CloudTables,
     uniforms::ShadowUniform,
@@ -30,10 +30,9 @@ const TEXELS: u32 = 512;
 const TEXEL_M: f64 = 40.0;
 /// Along a side of the coarse map that a new one begins as: as many texels as a frame's rows have.
 const COARSE: u32 = 64;
-/// Rows that every second frame makes anew: a whole map within a second of frames, in which clouds change by a thousandth of their life.
-const ROWS: u32 = 16;
-/// The same while some of the map is coarse: in sixteen frames none is, as none of the picture is old.
-const ROWS_OF_NEW: u32 = 32;
+/// Rows that a frame makes anew, once as many have grown old, and in every frame while some of the map is coarse: in sixteen frames none is, as
+/// none of the picture is old.
+const ROWS: u32 = 32;
 /// Sines of the light's elevation between which shadows begin to be told apart.
 const TOLD: [f64; 2] = [LOWEST, 0.07];
 /// Time between two frames, s, the light's turn, and the change of a layer's threshold after which nothing of the map is kept.
@@ -41,6 +40,10 @@ const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
 /// Way of the layer that the map is fixed to, between two frames, m, after which nothing of the map is kept: another layer is the lowest.
 const LEAP_OF_DRIFT_M: f64 = 1500.0;
+/// What makes the whole map old: a time, s, in which clouds change by some thousandths of their life; a turn of the light, by which the
+/// shadow of a cloud 4 km up goes by a quarter of a texel; a change of a layer's threshold of the least that shows; the camera's way, m, less
+/// than from where the map repeats to where shadows begin to show, and as much of places of a host's map.
+const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 
 /// What a frame may take over from those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,8 +107,6 @@ pub(super) struct ShadowMap {
     rows: Rows,
     /// Rows that are still those of the coarse map.
     coarse_rows: u32,
-    /// The last frame made some rows.
-    made_some: bool,
 }
 
 /// The coarse map, the pass that makes it and the one that spreads it over the map.
@@ -265,29 +266,30 @@ impl ShadowMap {
             standing: None,
             rows: Rows::default(),
             coarse_rows: 0,
-            made_some: false,
         })
     }
 
     /// Bytes of GPU memory.
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
-    /// Makes some rows anew, and before them the whole map coarsely where nothing of it holds any more or the picture is cut; where a
-    /// frame is a pure function of view and time, all rows. Every second frame makes none where it need not; answers the passes that it took.
+    /// Makes some rows anew where enough have grown old, and before them the whole map coarsely where nothing of it holds any more or the picture
+    /// is cut; where a frame is a pure function of view and time, all rows. Answers the passes that it took.
     pub fn draw(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, lie: &Lie, past: Past) -> u32 {
         let here = lie.standing;
         device.queue.write_buffer(&self.block, 0, bytemuck::bytes_of(&lie.uniform()));
-        let rests = past != Past::Cut && self.standing == Some(here);
-        let holds = past == Past::Kept && self.standing.is_some_and(|b| !here.leaps_from(&b));
-        self.standing = Some(here);
-        let begins = !holds && past != Past::None;
+        let before = self.standing.replace(here);
+        let begins = past == Past::Cut || past == Past::Kept && before.is_none_or(|b| here.leaps_from(&b));
         if begins {
             self.coarse_rows = TEXELS;
         }
-        let most = if self.coarse_rows > 0 { ROWS_OF_NEW } else { ROWS };
-        let waits = self.made_some && self.coarse_rows == 0;
-        let due = self.rows.due((TEXELS, most), [rests, past != Past::None, waits]);
-        self.made_some = due.is_some();
+        let turn = Turn {
+            rests: past != Past::Cut && before == Some(here),
+            holds: past != Past::None,
+            aged: before.map_or(1.0, |b| here.aged_since(&b)),
+            waits: false,
+            is_coarse: self.coarse_rows > 0,
+        };
+        let due = self.rows.due((TEXELS, ROWS), &turn);
         let Some((first, count)) = due else { return 0 };
         self.coarse_rows = self.coarse_rows.saturating_sub(count);
         if begins {
@@ -311,5 +313,18 @@ impl Standing {
             || self.placed.1 != before.placed.1
             || (self.placed.0 - before.placed.0).abs() > LEAP_OF_DRIFT_M
             || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
+    }
+
+    /// The share of a map that has grown old since what stood before.
+    pub fn aged_since(&self, before: &Self) -> f64 {
+        let (time_s, turn, threshold, way_m) = AGES;
+        let shares = [
+            (self.time_s - before.time_s).abs() / time_s,
+            self.to_light.distance(before.to_light) / turn,
+            (self.threshold_sum - before.threshold_sum).abs() / threshold,
+            self.camera_m.distance(before.camera_m) / way_m,
+            (self.placed.0 - before.placed.0).abs() / way_m,
+        ];
+        shares.into_iter().fold(0.0, f64::max)
     }
 }

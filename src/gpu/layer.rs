@@ -28,9 +28,11 @@ impl Layer<'_> {
         })
     }
 
-    /// A view of the layer alone to draw into, with all that its format holds.
+    /// A view of the layer alone to draw into, with all that its format holds. It cannot be read from: OpenGL finds nothing in a single layer
+    /// of several.
     pub fn attached_view(self) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
+            usage: Some(wgpu::TextureUsages::RENDER_ATTACHMENT),
             dimension: Some(wgpu::TextureViewDimension::D2),
             base_array_layer: self.index,
             array_layer_count: Some(1),

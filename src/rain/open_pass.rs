@@ -10,7 +10,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::{
-        Device,
+        Device, Layer,
         bind::{self, Slot},
         pass::{FullscreenDesc, fullscreen},
     },
@@ -54,12 +54,7 @@ pub(super) fn grid(device: &wgpu::Device, size: wgpu::Extent3d) -> wgpu::Texture
 }
 
 fn layer(grid: &wgpu::Texture, at: usize) -> wgpu::TextureView {
-    grid.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2),
-        base_array_layer: at as u32,
-        array_layer_count: Some(1),
-        ..Default::default()
-    })
+    Layer { texture: grid, index: at as u32 }.attached_view()
 }
 
 impl OpenPass {

@@ -12,9 +12,9 @@ use super::settings::{SkyModel, SkySettings};
 use super::tables::SkyTables;
 use super::uniforms::{DimsUniform, EdgesUniform, LampUniform, ObserverUniform, ViewUniform};
 use crate::error::Result;
-use crate::gpu::Device;
-use crate::gpu::bind::Slot;
+use crate::gpu::bind::{Slot, as_layers};
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
+use crate::gpu::{Device, Layer};
 
 /// Layers of a lamp: what is complete, and light scattered once by haze without its phase function.
 const LAYERS: u32 = 2;
@@ -30,29 +30,32 @@ struct Layered {
 impl Layered {
     fn new(device: &Device, settings: &SkySettings) -> Self {
         let texture = table_texture(device, "sky of an observer", settings.observer_size(), LAYERS * LAMPS as u32);
-        let view = |dimension, base, count| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer: base,
-                array_layer_count: count,
-                ..Default::default()
-            })
-        };
-        let layers = (0..LAYERS * LAMPS as u32).map(|i| view(wgpu::TextureViewDimension::D2, i, Some(1))).collect();
-        let whole = view(wgpu::TextureViewDimension::D2Array, 0, None);
+        let layer = |index| Layer { texture: &texture, index }.attached_view();
+        let layers = (0..LAYERS * LAMPS as u32).map(layer).collect();
+        let whole = as_layers(&texture);
         Self { texture, whole, layers }
     }
 
-    /// Copies a lamp's layers to another of the same size.
-    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, to: &Self) {
-        let mut from = self.texture.as_image_copy();
-        from.origin.z = LAYERS * lamp as u32;
-        let to = wgpu::TexelCopyTextureInfo { texture: &to.texture, ..from };
-        encoder.copy_texture_to_texture(
-            from,
-            to,
-            wgpu::Extent3d { depth_or_array_layers: LAYERS, ..self.texture.size() },
-        );
+    /// Copies a lamp's layers to others of the same size.
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, to: &Apart) {
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
+        for z in LAYERS * lamp as u32..LAYERS * (lamp as u32 + 1) {
+            let origin = wgpu::Origin3d { z, ..wgpu::Origin3d::ZERO };
+            let from = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
+            encoder.copy_texture_to_texture(from, to.layers[z as usize].texture().as_image_copy(), size);
+        }
+    }
+}
+
+/// The same layers, each a texture of its own that passes read: OpenGL finds nothing in a single layer of several.
+struct Apart {
+    layers: Vec<wgpu::TextureView>,
+}
+
+impl Apart {
+    fn new(device: &Device, settings: &SkySettings) -> Self {
+        let layer = |_| table_texture(device, "fading sky of an observer", settings.observer_size(), 1);
+        Self { layers: (0..LAYERS * LAMPS as u32).map(layer).map(|t| t.create_view(&Default::default())).collect() }
     }
 }
 
@@ -120,8 +123,8 @@ struct DrawnFor {
 /// Tables of which one fades into the other: each is drawn once, and every step lays one over the other.
 struct Fade {
     /// What fades out, and what fades in.
-    first: Layered,
-    next: Layered,
+    first: Apart,
+    next: Apart,
     drawn: [Option<DrawnFor>; LAMPS],
     /// How each layer of both is read.
     groups: [Vec<wgpu::BindGroup>; 2],
@@ -129,8 +132,8 @@ struct Fade {
 
 impl Fade {
     fn new(device: &Device, kit: &Kit) -> Self {
-        let (first, next) = (Layered::new(device, &kit.settings), Layered::new(device, &kit.settings));
-        let read = |t: &Layered| t.layers.iter().map(|l| kit.fades.group(device, l)).collect();
+        let [first, next] = [(); 2].map(|()| Apart::new(device, &kit.settings));
+        let read = |t: &Apart| t.layers.iter().map(|l| kit.fades.group(device, l)).collect();
         let groups = [&first, &next].map(read);
         Self { first, next, drawn: [None; LAMPS], groups }
     }
@@ -370,16 +373,16 @@ impl SkyVolume {
             return Ok(());
         }
         let passes = self.kit.observer_passes()?;
-        let target = if is_next {
+        let layers = if is_next {
             let fade = self.fade.get_or_insert_with(|| Box::new(Fade::new(&self.device, &self.kit)));
             fade.drawn[i] = self.drawn[i].map(|d| DrawnFor { set: set.id, over: None, ..d });
-            &fade.next
+            &fade.next.layers
         } else {
-            &self.tables
+            &self.tables.layers
         };
         let layer = |k: usize| {
             Some(wgpu::RenderPassColorAttachment {
-                view: &target.layers[LAYERS as usize * i + k],
+                view: &layers[LAYERS as usize * i + k],
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     almanac::Utc,
     error::Result,
-    gpu::{Device, bind},
+    gpu::{Device, Layer, bind},
     light::luminance,
     moment::{Moment, Scene},
     stage::{Composition, Drawing, DrawnEffect, Frame, PutPart, Recording, Shot, Stages, Texture, yes},
@@ -108,11 +108,7 @@ impl StarsView {
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             });
-            let view = texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                array_layer_count: Some(1),
-                ..Default::default()
-            });
+            let view = Layer { texture: &texture, index: 0 }.attached_view();
             let layers = bind::as_layers(&texture);
             (texture, view, layers)
         });

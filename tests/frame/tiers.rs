@@ -7,7 +7,7 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     light::luminance,
     scene::Camera,
-    weather::{Fog, FogKind, Precipitation, PrecipitationKind, Weather},
+    weather::{CloudLayer, Fog, FogKind, LayerWind, Precipitation, PrecipitationKind, Weather},
 };
 
 use crate::host::Host;
@@ -80,4 +80,46 @@ fn differ_by_roundings(tier_0: &[[f64; 4]], tier_1: &[[f64; 4]], place: &str) {
         }
     }
     assert!(large * 1000 < 3 * tier_0.len(), "{place}: {large} channels");
+}
+
+/// What a frame takes over from those before it: a sky that fades into another, and clouds that are followed.
+#[test]
+fn tier_0_carries_the_same_from_frame_to_frame() {
+    let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };
+    let Ok(gl) = Device::headless(&options) else {
+        eprintln!("no OpenGL here");
+        return;
+    };
+    let mut hosts = [Host::on(gl, FORMAT), Host::new(FORMAT)];
+    let wind = Some(LayerWind { from_deg: 250.0, speed_m_s: 20.0 });
+    let clouds = |cover| vec![CloudLayer { wind, ..CloudLayer::new(cover, 1500.0) }];
+    let mut worst = [0.0f64; 3];
+    for (part, (visibility_m, cover)) in [(60e3, 0.0), (8e3, 0.0), (8e3, 0.4)].into_iter().enumerate() {
+        for i in 0..50u32 {
+            let id = 50 * part as u32 + i;
+            let time_s = f64::from(id) / 30.0;
+            for host in &mut hosts {
+                if i == 0 {
+                    let clouds = if cover > 0.0 { clouds(cover) } else { Vec::new() };
+                    let weather = Weather { visibility_m, clouds, ..Weather::default() };
+                    host.context.set_weather(&weather, time_s, 0.0).unwrap();
+                }
+                host.context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 25.0 })).unwrap();
+                host.context.update(time_s).unwrap();
+                host.clear([0.05, 0.2, 0.4, 1.0], 0.0);
+                let forward = DVec3::new((0.01 * f64::from(id)).sin(), 1.0, 0.4);
+                let camera = Camera::look_to(DVec3::Z * 2.0, forward, DVec3::Z, 1.0, 160.0 / 90.0, 0.1);
+                let mut frame = Frame::new(id.into(), camera, &host.color, Some(&host.depth));
+                frame.cd_m2_per_unit = 100.0;
+                host.view.record(&host.context, &frame, Stages::ALL.without(Stages::TONE)).unwrap();
+            }
+            let [a, b] = hosts.each_ref().map(Host::pixels);
+            let y = |p: &[f32; 4]| luminance(&[p[0], p[1], p[2]].map(f64::from));
+            let mut off: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (y(a) / y(b) - 1.0).abs()).collect();
+            off.sort_by(f64::total_cmp);
+            worst[part] = worst[part].max(off[off.len() * 95 / 100]);
+        }
+    }
+    println!("tier 0 is apart by {worst:.5?} at 95 %: clear, into haze, among clouds");
+    assert!(worst[0] < 2.5e-3 && worst[1] < 2.5e-3 && worst[2] < 1e-2, "{worst:?}");
 }

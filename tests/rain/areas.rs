@@ -503,7 +503,6 @@ fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
         .map(|backends| {
             let options = DeviceOptions { backends, force_tier0: true, ..DeviceOptions::default() };
             let mut host = Host::on(Device::headless(&options).unwrap(), (160, 90));
-            host.context.set_cloud_model(CloudModel::Deck);
             host.context.set_weather(&fair(6.0), 0.0, 0.0).unwrap();
             let mut drawn = Vec::new();
             for north_m in [6500.0, 1300.0] {
