@@ -23,6 +23,9 @@ override HISTORY: bool = true;
 // There are shadows, and a host's depth to cast them on.
 override SHADOWS: bool = true;
 
+// log2 of a distance beyond all clouds, m.
+const NOWHERE: f32 = 24.0;
+
 struct ResolvedPixel {
     @location(0) seen: vec4f,
     // log2 of the reach, m, and the share of direct light at what the host drew.
@@ -45,8 +48,10 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
     let now = textureSampleLevel(marched, linear, among, 0.0);
-    let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(1.0 - now.a, 1e-4);
-    let reach = vec4f(stands, shadow_on(pixel), 0.0);
+    // What this frame's rays do not see, but the last picture held, stands far off: never before what the host drew.
+    let cover = 1.0 - now.a;
+    let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(cover, 1e-4);
+    let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel), 0.0);
     if !HISTORY {
         return ResolvedPixel(now, reach);
     }

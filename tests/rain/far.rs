@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use welkin::{
-    clouds::CloudModel,
     frame::Stages,
     rain::{RainModel, RainSettings},
     weather::{CloudKind, CloudLayer, Weather},
@@ -151,8 +150,7 @@ fn no_ring_shows_where_drops_give_way_to_cones_and_those_to_the_veil() {
     for (rate, visibility_m) in [(5.0, 3000.0), (40.0, 1200.0)] {
         let mut host = Host::new((160, 90));
         host.look(DVec3::new(0.0, 0.0, 400.0), DVec3::Y);
-        // Rain alone, against a wall that sends no light.
-        host.context.set_cloud_model(CloudModel::Deck);
+        // Against a wall that sends no light.
         host.context.set_weather(&overcast(rate, 4.0, visibility_m), 0.0, 0.0).unwrap();
         let from = 10.0;
         host.context.update(from).unwrap();
