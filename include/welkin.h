@@ -5379,7 +5379,7 @@ typedef struct wk_clouds {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** How many steps a ray takes: twice the value, twice as many. Range [0.125, 16], default 2. */
+    /** How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2. */
     double fineness;
     /**
      * One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:

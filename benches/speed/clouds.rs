@@ -41,7 +41,7 @@ const STEPS: f64 = 96.0;
 /// 95th percentile of the difference of luminance up to which steps need not be doubled.
 const SAME: f64 = 0.01;
 /// Finenesses that are tried; the last is the most that there is.
-const TRIED: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+const TRIED: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
 /// The least fineness of those tried whose picture of broken cumulus, marched in every pixel, is that of twice the steps; the most that
 /// there is where none is.
@@ -82,8 +82,9 @@ fn brute_force() -> Fallible<f64> {
     Ok(enough)
 }
 
-/// Frames before a change of weather and after it, each a twentieth of a second; the change takes [`COMES_S`].
-const FRAMES: [u64; 2] = [60, 120];
+/// Frames before a change of weather, in which the sky's tables have come to their final quality, and after it, each a twentieth of a second;
+/// the change takes [`COMES_S`].
+const FRAMES: [u64; 2] = [160, 120];
 const COMES_S: f64 = 3.0;
 
 /// Prints what frames take while fair cumulus becomes a layer of stratocumulus under cirrus, over the median after it.

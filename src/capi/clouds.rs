@@ -90,7 +90,7 @@ pub struct wk_clouds {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// How many steps a ray takes: twice the value, twice as many. Range [0.125, 16], default 2.
+    /// How many steps a ray takes: twice the value, twice as many. Range [0.125, 32], default 2.
     pub fineness: f64,
     /// One pixel of a square of so many on a side is computed in a frame; the others are taken over from earlier frames:
     /// 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.

@@ -5,7 +5,7 @@ use crate::error::{Error, Result, check_range};
 /// How finely a view draws clouds that are a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudSettings {
-    /// How many steps a ray takes: twice the value, twice as many. Range \[0.125, 16\], default 2; of half of them `lab chart clouds` says
+    /// How many steps a ray takes: twice the value, twice as many. Range \[0.125, 32\], default 2; of half of them `lab chart clouds` says
     /// that they err more than twice as much and cost hardly less.
     pub fineness: f64,
     /// One pixel of a square of so many on a side is marched in a frame, the others are taken over from earlier frames: 1, 2 or 4, default
@@ -25,7 +25,7 @@ impl CloudSettings {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.
     pub fn validate(&self) -> Result<()> {
-        check_range("clouds.fineness", self.fineness, 0.125, 16.0, "")?;
+        check_range("clouds.fineness", self.fineness, 0.125, 32.0, "")?;
         if [1, 2, 4].contains(&self.square_side) {
             return Ok(());
         }
@@ -41,9 +41,9 @@ mod tests {
     fn settings_out_of_range_are_refused_by_name() {
         let all = CloudSettings::default();
         all.validate().unwrap();
-        for fineness in [0.1, 17.0, f64::NAN] {
+        for fineness in [0.1, 33.0, f64::NAN] {
             let e = CloudSettings { fineness, ..all }.validate().unwrap_err();
-            assert!(e.to_string().starts_with("clouds.fineness must be in [0.125, 16]"), "{e}");
+            assert!(e.to_string().starts_with("clouds.fineness must be in [0.125, 32]"), "{e}");
         }
         for square_side in [0, 3, 8] {
             let e = CloudSettings { square_side, ..all }.validate().unwrap_err();
