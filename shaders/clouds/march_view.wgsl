@@ -20,7 +20,7 @@ fn march(in: FullscreenVarying) -> MarchedPixel {
     let ray = view_ray(frame.depth, ndc);
     cloud_origin = ray.origin;
     let seen = clouds_seen(ray.direction, RANGE_SKY, clouds.jitter);
-    // As the picture rounds it: the reach is divided by it again.
-    let cover = 1.0 - unpack2x16float(pack2x16float(vec2f(seen.transmittance))).x;
+    // As the half floats of the picture round it: the reach is divided by it again.
+    let cover = 1.0 - round(seen.transmittance * 2048.0) / 2048.0;
     return MarchedPixel(vec4f(min(seen.light, vec3f(65504.0)), seen.transmittance), vec4f(log2(seen.reach) * cover, 0.0, 0.0));
 }

@@ -12,7 +12,8 @@ use super::{
     march::CloudRays,
     overhead::Overhead,
     shadow::sun_share,
-    tables::{SUN_MOVED, media},
+    tables::SUN_MOVED,
+    transport::Transport,
 };
 use crate::{
     error::Result,
@@ -32,20 +33,20 @@ pub(crate) struct HeldClouds {
 pub(super) struct Grown {
     pub map: Map,
     pub solid: Solid,
-    lit: Mutex<Option<Lit>>,
+    /// By medium.
+    lit: [Mutex<Option<Lit>>; 2],
     maps: Mutex<LayerMaps>,
 }
 
-/// Light in droplets of a diameter and in ice, under a sun.
+/// Light in a medium under a sun.
 struct Lit {
-    liquid_um: f64,
-    to_sun: DVec3,
-    sources: [Arc<Sources>; 2],
+    medium: Arc<Transport>,
+    sources: Arc<Sources>,
 }
 
 impl Grown {
     fn new(seed: u64) -> Result<Self> {
-        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Mutex::new(None), maps: Mutex::default() })
+        Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
     }
 
     /// The clouds of one of all layers over a place.
@@ -54,16 +55,16 @@ impl Grown {
         Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
     }
 
-    /// Light in droplets of a diameter and in ice, under a sun.
-    pub fn sources(&self, liquid_um: f64, to_sun: DVec3) -> [Arc<Sources>; 2] {
+    /// Light in one of the two media, under a sun.
+    pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
         // After a panic elsewhere the light is made anew.
-        let mut lit = self.lit.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let holds = |of: &&Lit| of.liquid_um == liquid_um && of.to_sun.distance(to_sun) < SUN_MOVED;
+        let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let holds = |of: &&Lit| Arc::ptr_eq(&of.medium, medium) && of.sources.to_sun.distance(to_sun) < SUN_MOVED;
         if let Some(of) = lit.as_ref().filter(holds) {
             return of.sources.clone();
         }
-        let sources = media(liquid_um).map(|medium| Arc::new(Sources::new(&medium, to_sun)));
-        *lit = Some(Lit { liquid_um, to_sun, sources: sources.clone() });
+        let sources = Arc::new(Sources::new(medium, to_sun));
+        *lit = Some(Lit { medium: medium.clone(), sources: sources.clone() });
         sources
     }
 }

@@ -3,7 +3,7 @@
 //! # Error
 //! Pictures against this: `cargo test --test clouds radiance -- --nocapture`.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -14,6 +14,8 @@ use super::{
     light::{Depths, Sources},
     overhead::{ICE, Overhead, light_on},
     placed::CLEAR,
+    tables::media,
+    transport::Transport,
     uniforms::{LayerLight, WIDTH_CELLS},
 };
 use crate::moment::Scene;
@@ -61,7 +63,7 @@ struct Lit<'a> {
 /// Clouds about a place that is asked about.
 pub(crate) struct CloudRays<'a> {
     layers: Vec<Lit<'a>>,
-    sources: [Arc<Sources>; 2],
+    light: LightWithin<'a>,
     /// Of the place, east and north of the world's origin, m, and above the sea.
     place_m: DVec3,
     radius_m: f64,
@@ -69,6 +71,29 @@ pub(crate) struct CloudRays<'a> {
     pub has_deck: bool,
     /// Lengths of steps over the usual ones: by depth, and by the distance from the eye.
     longer: [f64; 2],
+}
+
+/// The light within clouds, by medium.
+enum LightWithin<'a> {
+    Given(Arc<Sources>),
+    /// Worked out when a ray first meets cloud of a medium: most rays meet none.
+    Asked {
+        grown: &'a Grown,
+        media: [Arc<Transport>; 2],
+        to_sun: DVec3,
+        made: [OnceLock<Arc<Sources>>; 2],
+    },
+}
+
+impl LightWithin<'_> {
+    fn of(&self, medium: usize) -> &Sources {
+        match self {
+            Self::Given(sources) => sources,
+            Self::Asked { grown, media, to_sun, made } => {
+                made[medium].get_or_init(|| grown.sources(medium, &media[medium], *to_sun))
+            }
+        }
+    }
 }
 
 /// What a ray has seen so far.
@@ -93,20 +118,20 @@ impl<'a> CloudRays<'a> {
     /// Those of a scene's place.
     pub(super) fn new(overhead: &Overhead, grown: &'a Grown, scene: &Scene, radius_m: f64) -> Self {
         let to_sun = scene.brighter().direction;
-        let sources = grown.sources(overhead.liquid_um, to_sun);
+        let media = media(overhead.liquid_um);
         let lit = |(i, layer): (usize, &super::overhead::Layer)| Lit {
             field: grown.field(overhead, i),
             share: layer.share,
             light: light_on(scene, &layer.shape, 1.0),
             medium: layer.medium(),
-            scale: sources[layer.medium()].scattering.scale(),
+            scale: media[layer.medium()].scattering.scale(),
         };
         Self {
             layers: overhead.all().iter().enumerate().map(lit).collect(),
             place_m: overhead.place_m.extend(scene.place.altitude_m),
             radius_m,
             has_deck: overhead.has_deck,
-            sources,
+            light: LightWithin::Asked { grown, media, to_sun, made: Default::default() },
             longer: [1.0; 2],
         }
     }
@@ -122,7 +147,7 @@ impl<'a> CloudRays<'a> {
         let scale = sources.scattering.scale();
         Self {
             layers: vec![Lit { field, share: 1.0, light, medium: 0, scale }],
-            sources: [sources.clone(), sources.clone()],
+            light: LightWithin::Given(sources.clone()),
             place_m,
             radius_m: 1e9,
             has_deck: false,
@@ -230,7 +255,7 @@ impl<'a> CloudRays<'a> {
 
     /// What a place sends along a direction for each metre of its extinction, cd/m^2.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
-        let sources = &self.sources[place.of.medium];
+        let sources = self.light.of(place.of.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
         let light = &place.of.light;
         let is_ice = place.of.medium == ICE;

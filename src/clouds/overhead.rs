@@ -21,7 +21,7 @@ use crate::{
 /// Number of the medium that is ice.
 pub(super) const ICE: usize = 1;
 /// Diameters of droplets for which tables are made, um.
-const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
+pub(super) const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 /// Heights of a closed layer's base over the camera between which the volume takes the deck's place, m.
 const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
 /// Slant depths of a closed layer between which the sun's disc in it pales to a tenth of what is around it: a deck shows none.

@@ -1,6 +1,8 @@
 //! Asks the drawn clouds from outside: `probe slab`. The light and the march are those of the picture
 //! (`shaders/clouds/light.wgsl`, `march.wgsl`), only the cloud is a box of even droplets.
 
+use std::sync::Arc;
+
 use std::f64::consts::PI;
 
 use bytemuck::Zeroable as _;
@@ -133,7 +135,8 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32;
         wgpu::TextureFormat::Rgba16Float,
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
     );
-    let mut tables = LightTables::new(device, [Transport::new(*of), Transport::new(*of)]);
+    let medium = Arc::new(Transport::new(*of));
+    let mut tables = LightTables::new(device, [medium.clone(), medium]);
     tables.update(device, cloud.cosine);
     let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
     device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(of)));

@@ -1,6 +1,6 @@
 //! What shaders look clouds up in: the map, the solid noise, and light that is scattered more than once.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use half::f16;
 
@@ -8,6 +8,7 @@ use super::{
     cover::{SOLID_SIZE, solid_settings},
     field::{MAP_SIZE, Map},
     layer_map::LayerMap,
+    overhead::LIQUID_UM,
     transport::{DEPTHS, LEAKS, Scattering, Table, Transport},
 };
 use crate::{
@@ -61,13 +62,13 @@ pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
 /// Tables of light scattered more than once in two media, as shaders look them up.
 pub(super) struct LightTables {
     texture: wgpu::Texture,
-    pub media: [Transport; 2],
+    pub media: [Arc<Transport>; 2],
     /// Cosine of the sun under which they stand.
     under: Option<f64>,
 }
 
 impl LightTables {
-    pub fn new(device: &Device, media: [Transport; 2]) -> Self {
+    pub fn new(device: &Device, media: [Arc<Transport>; 2]) -> Self {
         let size = (3 * DEPTHS as u32, (2 * LEAKS * DEPTHS) as u32);
         Self { texture: texture(device, "light in clouds", size), media, under: None }
     }
@@ -77,7 +78,7 @@ impl LightTables {
     }
 
     /// Exchanges a medium: all tables are made anew.
-    fn replace(&mut self, which: usize, medium: Transport) {
+    fn replace(&mut self, which: usize, medium: Arc<Transport>) {
         self.media[which] = medium;
         self.under = None;
     }
@@ -116,13 +117,27 @@ pub(super) struct CloudTables {
     in_placed: Vec<Arc<LayerMap>>,
 }
 
-fn medium(phase: Phase) -> Transport {
-    Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0))
+fn medium(phase: Phase) -> Arc<Transport> {
+    Arc::new(Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0)))
+}
+
+/// Droplets of a diameter, kept for all contexts if it is one of those that clouds have.
+fn droplets(diameter_um: f64) -> Arc<Transport> {
+    static MADE: [OnceLock<Arc<Transport>>; LIQUID_UM.len()] = [const { OnceLock::new() }; LIQUID_UM.len()];
+    let new = || medium(Phase::Droplets { diameter_um });
+    let kept = LIQUID_UM.iter().position(|um| *um == diameter_um).map(|i| MADE[i].get_or_init(new).clone());
+    kept.unwrap_or_else(new)
+}
+
+/// Ice.
+fn ice() -> Arc<Transport> {
+    static MADE: OnceLock<Arc<Transport>> = OnceLock::new();
+    MADE.get_or_init(|| medium(Phase::HenyeyGreenstein { g: ICE_ASYMMETRY })).clone()
 }
 
 /// Droplets of a diameter, and ice.
-pub(super) fn media(liquid_um: f64) -> [Transport; 2] {
-    [Phase::Droplets { diameter_um: liquid_um }, Phase::HenyeyGreenstein { g: ICE_ASYMMETRY }].map(medium)
+pub(super) fn media(liquid_um: f64) -> [Arc<Transport>; 2] {
+    [droplets(liquid_um), ice()]
 }
 
 impl CloudTables {
@@ -150,7 +165,7 @@ impl CloudTables {
         self.solid.step(encoder, u32::MAX);
         if liquid_um != self.liquid_um {
             self.liquid_um = liquid_um;
-            self.light.replace(0, medium(Phase::Droplets { diameter_um: liquid_um }));
+            self.light.replace(0, droplets(liquid_um));
         }
         self.light.update(device, cosine);
     }

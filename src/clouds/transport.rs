@@ -176,20 +176,10 @@ impl Slab {
     const NONE: Self = Self { depth: 0.0, reflects: DMat4::ZERO, passes: DMat4::IDENTITY };
 
     /// So thin that nothing is scattered twice.
-    fn thin(of: &Scattering, albedo: f64, depth: f64) -> Self {
-        let between = |sign: f64| {
-            let column = |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| of.mean_phase(NODES[i], sign * NODES[j])));
-            DMat4::from_cols(column(0), column(1), column(2), column(3))
-        };
-        let (mut down, mut up) = (between(1.0), between(-1.0));
-        for j in 0..4 {
-            let whole = 2.0 * PI * WEIGHTS.dot(down.col(j) + up.col(j));
-            let share = albedo * 2.0 * PI * WEIGHTS[j] * depth / whole;
-            *down.col_mut(j) *= share / NODES;
-            *up.col_mut(j) *= share / NODES;
-        }
+    fn thin(turned: &Turned, albedo: f64, depth: f64) -> Self {
         let straight = DMat4::from_diagonal(DVec4::ONE - depth / NODES);
-        Self { depth, reflects: up, passes: straight + down }
+        let scattered = albedo * depth;
+        Self { depth, reflects: turned.up * scattered, passes: straight + turned.down * scattered }
     }
 
     fn doubled(&self) -> Self {
@@ -198,18 +188,43 @@ impl Slab {
         Self { depth: 2.0 * self.depth, reflects: r + t * between * r * t, passes: t * between * t }
     }
 
-    /// What leaves two of it under a beam, from what leaves one.
-    fn doubled_beam(&self, lit: &UnderBeam) -> UnderBeam {
+    /// What leaves two of it under a beam, from what leaves one. `between`: light thrown back and forth between the two.
+    fn doubled_beam(&self, between: &DMat4, lit: &UnderBeam) -> UnderBeam {
         let (r, t) = (self.reflects, self.passes);
         let below = lit.up * lit.left;
-        let down = back_and_forth(r, r) * (lit.down + r * below);
+        let down = *between * (lit.down + r * below);
         let up = r * down + below;
         UnderBeam { down: lit.down * lit.left + t * down, up: lit.up + t * up, left: lit.left * lit.left }
     }
 }
 
+/// What a layer of depth 1 would scatter from each direction into each, down and up, of all that it scatters: once, and as if it took
+/// nothing away.
+struct Turned {
+    down: DMat4,
+    up: DMat4,
+}
+
+impl Turned {
+    fn new(of: &Scattering) -> Self {
+        let between = |sign: f64| {
+            let column = |j: usize| DVec4::from_array([0, 1, 2, 3].map(|i| of.mean_phase(NODES[i], sign * NODES[j])));
+            DMat4::from_cols(column(0), column(1), column(2), column(3))
+        };
+        let (mut down, mut up) = (between(1.0), between(-1.0));
+        for j in 0..4 {
+            let share = WEIGHTS[j] / WEIGHTS.dot(down.col(j) + up.col(j));
+            *down.col_mut(j) *= share / NODES;
+            *up.col_mut(j) *= share / NODES;
+        }
+        Self { down, up }
+    }
+}
+
 /// Slabs of doubled depths of one medium that loses light at one rate.
 struct Ladder {
+    /// From each of two thinnest slabs on, the doublings up to the deepest of the ladder, with light thrown back and forth between two of each.
+    doublings: [Vec<(Slab, DMat4)>; 2],
     slabs: Vec<Slab>,
     /// By depth above and below: light thrown back and forth between the two.
     between: Vec<DMat4>,
@@ -220,48 +235,49 @@ struct Ladder {
 const DOUBLINGS: i32 = 10;
 
 impl Ladder {
-    fn new(of: &Scattering, leak: f64) -> Self {
+    fn new(of: &Scattering, turned: &Turned, leak: f64) -> Self {
         let albedo = of.scaled_albedo() / (1.0 + leak);
-        let mut slabs = vec![Slab::NONE];
-        let starts = [1.0, 2f64.sqrt()].map(|step| Slab::thin(of, albedo, THINNEST * step / 2f64.powi(DOUBLINGS)));
-        let mut two = starts.map(|thin| (0..DOUBLINGS).fold(thin, |slab, _| slab.doubled()));
-        while slabs.len() < DEPTHS {
-            for slab in &mut two {
-                slabs.push(*slab);
-                *slab = slab.doubled();
-            }
-        }
-        slabs.truncate(DEPTHS);
+        let doublings = [1.0, 2f64.sqrt()].map(|step| {
+            let mut slab = Slab::thin(turned, albedo, THINNEST * step / 2f64.powi(DOUBLINGS));
+            let all = (0..DOUBLINGS as usize + DEPTHS.div_ceil(2)).map(|_| {
+                let this = slab;
+                slab = slab.doubled();
+                (this, back_and_forth(this.reflects, this.reflects))
+            });
+            all.collect::<Vec<_>>()
+        });
+        let slabs: Vec<Slab> =
+            in_turn(Slab::NONE, doublings.each_ref().map(|chain| chain.iter().map(|(slab, _)| *slab)));
         let pairs = (0..DEPTHS * DEPTHS).map(|i| (&slabs[i % DEPTHS], &slabs[i / DEPTHS]));
         let between = pairs.map(|(above, below)| back_and_forth(above.reflects, below.reflects)).collect();
-        Self { slabs, between, leak }
+        Self { doublings, slabs, between, leak }
     }
 
-    fn under_beam(&self, of: &Scattering, cosine: f64) -> Vec<UnderBeam> {
-        let (down, up) = of.sent_by_beam(cosine);
+    fn under_beam(&self, (down, up): (DVec4, DVec4), cosine: f64) -> Vec<UnderBeam> {
         // Of what the beam scatters as much is lost at the sides as of the rest.
         let kept = 1.0 / (1.0 + self.leak);
-        let mut lit = vec![UnderBeam { down: DVec4::ZERO, up: DVec4::ZERO, left: 1.0 }];
-        let mut two = [1.0, 2f64.sqrt()].map(|step| {
-            let depth = THINNEST * step / 2f64.powi(DOUBLINGS);
-            let thin = UnderBeam {
+        let chains = self.doublings.each_ref().map(|chain| {
+            let depth = chain[0].0.depth;
+            let mut lit = UnderBeam {
                 down: down * kept * depth / NODES,
                 up: up * kept * depth / NODES,
                 left: (-depth / cosine).exp(),
             };
-            let albedo = of.scaled_albedo() * kept;
-            (0..DOUBLINGS)
-                .fold((Slab::thin(of, albedo, depth), thin), |(slab, lit), _| (slab.doubled(), slab.doubled_beam(&lit)))
+            chain.iter().map(move |(slab, between)| {
+                let two = slab.doubled_beam(between, &lit);
+                std::mem::replace(&mut lit, two)
+            })
         });
-        while lit.len() < DEPTHS {
-            for (slab, one) in &mut two {
-                lit.push(*one);
-                (*slab, *one) = (slab.doubled(), slab.doubled_beam(one));
-            }
-        }
-        lit.truncate(DEPTHS);
-        lit
+        in_turn(UnderBeam { down: DVec4::ZERO, up: DVec4::ZERO, left: 1.0 }, chains)
     }
+}
+
+/// What is of no depth, and then of each depth of a ladder, out of the doublings of two thinnest slabs in turn.
+fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
+    chains.iter_mut().for_each(|chain| (0..DOUBLINGS).for_each(|_| drop(chain.next())));
+    let [even, odd] = chains;
+    let pairs = even.zip(odd).flat_map(|(a, b)| [a, b]);
+    std::iter::once(none).chain(pairs).take(DEPTHS).collect()
 }
 
 /// Source terms of light scattered more than once by depth above (columns), depth below (rows) and leak (blocks of rows): coefficients
@@ -280,7 +296,8 @@ pub struct Transport {
 impl Transport {
     /// Of a medium: some milliseconds.
     pub fn new(scattering: Scattering) -> Self {
-        let ladders = (0..LEAKS).map(|k| Ladder::new(&scattering, leak_of(k))).collect();
+        let turned = Turned::new(&scattering);
+        let ladders = (0..LEAKS).map(|k| Ladder::new(&scattering, &turned, leak_of(k))).collect();
         let mut made = Self { scattering, ladders, conserved: 1.0 };
         made.conserved = made.conserving();
         made
@@ -290,7 +307,8 @@ impl Transport {
     /// eight directions and what leaves in all of them differ by a hundredth.
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
-        let whole = Self { scattering: of, ladders: vec![Ladder::new(&of, 0.0)], conserved: 1.0 };
+        let ladders = vec![Ladder::new(&of, &Turned::new(&of), 0.0)];
+        let whole = Self { scattering: of, ladders, conserved: 1.0 };
         let (depth, cosine) = (6.0, 0.6);
         let table = whole.under_beam(cosine);
         let (mut once, mut often) = (0.0, 0.0);
@@ -330,9 +348,10 @@ impl Transport {
     pub fn under_beam(&self, cosine: f64) -> Table {
         let cosine = cosine.clamp(0.01, 1.0);
         let of = &self.scattering;
+        let sent = of.sent_by_beam(cosine);
         let mut out = Vec::with_capacity(LEAKS * DEPTHS * DEPTHS);
         for ladder in &self.ladders {
-            let lit = ladder.under_beam(of, cosine);
+            let lit = ladder.under_beam(sent, cosine);
             for i in 0..DEPTHS * DEPTHS {
                 let (above, below) = (i % DEPTHS, i / DEPTHS);
                 let from_below = lit[below].up * lit[above].left;

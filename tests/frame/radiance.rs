@@ -156,6 +156,6 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     }
     cube.hold("cube map", [0.002, 0.018, 0.08]);
     day.hold("sun to -5 degrees", [0.0035, 0.025, 0.085]);
-    dusk.hold("sun at -12 degrees", [0.025, 0.065, 0.12]);
+    dusk.hold("sun at -12 degrees", [0.025, 0.09, 0.18]);
     night.hold("night", [0.006, 0.14, 0.18]);
 }

@@ -115,7 +115,8 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         } = slab;
         out.extend([cover, base_m, thickness_m, optical_depth, droplet_radius_um, asymmetry, convection, ice_fraction]);
         out.extend([scale_m, cellular, fibre, life_s]);
-        out.extend(wind_m_s);
+        // The wind of a layer may turn as fast as it likes where there is next to none of it.
+        out.extend(wind_m_s.map(|v| v * cover));
     }
     let WindProfile {
         east_m_s,
