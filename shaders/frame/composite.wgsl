@@ -11,6 +11,9 @@ override MEDIUM: bool = true;
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
+// Where nothing is drawn, the pixels of a pipeline may lie above the level of the eye, and below it.
+override FAR_ABOVE: bool = true;
+override FAR_BELOW: bool = true;
 // Clouds cast shadows on what the host drew.
 override CLOUD_SHADOWS: bool = false;
 // Optical depth of clouds over what of it is left when what they scatter straight on counts as not scattered.
@@ -28,28 +31,31 @@ fn ground_under_deck(path: SkyPath) -> vec3f {
 
 // The discs of sun and moon behind clouds, which let through less of their light straight than all that they scatter straight on. A disc
 // takes nothing from the sky it stands in, though its red lies outside of Rec. 709.
-fn disc_light(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
+fn disc_light(radiance: Radiance, hung: Hung) -> vec3f {
     if !DISCS {
         return vec3f(0.0);
     }
     let through = select(1.0, pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0), CLOUDS);
-    return max(color_of(disc_radiance_on(path, d, frame.pixel_angle) * (through * hung.disc)), vec3f(0.0));
+    return max(color_of(radiance * (through * hung.disc)), vec3f(0.0));
 }
 
-// What stands behind all that the host drew and behind clouds: the sky, or the planet's own ground with the air before it.
-fn behind_all(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
-    if (!CLEAR_SKY || deck_hides_all() || drawn.z == 0.0) && d.z >= 0.0 {
+// What stands behind all that the host drew and behind clouds, above the level of the eye.
+fn behind_above(d: vec3f, hung: Hung) -> vec3f {
+    if !CLEAR_SKY || deck_hides_all() || drawn.z == 0.0 {
         return open_sky(d, vec3f(0.0), hung);
     }
+    let disc = disc_light(disc_radiance_above(d, frame.pixel_angle), hung);
+    return open_sky(d, color_of(sky_radiance_above(d)) + disc, hung);
+}
+
+// The same below: the planet's own ground with the air before it, and from high up the sky over it.
+fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if deck_hides_all() {
         return ground_under_deck(path) + night_light(hung);
     }
-    let spectrum = sky_radiance_on(path, d);
-    if d.z < 0.0 {
-        let clear = color_of(spectrum + ground_radiance_on(path, d)) * frame.medium_share;
-        return mix(clear, ground_under_deck(path), frame.deck_cover) + night_light(hung);
-    }
-    return open_sky(d, color_of(spectrum) + disc_light(path, d, hung), hung);
+    var clear = color_of(sky_radiance_on(path, d) + ground_radiance_on(path, d)) * frame.medium_share;
+    clear += disc_light(disc_radiance_on(path, d, frame.pixel_angle), hung);
+    return mix(clear, ground_under_deck(path), frame.deck_cover) + night_light(hung);
 }
 
 // What the shadow of clouds leaves of the light on what the host drew, of that on the mean over places, in which the host lit it.
@@ -70,11 +76,21 @@ fn display(luminance: vec3f) -> vec3f {
 // drew nothing.
 fn weather_over(ray: ViewRay, range: f32, plane: f32, hung: Hung) -> Veil {
     let sky = range >= RANGE_SKY;
+    let above = FAR_ABOVE && (!FAR_BELOW || ray.direction.z >= 0.0);
     var veil = Veil(vec3f(0.0), vec3f(1.0));
-    // One path for sky and air: a driver that compiles both ways, and takes both, does its part once.
-    let path = sky_path(ray.direction, range);
+    // One path for ground and air: a driver that compiles both ways, and takes both, does its part once. The sky needs none.
+    var path: SkyPath;
+    if !(sky && above) {
+        path = sky_path(ray.direction, range);
+    }
     if BACKGROUND && sky {
-        veil = Veil(before_sky(behind_all(path, ray.direction, hung), ray.direction, hung), vec3f(0.0));
+        var behind = vec3f(0.0);
+        if above {
+            behind = behind_above(ray.direction, hung);
+        } else {
+            behind = behind_below(path, ray.direction, hung);
+        }
+        veil = Veil(before_sky(behind, ray.direction, hung), vec3f(0.0));
     } else if MEDIUM && !sky {
         veil = air_on(path, ray.direction);
     }

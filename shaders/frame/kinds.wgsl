@@ -7,15 +7,17 @@
 
 override HAS_DEPTH: bool = true;
 
-const KIND_FAR: f32 = 0.0;
+const KIND_ABOVE: f32 = 0.0;
+const KIND_BELOW: f32 = 0.5;
 const KIND_DRAWN: f32 = 1.0;
 
 @fragment
 fn kinds(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
-    if !HAS_DEPTH {
-        return KIND_FAR;
-    }
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * frame.y_sign);
+    let far = select(KIND_BELOW, KIND_ABOVE, view_ray(frame.depth, ndc).direction.z >= 0.0);
+    if !HAS_DEPTH {
+        return far;
+    }
     let depth = textureLoad(host_depth, vec2i(in.position.xy), 0).r;
-    return select(KIND_FAR, KIND_DRAWN, view_range(frame.depth, depth, ndc) < RANGE_SKY);
+    return select(far, KIND_DRAWN, view_range(frame.depth, depth, ndc) < RANGE_SKY);
 }

@@ -41,20 +41,44 @@ fn disc_radiance(dir: vec3f, pixel_angle: f32) -> Radiance {
 }
 
 fn disc_radiance_on(path: SkyPath, dir: vec3f, pixel_angle: f32) -> Radiance {
+    return disc_faces(dir, pixel_angle, path.depth, false) * f32(path.ray.grounded == 0u);
+}
+
+// The same above the level of the eye, where the air before a disc follows from its height alone.
+fn disc_radiance_above(dir: vec3f, pixel_angle: f32) -> Radiance {
+    return disc_faces(dir, pixel_angle, vec3f(0.0), true);
+}
+
+// Optical depth of the air before what of a disc is seen at this sine of elevation: src/sky/disc.rs.
+fn depth_before_disc(lamp: SkyLamp, sine: f32) -> vec3f {
+    let x = sqrt(clamp((sine - lamp.depth_from) * lamp.depth_scale, 0.0, 1.0));
+    return exp(lamp.depth[0].xyz + x * (lamp.depth[1].xyz + x * (lamp.depth[2].xyz + x * lamp.depth[3].xyz)));
+}
+
+// Radiances of the discs behind air of an optical depth, or of that of their own height.
+fn disc_faces(dir: vec3f, pixel_angle: f32, depth: vec3f, by_height: bool) -> Radiance {
     let real = unrefracted(dir);
     var out = vec3f(0.0);
     if (SUN_THEN_MOON) {
-        out = sun_disc(sky_view.lamps[0], real, pixel_angle);
+        out = sun_disc(sky_view.lamps[0], real, pixel_angle, air_before_disc(sky_view.lamps[0], dir, depth, by_height));
         if (SKY_DISCS > 1u) {
-            out += moon_disc(sky_view.lamps[1], real, pixel_angle);
+            out += moon_disc(sky_view.lamps[1], real, pixel_angle, air_before_disc(sky_view.lamps[1], dir, depth, by_height));
         }
     } else {
         for (var i = 0u; i < SKY_DISCS; i++) {
             let lamp = sky_view.lamps[i];
-            out += select(sun_disc(lamp, real, pixel_angle), moon_disc(lamp, real, pixel_angle), lamp.kind == 1u);
+            let air = air_before_disc(lamp, dir, depth, by_height);
+            out += select(sun_disc(lamp, real, pixel_angle, air), moon_disc(lamp, real, pixel_angle, air), lamp.kind == 1u);
         }
     }
-    return out * sky_transmittance_on(path);
+    return out;
+}
+
+fn air_before_disc(lamp: SkyLamp, dir: vec3f, depth: vec3f, by_height: bool) -> vec3f {
+    if by_height {
+        return depth_before_disc(lamp, dir.z);
+    }
+    return depth;
 }
 
 // Zenith cosine of the eye on a disc's face, at a share of its radius.
@@ -62,17 +86,17 @@ fn face_cosine(share: f32) -> f32 {
     return sqrt(max(1.0 - share * share, 1e-4));
 }
 
-// Dark towards the limb: mu^a.
-fn sun_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+// Dark towards the limb: mu^a. `air`: optical depth before it.
+fn sun_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32, air: vec3f) -> Radiance {
     let place = disc_place(lamp, real, pixel_angle);
-    return lamp.disc * exp2(log2(face_cosine(place.x)) * lamp.limb) * place.y;
+    return lamp.disc * exp2(log2(face_cosine(place.x)) * lamp.limb - air * 1.44269504) * place.y;
 }
 
 // Lommel and Seeliger: mu0/(mu0 + mu), on the side of the moon that faces us.
-fn moon_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32) -> Radiance {
+fn moon_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32, air: vec3f) -> Radiance {
     let place = disc_place(lamp, real, pixel_angle);
     let mu = face_cosine(place.x);
     let offset = (real - lamp.toward * dot(real, lamp.toward)) * lamp.inverse_radius;
     let mu0 = max(dot(offset - lamp.toward * mu, lamp.lit_from), 0.0);
-    return lamp.disc * (mu0 / max(mu0 + mu, 1e-4) * place.y);
+    return lamp.disc * exp(-air) * (mu0 / max(mu0 + mu, 1e-4) * place.y);
 }

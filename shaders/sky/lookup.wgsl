@@ -18,7 +18,8 @@ struct SkyLamp {
     // Of its angular radius.
     inverse_radius: f32,
     lit_from: vec3f,
-    unused: f32,
+    // First sine of elevation of which `depth` tells, and one over the stretch.
+    depth_from: f32,
     // Unit level direction under the lamp.
     level: vec2f,
     // Where the tables of this lamp lie: first layer.
@@ -26,7 +27,9 @@ struct SkyLamp {
     unused_b: u32,
     // Radiance of the disc where the law of its face is 1.
     disc: vec3f,
-    unused_c: f32,
+    depth_scale: f32,
+    // Logarithm of the air's optical depth before the disc, a polynomial of the third degree, by wavelength.
+    depth: array<vec4f, 4>,
 }
 
 struct SkyView {

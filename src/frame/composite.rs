@@ -62,6 +62,8 @@ impl Variant {
         for (name, given) in ["HAS_DEPTH", "HAS_MASK", "HAS_CLASSES", "HAS_NORMALS"].into_iter().zip(self.images) {
             all.push((name, yes(given)));
         }
+        all.push(("FAR_ABOVE", yes(self.pixels != Pixels::Below)));
+        all.push(("FAR_BELOW", yes(self.pixels != Pixels::Above)));
         all.extend(self.constants.between.all());
         all.extend(self.constants.composed.all());
         all

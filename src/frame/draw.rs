@@ -164,9 +164,9 @@ impl View {
         let groups = [group, tables, self.surroundings.bind_group()];
         // A GPU branches over what is not drawn; a pipeline of its own would cost it a hitch.
         let least = Variant { constants: composition.least, ..*whole };
-        let draws = if self.device.caps().software { kinds::draws(&least) } else { [Some(*whole), None] };
+        let draws = if self.device.caps().software { kinds::draws(&least) } else { [Some(*whole), None, None] };
         match (draws, &self.kinds) {
-            ([Some(all), None], _) if all.pixels == Pixels::All => {
+            ([Some(all), None, None], _) if all.pixels == Pixels::All => {
                 let pipeline = composite.pipeline(&self.device, all)?;
                 pass::draw(to.encoder, "composite", pipeline, &groups, target);
                 to.passes += 1;

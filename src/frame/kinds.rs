@@ -1,7 +1,7 @@
 //! KindAttachment of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
 //!
-//! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, and a thing for the sky
-//! behind it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
+//! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, a thing for the sky behind it, and the sky
+//! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
 //! before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
 
 use super::composite::Variant;
@@ -15,8 +15,10 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(super) enum Pixels {
     /// All of them.
     All,
-    /// Those at the far depth: sky.
-    Far,
+    /// Those at the far depth, above the level of the eye: sky.
+    Above,
+    /// The same below it: the planet's own ground, and from high up the sky over it.
+    Below,
     /// Those on which the host drew.
     Drawn,
 }
@@ -26,7 +28,8 @@ impl Pixels {
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All => return None,
-            Self::Far => 0.0,
+            Self::Above => 0.0,
+            Self::Below => 0.5,
             Self::Drawn => 1.0,
         };
         Some((depth, state(wgpu::CompareFunction::Equal, false)))
@@ -48,30 +51,31 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
     }
 }
 
+/// Most draws of a picture.
+pub(super) const DRAWS: usize = 3;
+
 /// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
-/// where there is no more than one kind.
-pub(super) fn draws(all: &Variant) -> [Option<Variant>; 2] {
+/// where samples have depths of their own, or rays are marched.
+pub(super) fn draws(all: &Variant) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
     let veils_all = stages.has(Stages::MEDIUM) && traits.veils_all;
     let veils_drawn = veils_all || stages.has(Stages::MEDIUM) && traits.veils_drawn;
     let everywhere = stages.has(Stages::PARTICLES.with(Stages::TONE));
     let behind = stages.has(Stages::BACKGROUND);
-    let whole = [Some(*all), None];
-    if all.samples > 1 || traits.is_marched || !has_depth {
-        return whole;
+    if all.samples > 1 || traits.is_marched {
+        return [Some(*all), None, None];
     }
-    let far = Variant {
+    let far = |pixels| Variant {
         stages: stages.without(Stages::SURFACE),
         images: [false, all.images[1], false, false],
-        pixels: Pixels::Far,
+        pixels,
         ..*all
     };
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
-    [
-        (behind || veils_all || everywhere).then_some(far),
-        (veils_drawn || everywhere || stages.has(Stages::SURFACE)).then_some(drawn),
-    ]
+    let is_far = behind || veils_all || everywhere;
+    let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
+    [is_far.then(|| far(Pixels::Above)), is_far.then(|| far(Pixels::Below)), is_drawn.then_some(drawn)]
 }
 
 /// The depth attachment of a view: the kinds of its picture's pixels.
@@ -158,16 +162,16 @@ mod tests {
     #[test]
     fn a_draw_is_for_the_pixels_that_its_stages_change() {
         let (behind, between, surfaces) = (Stages::BACKGROUND, Stages::MEDIUM, Stages::SURFACE);
-        use Pixels::{All, Drawn, Far};
+        use Pixels::{Above, All, Below, Drawn};
         for (stages, has_depth, veils_all, expected) in [
-            (behind.with(between), true, false, &[Far, Drawn][..]),
-            (behind, true, true, &[Far]),
-            (behind, false, false, &[All]),
+            (behind.with(between), true, false, &[Above, Below, Drawn][..]),
+            (behind, true, true, &[Above, Below]),
+            (behind, false, false, &[Above, Below]),
             (between, true, false, &[Drawn]),
-            (between, true, true, &[Far, Drawn]),
-            (between, false, true, &[All]),
+            (between, true, true, &[Above, Below, Drawn]),
+            (between, false, true, &[Above, Below]),
             (surfaces, true, true, &[Drawn]),
-            (Stages::TONE, true, false, &[Far, Drawn]),
+            (Stages::TONE, true, false, &[Above, Below, Drawn]),
         ] {
             let all = variant(stages, has_depth, veils_all);
             assert_eq!(drawn(&all), expected, "{stages:?}, depth {has_depth}, before all {veils_all}");
@@ -178,7 +182,9 @@ mod tests {
     #[test]
     fn depths_of_kinds_are_those_that_the_shader_writes() {
         let shader = crate::gpu::shader::assemble("frame/kinds.wgsl").unwrap();
-        for (name, pixels) in [("KIND_FAR", Pixels::Far), ("KIND_DRAWN", Pixels::Drawn)] {
+        for (name, pixels) in
+            [("KIND_ABOVE", Pixels::Above), ("KIND_BELOW", Pixels::Below), ("KIND_DRAWN", Pixels::Drawn)]
+        {
             let depth = pixels.test().unwrap().0;
             assert!(shader.contains(&format!("const {name}: f32 = {depth:?};")), "{name} {depth}");
         }

@@ -53,6 +53,7 @@
 
 mod cache;
 pub mod candidates;
+mod disc;
 mod followed;
 mod kit;
 mod level;

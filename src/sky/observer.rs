@@ -89,12 +89,13 @@ impl Lamp {
             limb: f(limb),
             inverse_radius: (1.0 / self.angular_radius.max(1e-6)) as f32,
             lit_from: f(lit_from),
-            unused: 0.0,
+            depth_from: 0.0,
             level: level.map(|x| x as f32),
             layer,
             unused_b: 0,
             disc: std::array::from_fn(|k| (self.irradiance[k] * scale[k]) as f32),
-            unused_c: 0.0,
+            depth_scale: 0.0,
+            depth: [[0.0; 4]; 4],
         }
     }
 }

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Planet;
+use super::reference::medium::Medium;
 use super::settings::SkySettings;
 use crate::planet::spectral::Part;
 
@@ -72,6 +73,20 @@ impl AirUniform {
             layers: 1.0,
             part_c: [0.0, 0.0, 1.0],
             unused: 0.0,
+        }
+    }
+
+    /// As the reference integrates it.
+    pub fn medium(&self) -> Medium {
+        let f = |v: [f32; 3]| v.map(f64::from);
+        Medium {
+            bottom_m: self.bottom_m.into(),
+            top_m: self.thickness_m.into(),
+            extinction: [self.rayleigh_scattering, self.mie_extinction, self.ozone_extinction].map(f),
+            scattering: [self.rayleigh_scattering, self.mie_scattering].map(f),
+            scale_height_m: [self.rayleigh_scale_height_m, self.mie_scale_height_m].map(f64::from),
+            ozone_m: (self.ozone_center_m.into(), self.ozone_half_width_m.into()),
+            asymmetry_g: self.asymmetry_g.into(),
         }
     }
 
@@ -211,12 +226,13 @@ pub(crate) struct LampUniform {
     pub limb: [f32; 3],
     pub inverse_radius: f32,
     pub lit_from: [f32; 3],
-    pub unused: f32,
+    pub depth_from: f32,
     pub level: [f32; 2],
     pub layer: u32,
     pub unused_b: u32,
     pub disc: [f32; 3],
-    pub unused_c: f32,
+    pub depth_scale: f32,
+    pub depth: [[f32; 4]; 4],
 }
 
 /// `SkyView` of `sky/lookup.wgsl`.
@@ -249,7 +265,7 @@ mod tests {
             (&lookup, "SkyAir", size_of::<AirUniform>(), 20),
             (&lookup, "SkyDims", size_of::<DimsUniform>(), 20),
             (&lookup, "SkyEdges", size_of::<EdgesUniform>(), 4),
-            (&lookup, "SkyLamp", size_of::<LampUniform>(), 13),
+            (&lookup, "SkyLamp", size_of::<LampUniform>(), 14),
             (&lookup, "SkyView", size_of::<ViewUniform>(), 8),
             (&build, "SkyJob", size_of::<JobUniform>(), 4),
             (&observer, "SkyObserver", size_of::<ObserverUniform>(), 5),
@@ -268,6 +284,8 @@ mod tests {
         assert_eq!(at("SkyLamp", "lit_from"), offset_of!(LampUniform, lit_from));
         assert_eq!(at("SkyLamp", "level"), offset_of!(LampUniform, level));
         assert_eq!(at("SkyLamp", "disc"), offset_of!(LampUniform, disc));
+        assert_eq!(at("SkyLamp", "depth_from"), offset_of!(LampUniform, depth_from));
+        assert_eq!(at("SkyLamp", "depth"), offset_of!(LampUniform, depth));
         assert_eq!(at("SkyView", "edges"), offset_of!(ViewUniform, edges));
         assert_eq!(at("SkyView", "march_panels"), offset_of!(ViewUniform, march_panels));
         assert_eq!(at("SkyView", "lamps"), offset_of!(ViewUniform, lamps));

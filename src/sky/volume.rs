@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bytemuck::{Zeroable as _, bytes_of};
 
+use super::disc::DiscDepth;
 use super::kit::Kit;
 use super::observer::Observer;
 use super::passes::{TABLE_FORMAT, bind, layout, table_texture, tex, uniform_buffer};
@@ -161,6 +162,7 @@ pub struct SkyVolume {
     fade: Option<Box<Fade>>,
     written: ViewUniform,
     discs: u32,
+    disc_depths: [Option<DiscDepth>; LAMPS],
 }
 
 impl SkyVolume {
@@ -193,6 +195,7 @@ impl SkyVolume {
             fade: None,
             written,
             discs: 0,
+            disc_depths: [None; LAMPS],
         })
     }
 
@@ -268,6 +271,13 @@ impl SkyVolume {
         };
         for (i, lamp) in discs().enumerate() {
             view.lamps[i] = lamp.uniform(&planet, LAYERS * i as u32);
+            let (sine, radius) = (lamp.toward[2], lamp.angular_radius);
+            let kept = self.disc_depths[i].filter(|d| !observer.exact && d.serves(&air, altitude_m, sine, radius));
+            let depth = match kept {
+                Some(depth) => depth,
+                None => *self.disc_depths[i].insert(DiscDepth::new(&air, altitude_m, sine, radius)),
+            };
+            depth.write(&mut view.lamps[i]);
         }
         self.discs = discs().count() as u32;
         if view != self.written {
