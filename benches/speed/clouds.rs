@@ -43,8 +43,8 @@ const SAME: f64 = 0.01;
 /// Finenesses that are tried; the last is the most that there is.
 const TRIED: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
-/// The least fineness of those tried whose picture of broken cumulus, marched in every pixel, is that of twice the steps; the most that
-/// there is where none is.
+/// The brute force: of the finenesses tried the least whose picture of broken cumulus, marched in every pixel, stays the same with twice as many
+/// steps; the greatest where no picture does.
 fn brute_force() -> Fallible<f64> {
     let device = Device::headless(&DeviceOptions::default())?;
     let context = under(&device, &Arc::new(Shared::new(&device)?), &cumulus(), CloudModel::Volume)?;

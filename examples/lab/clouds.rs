@@ -25,7 +25,7 @@ pub fn print_thresholds() -> Result<()> {
     Ok(())
 }
 
-/// Rays of a sky, and photons along each: of the quick run, and of the whole one.
+/// How many rays of a sky are compared, and how many photons follow each: of a quick run, and of a whole one.
 const RAYS: [usize; 2] = [20, 100];
 const PHOTONS: [u32; 2] = [500, 4000];
 

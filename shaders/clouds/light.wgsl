@@ -125,7 +125,7 @@ fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye:
     let by_top = above / cosine;
     let by_side = select(1e9, at.near / max(sine, 1e-6), sine > 1e-6);
     let top_share = 1.0 / (1.0 + exp(min(PART_RATE * turning * (by_top - by_side), 80.0)));
-    // Longer than the box's: what has been scattered often falls off slowly.
+    // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along it.
     let aside = min((1.0 + turning * min(by_top, by_side)) / (1.0 + turning * at.to_sun), 1.0);
     let share = aside * aside * max(top_share, 1.0 - top_share);
     let top = cloud_through(cloud_table(0.0, medium_index, above, below, leak), down, a, c, spread);

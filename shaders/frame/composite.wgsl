@@ -48,7 +48,7 @@ fn behind_above(d: vec3f, hung: Hung) -> vec3f {
     return open_sky(d, color_of(sky_radiance_above(d)) + disc, hung);
 }
 
-// The same below: the planet's own ground with the air before it, and from high up the sky over it.
+// The same below the level of the eye: the planet's own ground with the air before it; from high up also sky, down to the horizon.
 fn behind_below(path: SkyPath, d: vec3f, hung: Hung) -> vec3f {
     if deck_hides_all() {
         return ground_under_deck(path) + night_light(hung);

@@ -86,7 +86,7 @@ fn face_cosine(share: f32) -> f32 {
     return sqrt(max(1.0 - share * share, 1e-4));
 }
 
-// Dark towards the limb: mu^a. `air`: optical depth before it.
+// Darker towards the limb: mu^a. `air`: optical depth between eye and disc.
 fn sun_disc(lamp: SkyLamp, real: vec3f, pixel_angle: f32, air: vec3f) -> Radiance {
     let place = disc_place(lamp, real, pixel_angle);
     return lamp.disc * exp2(log2(face_cosine(place.x)) * lamp.limb - air * 1.44269504) * place.y;

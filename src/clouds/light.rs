@@ -5,9 +5,9 @@
 //! concerned it stands in a box of these depths. Light that is scattered once keeps the true phase function. Light scattered more often
 //! comes from the tables of [`super::transport`]: one for the beam that falls on the box's top, one for what falls on the side
 //! that faces the sun, one each for sky and ground. Side to side, light goes as the cosine whose leak the tables were made with. Top and
-//! side share the beam: of a place the sun's rays reach through that of the two which they pass through first, so they part as
-//! 1 / (1 + exp(+-(1 - g') d)) of the difference d between the ways to both. A real cloud is no box: where its way to the sun, s, is longer than the
-//! box's, m, the light goes as the square of (1 + (1 - g') m) / (1 + (1 - g') s). What beam and first scatterings keep
+//! side share the beam. The rays of the sun come to a place through the nearer of the two, so with d the way to the top less the way to the side the
+//! top has the share 1 / (1 + exp((1 - g') d)), the side the rest. A real cloud is no box: where its way to the sun, s, is longer than the
+//! box's, m, the light falls as the square of (1 + (1 - g') m) / (1 + (1 - g') s). What beam and first scatterings keep
 //! of their level momentum, exp(-(1 - g') s) - exp(-s), is added to the first moment (van de Hulst 1980). Between sky and
 //! ground of the same light a cloud that absorbs nothing is as bright as they are: what sky and ground light less than that, the sides let in.
 //!
@@ -137,7 +137,7 @@ impl Sources {
         let by_top = above / cosine;
         let by_side = if sine > 1e-6 { at.near / sine } else { f64::INFINITY };
         let top_share = 1.0 / (1.0 + (PART_RATE * turning * (by_top - by_side)).min(80.0).exp());
-        // Longer than the box's: what has been scattered often falls off slowly.
+        // A way to the sun that is longer than the box's: light that has been scattered often falls off slowly along it.
         let aside = ((1.0 + turning * by_top.min(by_side)) / (1.0 + turning * at.to_sun)).min(1.0).powi(2);
         let share = aside * top_share.max(1.0 - top_share);
         let top = through(table_at(&self.top, above, below, leak), down, [sides_a, sides_c]);

@@ -111,7 +111,7 @@ impl Around {
             || (self.exposure / before.exposure).ln().abs() > exposed
     }
 
-    /// The share of the map that has grown old since what it was made of before.
+    /// The share of the map's rows that a change from `before` makes old.
     fn aged_since(&self, before: &Self) -> f64 {
         let (way_m, times, exposed) = AGES;
         let (here, there) = (&self.standing, &before.standing);

@@ -37,7 +37,7 @@ impl Rows {
         }
         self.made = if turn.rests { self.made } else { 0 };
         self.owed = (self.owed + f64::from(all) * turn.aged).min(f64::from(all));
-        // At rest the map comes up to date in every second frame, however little has changed.
+        // While nothing changes, every second frame makes some rows, until all are up to date.
         let early = if turn.rests { first_again } else { self.owed < f64::from(most) };
         if turn.holds && (turn.waits || early && !turn.is_coarse) {
             return None;

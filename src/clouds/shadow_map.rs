@@ -315,7 +315,7 @@ impl Standing {
             || self.camera_m.distance(before.camera_m) > 0.1 * TEXEL_M * f64::from(TEXELS)
     }
 
-    /// The share of a map that has grown old since what stood before.
+    /// The share of a map's rows that a change from `before` makes old.
     pub fn aged_since(&self, before: &Self) -> f64 {
         let (time_s, turn, threshold, way_m) = AGES;
         let shares = [

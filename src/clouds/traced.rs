@@ -7,8 +7,8 @@
 //! light. Nothing is absorbed. The layer is level and has no end.
 //!
 //! # Error
-//! That of chance, which each answer tells. Where a photon has been turned by the wide lobe of droplets, the narrow one is asked for the sun as
-//! if it were wider, or rare photons would outshine all others: of what even slabs reflect that changes nothing that the test sees.
+//! Noise, whose standard error each answer tells. After a photon has been turned widely, the narrow lobe towards the sun is taken for wider than it
+//! is: rare photons would else outshine all others. What even slabs reflect stays the same within the test's noise.
 
 use std::sync::Arc;
 
@@ -102,8 +102,8 @@ impl LitLayer {
         Field { shape: self.shape, map: &self.map, solid: &self.solid, placed: Default::default() }
     }
 
-    /// What the model sees from a place (east, north, up), m, in a direction: the march of questions, through this field. In steps that are
-    /// so many times as long as its own by depth and by angle.
+    /// What the model sees from a place (east, north, up), m, in a direction: the march of questions, through this field. `longer`: lengths of its
+    /// steps over the usual ones, of those by depth and of those by angle.
     pub fn model(&self, from: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
         // A unit of each source in a channel of its own.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };

@@ -1,8 +1,8 @@
-//! KindAttachment of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
+//! Kinds of pixels that a software driver draws one after the other, each with no more of the composition than it needs.
 //!
 //! Such a driver takes both ways of every branch: a pixel of the sky pays for the air before things, a thing for the sky behind it, and the sky
-//! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their own kind only,
-//! before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
+//! for the planet's ground below it. A first draw writes each pixel's kind as a depth, and the composition's draws pass the depth test on their
+//! own kind only, before their shader runs. All of them are in one pass. A GPU branches, and keeps one draw with one pipeline.
 
 use super::composite::Variant;
 use crate::{gpu::flat_texture, stage::Stages};
@@ -52,7 +52,7 @@ fn state(compare: wgpu::CompareFunction, write: bool) -> wgpu::DepthStencilState
 }
 
 /// Most draws of a picture.
-pub(super) const DRAWS: usize = 3;
+const DRAWS: usize = 3;
 
 /// The draws that together draw `all` where kinds of pixels are told apart; those that would change nothing are left out. A single one
 /// where samples have depths of their own, or rays are marched.
