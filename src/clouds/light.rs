@@ -15,6 +15,8 @@
 //! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident flux of a path tracer's:
 //! `cargo test --lib clouds::light`.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::transport::{Scattering, Table, Transport, leak_rate, table_at};
@@ -53,7 +55,7 @@ pub struct Sources {
     /// Under the beam on the side.
     pub side: Table,
     /// Under a sky of radiance 1.
-    pub sky: Table,
+    pub sky: Arc<Table>,
 }
 
 /// What a place scatters, 1/sr and of 1.

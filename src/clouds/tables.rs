@@ -91,13 +91,13 @@ impl LightTables {
         }
         let (across, rows) = (DEPTHS as u32, (LEAKS * DEPTHS) as u32);
         for (i, medium) in self.media.iter().enumerate() {
-            let put = |column: u32, table: Table| {
-                write_halves(device, &self.texture, (column * across, i as u32 * rows), across, &table);
+            let put = |column: u32, table: &Table| {
+                write_halves(device, &self.texture, (column * across, i as u32 * rows), across, table);
             };
-            put(0, medium.under_beam(cosine.abs()));
-            put(1, medium.under_beam((1.0 - cosine * cosine).sqrt()));
+            put(0, &medium.under_beam(cosine.abs()));
+            put(1, &medium.under_beam((1.0 - cosine * cosine).sqrt()));
             if self.under.is_none() {
-                put(2, medium.under_sky());
+                put(2, &medium.under_sky());
             }
         }
         self.under = Some(cosine);

@@ -17,7 +17,10 @@
 //! # Error
 //! `cargo test --lib clouds::transport` prints reflectance and transmittance of slabs against discrete ordinates.
 
-use std::f64::consts::PI;
+use std::{
+    f64::consts::PI,
+    sync::{Arc, OnceLock},
+};
 
 use glam::{DMat4, DVec4};
 
@@ -291,6 +294,8 @@ pub struct Transport {
     ladders: Vec<Ladder>,
     /// See [`Transport::conserving`].
     conserved: f64,
+    /// See [`Transport::under_sky`].
+    sky: OnceLock<Arc<Table>>,
 }
 
 impl Transport {
@@ -298,7 +303,7 @@ impl Transport {
     pub fn new(scattering: Scattering) -> Self {
         let turned = Turned::new(&scattering);
         let ladders = (0..LEAKS).map(|k| Ladder::new(&scattering, &turned, leak_of(k))).collect();
-        let mut made = Self { scattering, ladders, conserved: 1.0 };
+        let mut made = Self { scattering, ladders, conserved: 1.0, sky: OnceLock::new() };
         made.conserved = made.conserving();
         made
     }
@@ -308,7 +313,7 @@ impl Transport {
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
         let ladders = vec![Ladder::new(&of, &Turned::new(&of), 0.0)];
-        let whole = Self { scattering: of, ladders, conserved: 1.0 };
+        let whole = Self { scattering: of, ladders, conserved: 1.0, sky: OnceLock::new() };
         let (depth, cosine) = (6.0, 0.6);
         let table = whole.under_beam(cosine);
         let (mut once, mut often) = (0.0, 0.0);
@@ -363,17 +368,15 @@ impl Transport {
         out
     }
 
-    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it.
-    pub fn under_sky(&self) -> Table {
-        let mut out = Vec::with_capacity(LEAKS * DEPTHS * DEPTHS);
-        for ladder in &self.ladders {
-            for i in 0..DEPTHS * DEPTHS {
-                let (above, below) = (i % DEPTHS, i / DEPTHS);
-                let down = ladder.between[i] * (ladder.slabs[above].passes * DVec4::ONE);
-                out.push(self.source(down, ladder.slabs[below].reflects * down));
-            }
-        }
-        out
+    /// Under a sky of radiance 1 all over the upper side. All that it sends is in it. Kept: it is the same under any sun.
+    pub fn under_sky(&self) -> Arc<Table> {
+        let one = |ladder: &Ladder, i: usize| {
+            let (above, below) = (i % DEPTHS, i / DEPTHS);
+            let down = ladder.between[i] * (ladder.slabs[above].passes * DVec4::ONE);
+            self.source(down, ladder.slabs[below].reflects * down)
+        };
+        let all = || self.ladders.iter().flat_map(|ladder| (0..DEPTHS * DEPTHS).map(move |i| one(ladder, i))).collect();
+        self.sky.get_or_init(|| Arc::new(all())).clone()
     }
 }
 
