@@ -2,7 +2,8 @@
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 
-@group(0) @binding(2) var cloud_map: texture_2d<f32>;
+// Two sheets, each of an even and of a cellular kind.
+@group(0) @binding(2) var cloud_map: texture_2d_array<f32>;
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
 
 const MAP_CELLS: f32 = 16.0;
@@ -57,11 +58,11 @@ fn cloud_dome_over(layer: CloudLayer, excess: f32) -> f32 {
 fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     let cell = level * layer.size.z / MAP_CELLS;
     let turned = vec2f(SECOND_TURN.x * cell.x - SECOND_TURN.y * cell.y, SECOND_TURN.y * cell.x + SECOND_TURN.x * cell.y);
-    let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0.0);
-    let second = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.zw + turned / SECOND_PERIOD, 0.0);
+    let first = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.xy + cell, 0, 0.0);
+    let second = textureSampleLevel(cloud_map, cloud_sampler, layer.sheets.zw + turned / SECOND_PERIOD, 1, 0.0);
     let c = layer.solid.w;
     let scale = inverseSqrt(2.0 * (c * c + (1.0 - c) * (1.0 - c)));
-    return ((first.x + second.y) * (1.0 - c) + (first.z + second.w) * c) * scale;
+    return ((first.x + second.x) * (1.0 - c) + (first.y + second.y) * c) * scale;
 }
 
 // Excess that a place of this excess needs at a height: a flat base with round edges, and a dome or an anvil.

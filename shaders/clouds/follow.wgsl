@@ -21,7 +21,7 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
     let cover = 1.0 - own.a;
     let reach = textureLoad(marched_reach, square, 0).rg / max(cover, 1e-4);
     let distance = select(1e6, exp2(0.5 * (reach.x + reach.y)), cover > 1e-4);
-    let middle = min(square * picture.side + picture.side / 2u, picture.size - 1u);
+    let middle = min(square * picture.side + (picture.side >> 1u), picture.size - 1u);
     let ndc = pixel_ndc(picture, middle, frame.y_sign);
     let ray = view_ray(frame.depth, ndc);
     let was = picture.before * vec4f(ray.origin + ray.direction * distance - picture.moved, 1.0);

@@ -1,8 +1,8 @@
 // What a place in a cloud scatters towards an eye. Twin of src/clouds/light.rs, where the model is described.
 //!include "clouds/block.wgsl"
 
-// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other.
-@group(0) @binding(4) var cloud_tables: texture_2d<f32>;
+// Tables side by side: under the beam on the top, under that on the side, under the sky; a medium below the other; leaks one behind the other.
+@group(0) @binding(4) var cloud_tables: texture_3d<f32>;
 @group(0) @binding(6) var cloud_table_sampler: sampler;
 
 const CLOUD_DEPTHS: f32 = 28.0;
@@ -49,14 +49,10 @@ fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
 
 // A table's source terms.
 fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> vec4f {
-    let size = vec2f(3.0 * CLOUD_DEPTHS, 2.0 * CLOUD_LEAKS * CLOUD_DEPTHS);
-    let place = cloud_leak_place(leak);
-    let first = min(floor(place), CLOUD_LEAKS - 2.0);
-    let x = table * CLOUD_DEPTHS + 0.5 + cloud_depth_place(above);
-    let y = (medium * CLOUD_LEAKS + first) * CLOUD_DEPTHS + 0.5 + cloud_depth_place(below);
-    let a = textureSampleLevel(cloud_tables, cloud_table_sampler, vec2f(x, y) / size, 0.0);
-    let b = textureSampleLevel(cloud_tables, cloud_table_sampler, vec2f(x, y + CLOUD_DEPTHS) / size, 0.0);
-    return mix(a, b, place - first);
+    let first = vec3f(table * CLOUD_DEPTHS, medium * CLOUD_DEPTHS, 0.0);
+    let at = first + vec3f(cloud_depth_place(above), cloud_depth_place(below), cloud_leak_place(leak)) + 0.5;
+    let size = vec3f(3.0 * CLOUD_DEPTHS, 2.0 * CLOUD_DEPTHS, CLOUD_LEAKS);
+    return textureSampleLevel(cloud_tables, cloud_table_sampler, at / size, 0.0);
 }
 
 fn cloud_legendre(terms: vec4f, x: f32) -> f32 {

@@ -57,36 +57,22 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     // The last place without cloud since the last with some, and how much is wanting there, or 0.
     var before = vec2f(first, 0.0);
     while out.transmittance > CLOUD_LEAST {
-        // To the next step with cloud in it: light is looked up for those alone, all rays of a wave together.
+        // To the next step with cloud in it: faces and light are looked up for those alone, all rays of a wave together.
+        var begun = gone;
         var step = 0.0;
         var t = 0.0;
         var at: CloudPlace;
         var here: CloudHere;
         here.extinction = 0.0;
         while here.extinction <= 0.0 && tried < most && gone < last {
+            begun = gone;
             step = min(max(fine, CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone), last - gone);
             t = gone + jitter * step;
             at = cloud_place(layer, direction, t);
             here = cloud_here(layer, at);
             here.extinction *= cloud_fades(t - first);
             tried++;
-            if here.extinction > 0.0 {
-                // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
-                let face = before.x + (t - before.x) * before.y / max(before.y + cloud_inside(here), 1e-6);
-                if before.y > 0.0 && face > 0.0 {
-                    let at_face = cloud_place(layer, direction, face + jitter * step);
-                    var behind = cloud_here(layer, at_face);
-                    behind.extinction *= cloud_fades(t - first);
-                    if behind.extinction > 0.0 {
-                        here = behind;
-                        at = at_face;
-                        t = face + jitter * step;
-                        gone = face;
-                    }
-                }
-                before.y = 0.0;
-                gone += step;
-            } else {
+            if here.extinction <= 0.0 {
                 before = vec2f(t, -cloud_inside(here));
                 gone += max(step, cloud_skip(layer, here, at.height, direction));
             }
@@ -94,6 +80,21 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         if here.extinction <= 0.0 {
             break;
         }
+        // A ray that comes into a cloud begins its steps at the face, wherever they lie: else faces show where steps begin.
+        let face = before.x + (t - before.x) * before.y / max(before.y + cloud_inside(here), 1e-6);
+        if before.y > 0.0 && face > 0.0 {
+            let at_face = cloud_place(layer, direction, face + jitter * step);
+            var behind = cloud_here(layer, at_face);
+            behind.extinction *= cloud_fades(t - first);
+            if behind.extinction > 0.0 {
+                here = behind;
+                at = at_face;
+                t = face + jitter * step;
+                begun = face;
+            }
+        }
+        before.y = 0.0;
+        gone = begun + step;
         let depths = cloud_depths(layer, at, here.excess);
         let s = cloud_scattered(layer.medium.x, depths, -direction, -log(out.transmittance));
         let light = layer.sun.rgb * (s.sun + s.once * halo) + layer.above.rgb * s.sky + layer.below.rgb * s.ground;
@@ -122,11 +123,9 @@ fn clouds_along(direction: vec3f, range: f32, jitter: f32) -> CloudSeen {
     let ground = cloud_crossings(direction, 0.0);
     let end = select(range, min(range, ground.x), direction.z < 0.0 && ground.y > ground.x && ground.x > 0.0);
     // On the way down layers come from above, on the way up from below.
-    for (var turn = 0u; turn < 2u; turn++) {
+    let turns = select(2u, 1u, lowest > end);
+    for (var turn = select(0u, 1u, lowest <= 0.0); turn < turns; turn++) {
         let falls = turn == 0u;
-        if (falls && lowest <= 0.0) || (!falls && lowest > end) {
-            continue;
-        }
         for (var k = 0u; k < clouds.layer_count; k++) {
             let layer = clouds.layers[select(k, clouds.layer_count - 1u - k, falls)];
             let base = cloud_crossings(direction, layer.size.x);

@@ -15,10 +15,19 @@ struct CloudsPicture {
     exposed: f32,
 }
 
+// Of 1, 2 and 4 the power of 2: software drivers divide whole numbers one by one.
+fn side_power(picture: CloudsPicture) -> u32 {
+    return picture.side >> 1u;
+}
+
+// Which pixel of its square a frame marches, across and down.
+fn marched_within(picture: CloudsPicture) -> vec2u {
+    return vec2u(picture.place & (picture.side - 1u), picture.place >> side_power(picture));
+}
+
 // The pixel that a square shows.
 fn marched_pixel(picture: CloudsPicture, square: vec2u) -> vec2u {
-    let within = vec2u(picture.place % picture.side, picture.place / picture.side);
-    return min(square * picture.side + within, picture.size - 1u);
+    return min(square * picture.side + marched_within(picture), picture.size - 1u);
 }
 
 fn pixel_ndc(picture: CloudsPicture, pixel: vec2u, y_sign: f32) -> vec2f {
@@ -28,6 +37,5 @@ fn pixel_ndc(picture: CloudsPicture, pixel: vec2u, y_sign: f32) -> vec2f {
 
 // Where a pixel stands among the marched ones, in texels.
 fn among_marched(picture: CloudsPicture, pixel: vec2u) -> vec2f {
-    let within = vec2f(f32(picture.place % picture.side), f32(picture.place / picture.side));
-    return (vec2f(pixel) - within) / f32(picture.side) + 0.5;
+    return (vec2f(pixel) - vec2f(marched_within(picture))) / f32(picture.side) + 0.5;
 }

@@ -55,7 +55,7 @@ fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     if !HISTORY {
         return ResolvedPixel(now, reach);
     }
-    let square = min(pixel / picture.side, textureDimensions(marched) - 1u);
+    let square = min(pixel >> vec2u(side_power(picture)), textureDimensions(marched) - 1u);
     let to = textureLoad(back, square, 0).rg;
     let was = in.position.xy + to;
     let size = vec2f(picture.size);

@@ -62,9 +62,9 @@ impl Pipelines {
         let march_layout = layout(&[
             (0, Slot::Uniform(size_of::<FrameUniform>())),
             (1, Slot::Uniform(size_of::<CloudsUniform>())),
-            (2, Slot::Filtered),
+            (2, Slot::FilteredArray),
             (3, Slot::FilteredVolume),
-            (4, Slot::Filtered),
+            (4, Slot::FilteredVolume),
             (5, Slot::Sampler),
             (6, Slot::Sampler),
             (7, Slot::Uniform(size_of::<PictureUniform>())),

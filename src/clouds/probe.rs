@@ -140,7 +140,7 @@ fn draw(device: &Device, cloud: &EvenCloud, of: &Scattering) -> Result<Vec<[f32;
     tables.update(device, cloud.cosine);
     let block = bind::block(gpu, "cloud probe", size_of::<CloudsUniform>());
     device.queue.write_buffer(&block, 0, bytemuck::bytes_of(&cloud.uniform(of)));
-    let slots = [(1, Slot::Uniform(size_of::<CloudsUniform>())), (4, Slot::Filtered), (6, Slot::Sampler)];
+    let slots = [(1, Slot::Uniform(size_of::<CloudsUniform>())), (4, Slot::FilteredVolume), (6, Slot::Sampler)];
     let layout = bind::layout(gpu, "cloud probe", wgpu::ShaderStages::FRAGMENT, &slots);
     let pipeline = pass::fullscreen(
         device,

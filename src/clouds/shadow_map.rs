@@ -236,7 +236,7 @@ impl ShadowMap {
     ) -> Result<Self> {
         let slots = [
             (1, Slot::Uniform(size_of::<super::uniforms::CloudsUniform>())),
-            (2, Slot::Filtered),
+            (2, Slot::FilteredArray),
             (3, Slot::FilteredVolume),
             (5, Slot::Sampler),
             (7, Slot::Uniform(size_of::<ShadowUniform>())),

@@ -13,39 +13,68 @@ use super::{
 };
 use crate::{
     error::Result,
-    gpu::{Device, flat_texture},
+    gpu::{Device, bind},
     light::{Phase, PhaseLobes},
     noise::NoiseTexture,
 };
 
-/// Format of the map and of the tables of light.
+/// Format of the tables of light and of hosts' maps, and of the sheets of the map.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Change of the sun's cosine after which the tables under its beam are made anew.
 pub(super) const SUN_MOVED: f64 = 2e-3;
 /// Asymmetry of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
 const ICE_ASYMMETRY: f64 = 0.77;
 
-fn texture(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::Texture {
-    flat_texture(
-        &device.device,
-        label,
-        (width, height),
-        FORMAT,
-        wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-    )
+fn texture(
+    device: &Device,
+    label: &str,
+    dimension: wgpu::TextureDimension,
+    [width, height, depth_or_array_layers]: [u32; 3],
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
+    device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
 }
 
-fn write_halves(device: &Device, texture: &wgpu::Texture, origin: (u32, u32), width: u32, texels: &[[f32; 4]]) {
-    let halves: Vec<u16> = texels.iter().flatten().map(|v| f16::from_f32(*v).to_bits()).collect();
+/// Writes numbers as halves into a box of a texture that begins at `x` and `y`.
+fn write_halves(
+    device: &Device,
+    texture: &wgpu::Texture,
+    (x, y): (u32, u32),
+    [width, height, depth_or_array_layers]: [u32; 3],
+    numbers: impl Iterator<Item = f32>,
+) {
+    let halves: Vec<u16> = numbers.map(|v| f16::from_f32(v).to_bits()).collect();
+    let texel = 2 * u32::from(texture.format().components());
     device.queue.write_texture(
-        wgpu::TexelCopyTextureInfo {
-            origin: wgpu::Origin3d { x: origin.0, y: origin.1, z: 0 },
-            ..texture.as_image_copy()
-        },
+        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() },
         bytemuck::cast_slice(&halves),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * width), rows_per_image: None },
-        wgpu::Extent3d { width, height: texels.len() as u32 / width, depth_or_array_layers: 1 },
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(height) },
+        wgpu::Extent3d { width, height, depth_or_array_layers },
     );
+}
+
+/// The map as shaders look it up: a layer a sheet, each with its even and its cellular kind, since one look-up needs no more.
+fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
+    let size = [MAP_SIZE as u32, MAP_SIZE as u32, 2];
+    let made = texture(device, "cloud map", wgpu::TextureDimension::D2, size, SHEET);
+    let sheet = |i: usize| map.0.iter().flat_map(move |texel| [texel[i], texel[i + 2]]);
+    write_halves(device, &made, (0, 0), size, sheet(0).chain(sheet(1)));
+    bind::as_layers(&made)
+}
+
+/// Of hosts' maps of layers, one below the other.
+fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
+    texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], FORMAT).create_view(&Default::default())
 }
 
 pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Sampler {
@@ -59,7 +88,8 @@ pub(super) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
     })
 }
 
-/// Tables of light scattered more than once in two media, as shaders look them up.
+/// Tables of light scattered more than once in two media, as shaders look them up: by depth above, depth below and leak, the tables side
+/// by side and the media one below the other.
 pub(super) struct LightTables {
     texture: wgpu::Texture,
     pub media: [Arc<Transport>; 2],
@@ -69,8 +99,9 @@ pub(super) struct LightTables {
 
 impl LightTables {
     pub fn new(device: &Device, media: [Arc<Transport>; 2]) -> Self {
-        let size = (3 * DEPTHS as u32, (2 * LEAKS * DEPTHS) as u32);
-        Self { texture: texture(device, "light in clouds", size), media, under: None }
+        let size = [3 * DEPTHS as u32, 2 * DEPTHS as u32, LEAKS as u32];
+        let texture = texture(device, "light in clouds", wgpu::TextureDimension::D3, size, FORMAT);
+        Self { texture, media, under: None }
     }
 
     pub fn view(&self) -> wgpu::TextureView {
@@ -89,10 +120,11 @@ impl LightTables {
         if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
             return;
         }
-        let (across, rows) = (DEPTHS as u32, (LEAKS * DEPTHS) as u32);
+        let across = DEPTHS as u32;
         for (i, medium) in self.media.iter().enumerate() {
             let put = |column: u32, table: &Table| {
-                write_halves(device, &self.texture, (column * across, i as u32 * rows), across, table);
+                let (at, size) = ((column * across, i as u32 * across), [across, across, LEAKS as u32]);
+                write_halves(device, &self.texture, at, size, table.iter().flatten().copied());
             };
             put(0, &medium.under_beam(cosine.abs()));
             put(1, &medium.under_beam((1.0 - cosine * cosine).sqrt()));
@@ -142,19 +174,16 @@ pub(super) fn media(liquid_um: f64) -> [Arc<Transport>; 2] {
 
 impl CloudTables {
     pub fn new(device: &Arc<Device>, seed: u64) -> Result<Self> {
-        let side = MAP_SIZE as u32;
-        let map = texture(device, "cloud map", (side, side));
-        write_halves(device, &map, (0, 0), side, &Map::new(seed).0);
         let liquid_um = 20.0;
         let media = media(liquid_um);
         Ok(Self {
-            map: map.create_view(&Default::default()),
+            map: sheets(device, &Map::new(seed)),
             solid: NoiseTexture::new(device, [SOLID_SIZE; 3], &[solid_settings(seed)])?,
             repeating: sampler(device, wgpu::AddressMode::Repeat),
             clamping: sampler(device, wgpu::AddressMode::ClampToEdge),
             liquid_um,
             light: LightTables::new(device, media),
-            placed: texture(device, "no maps of layers of cloud", (1, 1)).create_view(&Default::default()),
+            placed: placed(device, "no maps of layers of cloud", (1, 1)),
             in_placed: Vec::new(),
         })
     }
@@ -181,13 +210,13 @@ impl CloudTables {
         let before = self.placed.texture().size();
         let is_other = (before.width, before.height) != (size.0, size.1.max(1));
         if is_other {
-            let new = texture(device, "maps of layers of cloud", (size.0, size.1.max(1)));
-            self.placed = new.create_view(&Default::default());
+            self.placed = placed(device, "maps of layers of cloud", (size.0, size.1.max(1)));
         }
         let mut row = 0;
         for made in maps.clone() {
-            write_halves(device, self.placed.texture(), (0, row), made.map.cells[0], &made.texels);
-            row += made.map.cells[1];
+            let ([width, height], numbers) = (made.map.cells, made.texels.iter().flatten().copied());
+            write_halves(device, self.placed.texture(), (0, row), [width, height, 1], numbers);
+            row += height;
         }
         self.in_placed.clear();
         self.in_placed.extend(maps.cloned());
