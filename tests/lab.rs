@@ -34,6 +34,10 @@ mod genera;
 mod growth;
 #[path = "../examples/lab/page.rs"]
 mod page;
+#[path = "../examples/lab/painted.rs"]
+mod painted;
+#[path = "../examples/lab/painted_chart.rs"]
+mod painted_chart;
 #[path = "../examples/lab/picture.rs"]
 mod picture;
 #[path = "../examples/lab/plot.rs"]
@@ -309,6 +313,41 @@ fn the_committed_maps_of_drops_show_where_the_usual_steps_fail() {
         let (usual, failed): (Vec<_>, Vec<_>) =
             cells.rows.iter().filter(|r| !of_ours(r)).partition(|r| r[3] == "error");
         assert!(failed.len() > usual.len(), "{name}: {} of {}", failed.len(), failed.len() + usual.len());
+    }
+}
+
+/// The maps of clouds that are committed: every picture is finite, and the cover that is seen is what was asked for.
+#[test]
+fn the_committed_maps_of_clouds_have_no_place_that_is_not_finite() {
+    let file = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab").join(name);
+    for (name, worst_median) in
+        [("cloud-steps", 0.1), ("cloud-layers", 0.1), ("cloud-bases", 0.2), ("cloud-cover", 0.03)]
+    {
+        assert!(["svg", "png"].iter().all(|e| file(&format!("stability-{name}.{e}")).exists()));
+        let cells = Table::read(&file(&format!("stability-{name}.csv"))).unwrap().expect("committed");
+        let ours = cells.rows.iter().filter(|r| r[0].starts_with("Welkin") && r[3] != "nothing there");
+        let mut errors = Vec::new();
+        for row in ours {
+            assert_eq!(row[3], "error", "{name}: {row:?}");
+            errors.push(row[4].parse::<f64>().unwrap());
+        }
+        errors.sort_by(f64::total_cmp);
+        assert!(errors.len() > 50 && errors[errors.len() / 2] < worst_median, "{name}: {errors:?}");
+    }
+}
+
+/// The chart of painted clouds that is committed: none is near the default, whatever it costs.
+#[test]
+fn no_painted_cloud_of_the_committed_chart_is_near_the_default() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab/painted-clouds.csv");
+    let table = Table::read(&path).unwrap().expect("committed");
+    let error = |name: &str| table.number(table.row(name).expect(name), "p95").unwrap();
+    let noise = error("truth-again");
+    assert!(error("volume") < 0.1 * noise, "{} {noise}", error("volume"));
+    for (name, paint) in painted::candidates() {
+        if !matches!(paint, painted::Paint::Library(_) | painted::Paint::TruthAgain) {
+            assert!(error(name) > 2.0 * noise, "{name}: {}", error(name));
+        }
     }
 }
 

@@ -296,6 +296,20 @@ static bool rain_shaft(demo *d)
            weather_check(wk_context_set_rain_areas(d->weather.context, areas, 3, sizeof areas[0]));
 }
 
+/* A cell of cumulonimbus stands over the rain by itself, with its anvil. */
+static bool thunderstorm(demo *d)
+{
+    wk_weather w = weather_here(70e3, 0.5);
+    wk_cloud_layer heaps = layer(WK_CLOUD_CUMULUS, 0.08, 1500.0);
+    const wk_rain_area area = shower(27000, 500, 5500, 4500, 40);
+    w.wind_speed_m_s = 9.0;
+    w.wind_from_deg = 200.0;
+    /* A cloud in full sun is brighter than the ground that cameras are set by. */
+    return sun_at(d, SITE_VIEW_AZIMUTH_DEG - 70.0, 24) && set(d, &w, &heaps) &&
+           weather_check(wk_context_set_exposure(d->weather.context, WK_EXPOSURE_AUTO, -0.8)) &&
+           weather_check(wk_context_set_rain_areas(d->weather.context, &area, 1, sizeof area));
+}
+
 /* The sun stands behind the viewer, below 42 degrees. */
 static bool rainbow(demo *d)
 {
@@ -421,6 +435,7 @@ const shot SHOTS[] = {
     {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL, false},
     {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL, false},
     {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL, false},
+    {"thunderstorm", "Thunderstorm 27 km away: towers, anvil, rain 40 mm/h", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 13.0, 55.0, thunderstorm, WORLD, NULL, false},
     {"rainbow", "Rainbow", 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 12.0, 60.0, rainbow, WORLD, NULL, false},
     {"hail", "Hail, 40 mm/h", ROADSIDE(-3.0), hail, WORLD, NULL, false},
     {"quiet_snow", "Large flakes at dusk, 1.5 mm/h, hardly any wind", ROADSIDE(-1.0), quiet_snow, WORLD, NULL, false},

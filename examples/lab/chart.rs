@@ -11,10 +11,10 @@ use crate::front::pareto;
 use crate::plot::{Point, Titles, scatter, short};
 use crate::store::Table;
 use crate::timing::{Baseline, Ratio};
-use crate::{effect_charts, page, quadrature};
+use crate::{effect_charts, page, painted_chart, quadrature};
 
 /// What can be charted.
-pub const CHARTS: [&str; 7] = ["sky", "fog", "rain", "snow", "stars", "clouds", "quadrature"];
+pub const CHARTS: [&str; 8] = ["sky", "fog", "rain", "snow", "stars", "clouds", "painted-clouds", "quadrature"];
 /// Size of the frames that are timed.
 pub const FRAME: (u32, u32) = (320, 180);
 
@@ -60,6 +60,7 @@ pub fn shaders(what: &str) -> String {
         "rain" => &["common", "fog", "frame", "rain", "sky"],
         "snow" => &["common", "fog", "frame", "sky", "snow"],
         "stars" => &["common", "frame", "sky", "stars"],
+        "clouds" | "painted-clouds" => &["between", "clouds", "common", "frame", "sky"],
         _ => &["common", "fog", "frame", "ground", "rain", "sky"],
     };
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
@@ -110,6 +111,7 @@ pub fn run(what: &str, options: &Options) -> Result<()> {
         "snow" => effect_charts::snow(&lab, options)?,
         "stars" => effect_charts::stars(&lab, options)?,
         "clouds" => effect_charts::clouds(&lab, options)?,
+        "painted-clouds" => painted_chart::run(&lab, options)?,
         _ => quadrature::chart(&lab, options)?,
     }
     page::write(&options.out)

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use welkin::Result;
 use welkin::almanac::celestial::direction;
 use welkin::clouds::{CloudModel, CloudSettings, candidates::CloudMethod};
-use welkin::context::{Context, ContextDesc, GivenDirection};
+use welkin::context::{Context, ContextDesc, GivenDirection, LightAt};
 use welkin::frame::{Frame, FrameFlags, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::scene::Camera;
@@ -24,10 +24,14 @@ const TRUE_FINENESS: f64 = 8.0;
 /// Frames until each pixel has been marched.
 const SETTLED: u32 = 17;
 /// Luminance of the value 1, so that a day lies where half floats are fine, cd/m^2.
-const UNIT: f64 = 1e3;
+pub const UNIT: f64 = 1e3;
+/// From side to side of a picture's height, rad, and where cameras look.
+pub const FOV: f64 = 1.0;
+const AZIMUTH_DEG: f64 = 60.0;
 /// Of a camera that turns while it is timed, rad a frame.
 const TURN_RAD: f64 = 2e-3;
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Of the pictures.
+pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// A sky on the GPU.
 pub struct Host {
@@ -37,29 +41,112 @@ pub struct Host {
     color: wgpu::Texture,
     camera: Camera,
     frame_id: u64,
+    /// Its state at time 0.
+    start: Vec<u8>,
 }
 
 impl Host {
-    /// Of a scene, for pictures of a size.
+    /// Of a scene, for pictures of a size; without clouds where its cover is 0.
     ///
     /// # Errors
     /// GPU faults.
     pub fn new(device: &Arc<Device>, scene: &CloudScene, size: (u32, u32)) -> Result<Self> {
+        let layer = (scene.cover > 0.0).then(|| CloudLayer::of(scene.kind, scene.cover, scene.base_m));
+        let mut this = Self::under(device, layer, scene.sun_deg, size)?;
+        this.look(scene.height_m, scene.pitch_deg, FOV);
+        Ok(this)
+    }
+
+    /// Under a layer and the sun at a height, seen from the ground.
+    ///
+    /// # Errors
+    /// GPU faults; a layer out of its ranges.
+    pub fn under(device: &Arc<Device>, layer: Option<CloudLayer>, sun_deg: f64, size: (u32, u32)) -> Result<Self> {
         let mut context = Context::new(device.clone(), Arc::new(Shared::new(device)?), ContextDesc::default())?;
-        context.set_sun(Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: scene.sun_deg }))?;
-        let layer = CloudLayer::of(scene.kind, scene.cover, scene.base_m);
-        context.set_weather(&Weather { clouds: vec![layer], ..Weather::default() }, 0.0, 0.0)?;
+        context.set_sun(Some(GivenDirection { azimuth_deg: 150.0, elevation_deg: sun_deg }))?;
+        context.set_weather(&Weather { clouds: layer.into_iter().collect(), ..Weather::default() }, 0.0, 0.0)?;
         context.build_sky(&mut |_| true)?;
-        let eye = DVec3::Z * scene.height_m;
         let aspect = f64::from(size.0) / f64::from(size.1);
         Ok(Self {
             device: device.clone(),
             view: View::new(&context)?,
             color: target(device, size, FORMAT),
-            camera: Camera::look_to(eye, direction(60.0, scene.pitch_deg), DVec3::Z, 1.0, aspect, 0.1),
+            camera: Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, FOV, aspect, 0.1),
+            start: context.save()?,
             context,
             frame_id: 0,
         })
+    }
+
+    /// Looks from a height at another.
+    pub fn look(&mut self, height_m: f64, pitch_deg: f64, fov_rad: f64) {
+        self.look_from(DVec3::Z * height_m, pitch_deg, fov_rad);
+    }
+
+    /// The same from elsewhere.
+    pub fn look_from(&mut self, eye: DVec3, pitch_deg: f64, fov_rad: f64) {
+        let aspect = f64::from(self.color.width()) / f64::from(self.color.height());
+        self.camera = Camera::look_to(eye, direction(AZIMUTH_DEG, pitch_deg), DVec3::Z, fov_rad, aspect, 0.1);
+    }
+
+    /// Lays another layer over it at once.
+    ///
+    /// # Errors
+    /// A layer out of its ranges.
+    pub fn lay(&mut self, layer: CloudLayer) -> Result<()> {
+        let now = self.context.time_s();
+        self.context.set_weather(&Weather { clouds: vec![layer], ..Weather::default() }, now, 0.0)
+    }
+
+    /// A frame that goes on from the last one.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn next(&mut self) -> Result<Picture> {
+        self.frame(FrameFlags(0))?;
+        self.texels()
+    }
+
+    /// Goes to a moment, back too.
+    ///
+    /// # Errors
+    /// A state that cannot be loaded.
+    pub fn at(&mut self, time_s: f64) -> Result<()> {
+        if time_s < self.context.time_s() {
+            self.context.load(&self.start)?;
+        }
+        self.context.update(time_s)
+    }
+
+    /// From which it is seen.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// What it is drawn into.
+    pub fn target(&self) -> &wgpu::Texture {
+        &self.color
+    }
+
+    /// Light at the camera.
+    ///
+    /// # Errors
+    /// None for a camera of a scene.
+    pub fn light(&self) -> Result<LightAt> {
+        self.context.light_at(self.camera.position, self.context.time_s())
+    }
+
+    /// Of the planet, m.
+    pub fn radius_m(&self) -> f64 {
+        self.context.planet_radius_m()
+    }
+
+    /// Draws it by itself.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn still(&mut self) -> Result<()> {
+        self.frame(FrameFlags::NO_HISTORY).map(|_| ())
     }
 
     fn set(&mut self, method: &CloudMethod) -> Result<()> {
@@ -76,7 +163,11 @@ impl Host {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn texels(&self) -> Result<Picture> {
+    /// What was drawn last, cd/m^2.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn texels(&self) -> Result<Picture> {
         let texels = readback::rgba(&self.device, &self.color)?;
         let texels = texels.iter().map(|t| [t[0], t[1], t[2]].map(|v| UNIT * f64::from(v))).collect();
         Ok(Picture { width: self.color.width(), height: self.color.height(), texels })
@@ -103,6 +194,14 @@ impl Host {
         self.set(method)?;
         (0..SETTLED).try_for_each(|_| self.frame(FrameFlags(0)).map(|_| ()))?;
         self.texels()
+    }
+
+    /// Draws the volume with settings until it has settled.
+    ///
+    /// # Errors
+    /// GPU faults.
+    pub fn settle(&mut self, settings: CloudSettings) -> Result<()> {
+        self.picture(&CloudMethod { model: CloudModel::Volume, settings }).map(|_| ())
     }
 
     /// The truth.

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, genera, growth, regression, report, stability};
+use crate::{chart, clouds, compare, genera, growth, painted_chart, regression, report, stability};
 
-const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature]    cost against error, with plots
+const USAGE: &str =
+    "usage: lab chart [sky|fog|rain|snow|stars|clouds|painted-clouds|quadrature]   cost against error, with plots
        lab growth                         how cost and bytes grow
        lab stability [MAP ..]             where methods fail
        lab compare A B [--scene NAME]     two candidates' pictures side by side
@@ -15,6 +16,7 @@ const USAGE: &str = "usage: lab chart [sky|fog|rain|snow|stars|clouds|quadrature
        lab scenes DIR [--scene PART]      a PNG of every scene; of those whose names contain PART
        lab scenes OLD NEW                 what differs between two such folders
        lab genera DIR [--scene PART]      a PNG of every kind of cloud, to be looked at
+       lab painted DIR [--scene PART]     a PNG of every way to paint clouds, to be looked at
        lab thresholds                     of the clouds' map, as src/clouds/thresholds.in has them
        lab photons                        how far the clouds' light is from photons
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)";
@@ -72,7 +74,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         return regression::compare(old.as_ref(), new.as_ref());
     }
     match words.as_slice() {
-        ["chart"] => ["quadrature", "fog", "rain", "snow", "stars", "clouds", "sky"]
+        ["chart"] => ["quadrature", "fog", "rain", "snow", "stars", "clouds", "painted-clouds", "sky"]
             .iter()
             .try_for_each(|c| chart::run(c, &options)),
         ["chart", what] if chart::CHARTS.contains(what) => chart::run(what, &options),
@@ -85,6 +87,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["scenes", dir] => regression::draw(dir.as_ref(), options.scene.as_deref()),
         ["scenes", ..] => Err(usage("scenes needs one folder to draw into, or two to compare")),
         ["genera", dir] => genera::draw(dir.as_ref(), options.scene.as_deref()),
+        ["painted", dir] => painted_chart::draw(dir.as_ref(), options.scene.as_deref()),
         ["thresholds"] => clouds::print_thresholds(),
         ["photons"] => clouds::print_photons(options.quick),
         [] => Err(usage("no command")),

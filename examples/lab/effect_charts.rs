@@ -14,19 +14,20 @@ use crate::timing::{Ratio, interleaved};
 use crate::{cloudscapes, fog, rain, scenes, sky, snow, stars};
 
 /// What a chart says of a candidate.
-struct Measured {
-    cost: Ratio,
-    error: Difference,
+pub struct Measured {
+    pub cost: Ratio,
+    pub error: Difference,
     /// Columns that its chart alone has.
-    more: Vec<String>,
+    pub more: Vec<String>,
     /// 95th percentile of the error in each scene.
-    each: Vec<f64>,
+    pub each: Vec<f64>,
     /// What the work units say.
-    units: Vec<f64>,
+    pub units: Vec<f64>,
 }
 
 impl Measured {
-    fn row(self, name: &str, family: &str, default: bool) -> Vec<String> {
+    /// Its row.
+    pub fn row(self, name: &str, family: &str, default: bool) -> Vec<String> {
         let mut row = first_fields(name, family, default, &self.cost, &self.error);
         row.extend(self.more);
         row.extend(self.each.iter().map(|v| format!("{v:.6e}")));
@@ -36,15 +37,15 @@ impl Measured {
     }
 }
 
-/// The journal of an effect's chart.
-fn open<'a>(
+/// The journal of a chart.
+pub fn open<'a>(
     lab: &Lab,
     options: &Options,
-    effect: Effect,
+    what: &str,
     [more, units]: [&[&str]; 2],
     scenes: impl Iterator<Item = &'a str>,
 ) -> Result<Journal> {
-    let (what, each) = (effect.name(), scenes.map(|s| format!("p95_{s}")).collect::<Vec<_>>());
+    let each = scenes.map(|s| format!("p95_{s}")).collect::<Vec<_>>();
     let each = each.iter().map(String::as_str);
     let columns: Vec<&str> =
         COLUMNS.iter().chain(more).copied().chain(each).chain(units.iter().copied()).chain(["date"]).collect();
@@ -68,7 +69,7 @@ fn measure(
 }
 
 /// Keeps the table, says what moved and draws the chart: the points of all rows but the truth's own.
-fn end(journal: Journal, titles: &Titles<'_>, stem: &std::path::Path) -> Result<Table> {
+pub fn end(journal: Journal, titles: &Titles<'_>, stem: &std::path::Path) -> Result<Table> {
     let (mut table, old) = journal.finish()?;
     say_what_moved(&table, old.as_ref());
     table.rows.retain(|r| r[0] != TRUTH_AGAIN);
@@ -76,8 +77,8 @@ fn end(journal: Journal, titles: &Titles<'_>, stem: &std::path::Path) -> Result<
     Ok(table)
 }
 
-/// Rain's row of the truth against itself.
-const TRUTH_AGAIN: &str = "truth-again";
+/// The row of the truth against itself, of what no two ways put in the same places.
+pub const TRUTH_AGAIN: &str = "truth-again";
 
 /// What a frame of 640x360 costs by its work units.
 fn frame_units(c: &Candidate) -> f64 {
@@ -140,7 +141,7 @@ pub fn sky(lab: &Lab, options: &Options) -> Result<()> {
         "perceptual",
     ];
     let units = ["units", "units_still", "units_rebuild"];
-    let mut journal = open(lab, options, Effect::Sky, [&more, &units], scenes::SKY.iter().map(|s| s.name))?;
+    let mut journal = open(lab, options, Effect::Sky.name(), [&more, &units], scenes::SKY.iter().map(|s| s.name))?;
     let mut truths: Option<Vec<Vec<sky::TrueScene>>> = None;
     measure(&mut journal, Effect::Sky, |c| {
         if truths.is_none() {
@@ -216,7 +217,7 @@ fn measured_sky(lab: &Lab, c: &Candidate, truths: &[Vec<sky::TrueScene>]) -> Res
 pub fn fog(lab: &Lab, options: &Options) -> Result<()> {
     let list = scenes::fog();
     let more = ["shared_bytes", "view_bytes", "perceptual"];
-    let mut journal = open(lab, options, Effect::Fog, [&more, &["units"]], list.iter().map(|s| s.name))?;
+    let mut journal = open(lab, options, Effect::Fog.name(), [&more, &["units"]], list.iter().map(|s| s.name))?;
     let bench = fog::Bench::new(&lab.device)?;
     measure(&mut journal, Effect::Fog, |c| {
         let hosts = list.iter().map(|s| fog::host(s, fog::SIZE)).collect::<Result<Vec<_>>>()?;
@@ -255,7 +256,7 @@ pub fn fog(lab: &Lab, options: &Options) -> Result<()> {
 /// Files and the GPU.
 pub fn rain(lab: &Lab, options: &Options) -> Result<()> {
     let list = scenes::rain();
-    let mut journal = open(lab, options, Effect::Rain, [&[], &["units"]], list.iter().map(|s| s.name))?;
+    let mut journal = open(lab, options, Effect::Rain.name(), [&[], &["units"]], list.iter().map(|s| s.name))?;
     let is_whole = candidates(Effect::Rain).iter().all(|c| journal.has(c.name)) && journal.has(TRUTH_AGAIN);
     if !is_whole {
         measure_rain(lab, &list, &mut journal)?;
@@ -311,7 +312,7 @@ fn measure_rain(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
 /// Files and the GPU.
 pub fn snow(lab: &Lab, options: &Options) -> Result<()> {
     let list = scenes::snow();
-    let mut journal = open(lab, options, Effect::Snow, [&[], &["units"]], list.iter().map(|s| s.name))?;
+    let mut journal = open(lab, options, Effect::Snow.name(), [&[], &["units"]], list.iter().map(|s| s.name))?;
     if !(candidates(Effect::Snow).iter().all(|c| journal.has(c.name)) && journal.has(TRUTH_AGAIN)) {
         measure_snow(lab, &list, &mut journal)?;
     }
@@ -357,7 +358,7 @@ fn measure_snow(lab: &Lab, list: &[scenes::RainScene], journal: &mut Journal) ->
 }
 
 /// The error of blocks over all scenes by day, and in each scene.
-fn over_blocks(drawn: &[rain::Blocks], truths: &[(rain::Blocks, f64)], day: &[bool]) -> (Difference, Vec<f64>) {
+pub fn over_blocks(drawn: &[rain::Blocks], truths: &[(rain::Blocks, f64)], day: &[bool]) -> (Difference, Vec<f64>) {
     let (mut all, mut each) = (Vec::new(), Vec::new());
     for ((blocks, (truth, white)), day) in drawn.iter().zip(truths).zip(day) {
         let mut errors = blocks.errors(truth, *white);
@@ -377,7 +378,7 @@ fn over_blocks(drawn: &[rain::Blocks], truths: &[(rain::Blocks, f64)], day: &[bo
 /// Files and the GPU.
 pub fn stars(lab: &Lab, options: &Options) -> Result<()> {
     let names = scenes::STARS.iter().map(|s| s.name);
-    let mut journal = open(lab, options, Effect::Stars, [&["flux"], &["units"]], names)?;
+    let mut journal = open(lab, options, Effect::Stars.name(), [&["flux"], &["units"]], names)?;
     measure(&mut journal, Effect::Stars, |c| {
         let Method::Library(LibraryMethod::Stars(method)) = c.method else {
             return Err(Error::range("candidate", "one of the stars", c.name));
@@ -410,7 +411,7 @@ pub fn stars(lab: &Lab, options: &Options) -> Result<()> {
 /// Files and the GPU.
 pub fn clouds(lab: &Lab, options: &Options) -> Result<()> {
     let names = scenes::CLOUDS.iter().map(|s| s.name);
-    let mut journal = open(lab, options, Effect::Clouds, [&[], &["units"]], names)?;
+    let mut journal = open(lab, options, Effect::Clouds.name(), [&[], &["units"]], names)?;
     let host = |scene, size| cloudscapes::Host::new(&lab.device, scene, size);
     let mut hosts = scenes::CLOUDS.iter().map(|s| host(s, cloudscapes::SIZE)).collect::<Result<Vec<_>>>()?;
     let truths = hosts.iter_mut().map(cloudscapes::Host::truth).collect::<Result<Vec<_>>>()?;

@@ -21,6 +21,8 @@ mod front;
 mod genera;
 mod growth;
 mod page;
+mod painted;
+mod painted_chart;
 mod picture;
 mod plot;
 mod quadrature;

@@ -18,6 +18,7 @@ pub fn write(directory: &Path) -> Result<()> {
     let read = |name: &str| Table::read(&directory.join(format!("{name}.csv")));
     let (sky, fog, quadrature, growth) = (read("sky")?, read("fog")?, read("quadrature")?, read("growth")?);
     let (rain, snow, stars, clouds) = (read("rain")?, read("snow")?, read("stars")?, read("clouds")?);
+    let painted = read("painted-clouds")?;
     let mut out = String::from(
         "# The lab: speed against accuracy, and where methods fail\n\n\
          Written by `make lab` (`examples/lab`); the numbers are in the CSV files beside this page. \
@@ -45,11 +46,14 @@ pub fn write(directory: &Path) -> Result<()> {
     if let Some(table) = &clouds {
         by_scene(&mut out, table, ("Which clouds", "clouds", "pixels"), CLOUDS_SAYS);
     }
+    if let Some(table) = &painted {
+        by_scene(&mut out, table, ("Painted clouds", "painted-clouds", "blocks"), PAINTED_SAYS);
+    }
     if let Some(table) = &growth {
         growth_section(&mut out, table);
     }
     stability::section(&mut out, directory)?;
-    how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &clouds, &quadrature, &growth]);
+    how_section(&mut out, [&sky, &fog, &rain, &snow, &stars, &clouds, &painted, &quadrature, &growth]);
     let path = directory.join("README.md");
     std::fs::write(&path, out).map_err(|e| io(&path, &e))
 }
@@ -297,10 +301,17 @@ fn by_scene(out: &mut String, t: &Table, (title, name, what): (&str, &str, &str)
     out.push_str(says);
 }
 
-const CLOUDS_SAYS: &str = "\n`make lab ARGS=\"chart clouds\"` draws these. `deck` is the default model, `volume-double-steps` what \
-    `WK_CLOUD_MODEL_VOLUME` draws: it marches a sixteenth of the pixels in a frame and takes the others over from earlier ones, \
-    `quarter-of-pixels` a quarter, `every-pixel` all. The truth is every pixel in four times as many steps; pictures are compared \
-    once they have settled, and timed while the camera turns.\n\n";
+const CLOUDS_SAYS: &str = "\n`make lab ARGS=\"chart clouds\"` draws these. `volume-double-steps` is the default: it marches a sixteenth of the \
+    pixels in a frame and takes the others over from earlier ones, `quarter-of-pixels` a quarter, `every-pixel` all. The truth is every pixel in \
+    four times as many steps; pictures are compared once they have settled, and timed while the camera turns.\n\n";
+
+const PAINTED_SAYS: &str = "\nWhat older systems paint, over Welkin's own clear sky and in its light, cut to the cover of the scene: a \
+    `plane` of noise under an exponential opacity in one colour; the same lit by the noise on the way to the sun (`traced`), by a normal from \
+    its slope, by the average with a second texture; fading from noise to noise, swirled along the level lines of another; a `dome` that cuts a \
+    sphere out of solid noise; a `sky-picture` taken while the sun stood 15 degrees lower. A `shell` is a plane that is bent as the planet is, \
+    `solid-shell` the dome's noise where a ray meets it, `slab` the light of an even slab as deep as the place. No two put clouds in the same \
+    places, so blocks are compared as in rain, over sixteen moments. `truth-again` is the \
+    truth at other moments: what has its clouds elsewhere cannot be nearer; Welkin's ways have them where the truth has.\n\n";
 
 fn star_section(out: &mut String, t: &Table) {
     let n = |r: &[String], c: &str| number(t, r, c);
@@ -338,7 +349,7 @@ fn growth_section(out: &mut String, t: &Table) {
     out.push('\n');
 }
 
-fn how_section(out: &mut String, tables: [&Option<Table>; 8]) {
+fn how_section(out: &mut String, tables: [&Option<Table>; 9]) {
     out.push_str(
         "## How it was measured\n\n\
          - **Error**: |Y_A - Y_B| / (Y_B + 0.01 Y_white) in luminance after exposure, B the reference in f64, over all pixels of all \

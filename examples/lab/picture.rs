@@ -23,7 +23,8 @@ pub struct Figures {
 }
 
 impl Picture {
-    fn luminances(&self) -> Vec<f64> {
+    /// Its luminances.
+    pub fn luminances(&self) -> Vec<f64> {
         self.texels.iter().map(luminance).collect()
     }
 

@@ -45,6 +45,9 @@ const FILLED: f64 = -4.0;
 /// Change of the threshold across the edge of a cell over a rain area, over the distance from cloud to cloud: less than the map's steepest
 /// slopes, so that the field shapes the cell's faces.
 const EDGE_SLOPE: f64 = 3.0;
+/// How much less excess the anvil of such a cell needs than that of a layer: across its edge, by [`EDGE_SLOPE`], it reaches this much over that
+/// many distances from cloud to cloud farther than its towers.
+const ANVIL_WIDER: f64 = 2.2;
 /// Part of the edge's width, from outside, at which the area's own border lies: one place of a hundred is open there.
 const BORDER: f64 = 0.85;
 /// Distance from cloud to cloud in such a cell, over the area's half width; and at least, m.
@@ -311,7 +314,9 @@ impl Overhead {
             scale_m: (SPACING * half_m).clamp(LEAST_SPACING_M, brings.scale_m),
             ..*brings
         };
-        let shape = Shape { base_m, threshold: CLEAR, ..Shape::still(&slab, FILLED) };
+        let filled = Shape::still(&slab, FILLED);
+        let anvil = if filled.anvil < 0.0 { filled.anvil - ANVIL_WIDER } else { filled.anvil };
+        let shape = Shape { base_m, threshold: CLEAR, anvil, ..filled };
         let slot = scene.conditions.clouds.iter().position(|s| s.cover <= 0.0)?;
         self.insert(Layer { shape, slab, slot, share: 1.0 })
     }

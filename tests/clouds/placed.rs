@@ -181,6 +181,33 @@ fn clouds_over_rain_are_drawn_as_they_are_asked() {
     assert!(half < 0.02 && most < 0.15, "{half} {most}");
 }
 
+/// How far from the middle of a thunderstorm cloud reaches between two heights, in the mean of directions, m.
+fn reach_m(sky: &Sky, heights_m: [f64; 2]) -> f64 {
+    let has_cloud = |x: f64, y: f64| {
+        let [low, high] = heights_m.map(|z| DVec3::new(x, y, z));
+        sky.context.between(low, high, 0.0).unwrap().transmittance[1] < 0.5
+    };
+    let toward = |k: u32| {
+        let (sine, cosine) = (f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
+        let steps = (0..60).rev().map(|i| 250.0 * f64::from(i));
+        steps.into_iter().find(|r| has_cloud(r * cosine, r * sine)).unwrap_or(0.0)
+    };
+    (0..16).map(toward).sum::<f64>() / 16.0
+}
+
+#[test]
+fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
+    let mut sky = Sky::new(CLEAR, CloudModel::Volume);
+    let shape = AreaShape::Ellipse([4000.0; 2]);
+    let kind = AreaRain::Showers;
+    let storm = RainArea { shape, kind, rate_mm_h: 40.0, top_m: 1500.0, ..RainArea::default() };
+    sky.context.set_rain_areas(&[storm]).unwrap();
+    // A third up to half-way up, and below the top.
+    let [tower, anvil] = [[4000.0, 5500.0], [8000.0, 9000.0]].map(|heights| reach_m(&sky, heights));
+    println!("towers reach {tower:.0} m from the middle, the anvil {anvil:.0} m");
+    assert!(tower > 3500.0 && anvil > 1.15 * tower, "{tower} {anvil}");
+}
+
 /// With the wind that moves its area, the cloud moves too.
 #[test]
 fn a_cloud_goes_with_its_rain() {

@@ -1,5 +1,6 @@
 //! `lab stability`: maps of where methods fail, Welkin's beside the usual ones that do.
 
+pub mod cloud_maps;
 pub mod numbers;
 pub mod particles;
 pub mod sky_maps;
@@ -144,7 +145,7 @@ pub struct Map {
 type Make = fn(&Lab, &Options) -> Result<Map>;
 
 /// All maps by name.
-const MAPS: [(&str, Make); 15] = [
+const MAPS: [(&str, Make); 19] = [
     ("quadrature", sky_maps::quadrature),
     ("horizon-distance", |_, _| Ok(numbers::horizon_distance())),
     ("horizon", sky_maps::horizon),
@@ -160,6 +161,10 @@ const MAPS: [(&str, Make); 15] = [
     ("over-relaxation", |_, _| Ok(particles::over_relaxation())),
     ("whirls", |_, _| Ok(particles::whirls())),
     ("time-steps", |_, _| particles::time_steps()),
+    ("cloud-steps", cloud_maps::steps),
+    ("cloud-layers", cloud_maps::layers),
+    ("cloud-bases", cloud_maps::bases),
+    ("cloud-cover", cloud_maps::cover),
 ];
 
 const COLUMNS: [&str; 12] =
@@ -348,7 +353,7 @@ fn outline(canvas: &mut Canvas, panel: &Panel, nx: usize, ny: usize, at: &dyn Fn
 }
 
 /// What each map shows, for the page: by name.
-const SAYS: [(&str, &str); 15] = [
+const SAYS: [(&str, &str); 19] = [
     (
         "quadrature",
         "The rule with an offset of 0.3 leaves out the last step: it errs by some per cent everywhere and by tens of per cent near the horizon. The closed form does not.",
@@ -405,6 +410,22 @@ const SAYS: [(&str, &str); 15] = [
     (
         "time-steps",
         "A change of weather in steps of dt, against one step. Relaxing towards the new weather depends on the step; Welkin's timeline is a function of time.",
+    ),
+    (
+        "cloud-steps",
+        "Banding of a march through broken cumulus, by how high one looks, in the mean of rays. Even steps: the share of light that gets through, against 4096 of them. Welkin's pictures: luminance, against the finest march that a view can be set to; steps are the most that a ray takes through a layer, 192 by default. The panels show two quantities: along a ray light changes more than what gets through.",
+    ),
+    (
+        "cloud-layers",
+        "Layers of 1 m to 20 km, half covered, seen level from below their base to above their top: pictures at the default against the finest march. All are finite.",
+    ),
+    (
+        "cloud-bases",
+        "A camera climbs through the base of a closed layer: each frame against the same one drawn by itself, without earlier ones. 0 is the first frame in the cloud.",
+    ),
+    (
+        "cloud-cover",
+        "Cover that is seen less cover that was asked for, by kind; no cloud and a closed layer are exact. The threshold of even noise, which takes what lies above it for the cover of the sky, misses the sides of clouds.",
     ),
 ];
 
