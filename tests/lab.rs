@@ -28,6 +28,8 @@ mod effect_charts;
 mod fog;
 #[path = "../examples/lab/front.rs"]
 mod front;
+#[path = "../examples/lab/fullscreen.rs"]
+mod fullscreen;
 #[path = "../examples/lab/genera.rs"]
 mod genera;
 #[path = "../examples/lab/growth.rs"]

@@ -78,7 +78,7 @@ impl Host {
         })
     }
 
-    /// Looks from a height at another.
+    /// Looks from a height over the world's origin, up or down by the pitch.
     pub fn look(&mut self, height_m: f64, pitch_deg: f64, fov_rad: f64) {
         self.look_from(DVec3::Z * height_m, pitch_deg, fov_rad);
     }

@@ -13,6 +13,7 @@ use welkin::scene::{Camera, DepthMapping, ViewRays};
 use welkin::{Error, Result};
 
 use crate::candidates::{Candidate, Method};
+use crate::fullscreen;
 use crate::picture::Picture;
 use crate::scenes::FogScene;
 use crate::timing::{target, timed};
@@ -167,36 +168,16 @@ impl Bench {
         constants: &[(&str, f64)],
         formats: &[wgpu::TextureFormat],
     ) -> wgpu::RenderPipeline {
-        let gpu = &self.device.device;
-        let both = [Some(&self.layouts[0]), Some(&self.layouts[1])];
+        let both = [&self.layouts[0], &self.layouts[1]];
         let groups = if entry == "froxels_apply" { &both[..] } else { &both[..1] };
-        let layout = gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: groups,
-            immediate_size: 0,
-        });
-        let targets: Vec<_> = formats.iter().map(|f| Some((*f).into())).collect();
-        gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("fullscreen_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let targets: Vec<_> = formats.iter().map(|f| (*f).into()).collect();
+        fullscreen::pipeline(
+            &self.device.device,
+            &self.module,
+            (fullscreen::VERTEX, entry, constants),
+            groups,
+            &targets,
+        )
     }
 
     fn upload(&self, format: wgpu::TextureFormat, size: (u32, u32), bytes: &[u8]) -> wgpu::TextureView {

@@ -11,11 +11,12 @@
 use std::sync::Arc;
 
 use welkin::clouds::{CloudModel, candidates::CloudMethod, cover};
-use welkin::gpu::{Device, shader};
+use welkin::gpu::{Device, pass, shader};
 use welkin::noise::{CloudPreset, NoiseImage, NoiseKind, NoiseSettings, NoiseTexture};
 use welkin::{Error, Result};
 
 use crate::cloudscapes::{FORMAT, Host, SIZE, UNIT};
+use crate::fullscreen;
 use crate::picture::Picture;
 use crate::rain::Blocks;
 use crate::scenes::CloudScene;
@@ -209,12 +210,6 @@ impl Easel {
     }
 
     fn pipeline(&self, form: Form, shading: Shading, [fades, curls]: [bool; 2]) -> wgpu::RenderPipeline {
-        let gpu = &self.device.device;
-        let layout = gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&self.layout)],
-            immediate_size: 0,
-        });
         let yes = |b| if b { 1.0 } else { 0.0 };
         let constants = [
             ("FORM", f64::from(form as u32)),
@@ -224,27 +219,8 @@ impl Easel {
         ];
         let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let target = wgpu::ColorTargetState { format: FORMAT, blend, write_mask: wgpu::ColorWrites::ALL };
-        gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("painted"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("fullscreen_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.module,
-                entry_point: Some("painted"),
-                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-                targets: &[Some(target)],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let stages = (fullscreen::VERTEX, "painted", &constants[..]);
+        fullscreen::pipeline(&self.device.device, &self.module, stages, &[&self.layout], &[target])
     }
 
     /// The block of a moment, for noise of which `cut` is the first.
@@ -307,22 +283,17 @@ impl Easel {
         });
         let mut encoder = gpu.create_command_encoder(&Default::default());
         let target = self.clear.target().create_view(&Default::default());
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
-        let attached = wgpu::RenderPassColorAttachment { view: &target, depth_slice: None, resolve_target: None, ops };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("painted"),
-            color_attachments: &[Some(attached)],
-            ..Default::default()
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
-        drop(pass);
+        pass::draw(&mut encoder, "painted", pipeline, &[&group], &target);
         timed(&self.device, encoder)
     }
 
     fn cut_of(&self, form: Form) -> &Cut {
         &self.cuts[if matches!(form, Form::Dome | Form::SolidShell) { 2 } else { 0 }]
+    }
+
+    fn true_at(&mut self, moment: u64) -> Result<Picture> {
+        self.clouded.at(APART_S * moment as f64)?;
+        self.clouded.truth()
     }
 
     /// Blocks of the truth over its moments, and the luminance that is shown as white.
@@ -332,8 +303,7 @@ impl Easel {
     pub fn truth(&mut self) -> Result<(Blocks, f64)> {
         let (mut blocks, mut white) = (Blocks::new(SIZE), 0.0);
         for moment in 0..MOMENTS {
-            self.clouded.at(APART_S * moment as f64)?;
-            let picture = self.clouded.truth()?;
+            let picture = self.true_at(moment)?;
             white += picture.white() / MOMENTS as f64;
             blocks.add(&picture.luminances());
         }
@@ -367,13 +337,7 @@ impl Easel {
                 };
                 moments.map(one).collect()
             }
-            Paint::TruthAgain => {
-                let one = |moment| {
-                    self.clouded.at(APART_S * (MOMENTS + moment) as f64)?;
-                    self.clouded.truth()
-                };
-                moments.map(one).collect()
-            }
+            Paint::TruthAgain => moments.map(|moment| self.true_at(MOMENTS + moment)).collect(),
         }
     }
 
@@ -387,7 +351,7 @@ impl Easel {
         Ok(blocks)
     }
 
-    /// Milliseconds of a frame while the camera turns; 0 of the truth.
+    /// Milliseconds of a frame while the camera turns.
     ///
     /// # Errors
     /// GPU faults.

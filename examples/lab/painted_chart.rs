@@ -1,4 +1,4 @@
-//! `lab chart painted-clouds`: ways to paint clouds beside the library's, as textures.
+//! `lab chart painted-clouds`: what painted clouds cost, and how far their brightness and contrast are from the truth, beside the library's.
 
 use std::{path::Path, sync::Arc};
 

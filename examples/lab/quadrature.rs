@@ -14,6 +14,7 @@ use welkin::{Error, Result, Status};
 
 use crate::chart::{COLUMNS, Lab, first_fields, plot, say_what_moved, today};
 use crate::command::Options;
+use crate::fullscreen;
 use crate::plot::Titles;
 use crate::store::{Journal, Table};
 use crate::timing::{interleaved, target, timed};
@@ -105,34 +106,8 @@ impl<'a> Rules<'a> {
     }
 
     fn pipeline(&self, entry: &str, rule: u32, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
-        let gpu = &self.device.device;
-        let layout = gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&self.layout)],
-            immediate_size: 0,
-        });
-        let constants = [("RULE", f64::from(rule))];
-        gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("fullscreen_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &self.module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        let stages = (fullscreen::VERTEX, entry, &[("RULE", f64::from(rule))][..]);
+        fullscreen::pipeline(&self.device.device, &self.module, stages, &[&self.layout], &[format.into()])
     }
 
     fn run(&self, pipeline: &wgpu::RenderPipeline, n: u32, target: &wgpu::Texture) -> Result<f64> {

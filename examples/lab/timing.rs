@@ -7,6 +7,8 @@ use welkin::Result;
 use welkin::gpu::{Device, flat_texture};
 use welkin::plan::difference::percentile;
 
+use crate::fullscreen;
+
 /// A fixed load: 64 exponentials in every pixel of 320x180.
 pub struct Baseline {
     device: Arc<Device>,
@@ -33,27 +35,7 @@ impl Baseline {
         let source = wgpu::ShaderSource::Wgsl(BASELINE.into());
         let module = gpu.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("baseline"), source });
         let format = wgpu::TextureFormat::Rgba16Float;
-        let pipeline = gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("baseline"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = fullscreen::pipeline(gpu, &module, ("vertex", "fragment", &[]), &[], &[format.into()]);
         let target = target(device, (320, 180), format);
         let this = Self { device: device.clone(), pipeline, target: target.create_view(&Default::default()) };
         this.run()?;

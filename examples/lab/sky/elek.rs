@@ -16,6 +16,7 @@ use welkin::plan::{Units, Work};
 use welkin::sky::Planet;
 
 use super::{Pixel, SkyDraw, Veil, camera_group, camera_layout, moving, sized};
+use crate::fullscreen;
 use crate::scenes::{SkyAir, SkyScene};
 use crate::timing::{target, timed};
 
@@ -113,8 +114,9 @@ impl Elek {
         let use_layout = layout(gpu, true);
         let camera = camera_layout(device);
         let rays_layout = rays_layout(gpu);
-        let pass = |entry, layouts: &[Option<&wgpu::BindGroupLayout>], formats: &[wgpu::TextureFormat]| {
-            pipeline(gpu, &module, entry, layouts, formats)
+        let pass = |entry, layouts: &[&wgpu::BindGroupLayout], formats: &[wgpu::TextureFormat]| {
+            let targets: Vec<_> = formats.iter().map(|format| (*format).into()).collect();
+            fullscreen::pipeline(gpu, &module, ("vertex", entry, &[]), layouts, &targets)
         };
         let sampler = gpu.create_sampler(&wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
@@ -134,12 +136,9 @@ impl Elek {
             table,
             planet: SkyAir::Clear.planet(),
             uniform: uniform.clone(),
-            build: [
-                pass("build", &[Some(&build_layout)], &[FORMAT]),
-                pass("build_depth", &[Some(&build_layout)], &[FORMAT]),
-            ],
-            picture: pass("picture", &[Some(&camera), Some(&use_layout)], &[FORMAT]),
-            probe: pass("probe", &[Some(&rays_layout), Some(&use_layout)], &[wgpu::TextureFormat::Rgba32Float; 2]),
+            build: [pass("build", &[&build_layout], &[FORMAT]), pass("build_depth", &[&build_layout], &[FORMAT])],
+            picture: pass("picture", &[&camera, &use_layout], &[FORMAT]),
+            probe: pass("probe", &[&rays_layout, &use_layout], &[wgpu::TextureFormat::Rgba32Float; 2]),
             build_group: bound(&build_layout, &[]),
             use_group: bound(&use_layout, &[texture(1, &whole), texture(2, &depth), sampled]),
             camera: camera_group(device, &camera),
@@ -294,40 +293,4 @@ fn rays_layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
         multisampled: false,
     };
     gpu.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry(0, ty)] })
-}
-
-fn pipeline(
-    gpu: &wgpu::Device,
-    module: &wgpu::ShaderModule,
-    entry_point: &str,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    formats: &[wgpu::TextureFormat],
-) -> wgpu::RenderPipeline {
-    let layout = gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    let targets: Vec<_> = formats.iter().map(|f| Some((*f).into())).collect();
-    gpu.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: Default::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

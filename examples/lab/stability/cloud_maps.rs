@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use welkin::Result;
+use welkin::chance::normal_quantile;
 use welkin::clouds::{
     CloudSettings,
     cover::{field, is_ice, seen, threshold, typical},
@@ -50,9 +51,9 @@ fn mean_apart(drawn: &Picture, truth: &Picture) -> f64 {
     pairs.map(|(a, b)| (a - b).abs() / (b + 0.01 * white)).sum::<f64>() / truth.texels.len() as f64
 }
 
-/// Rays through a layer at a height, from below its base.
+/// How many rays an elevation is judged by; they begin at the base of the layer.
 const RAYS: usize = 512;
-/// Of a slant ray no more is followed, m.
+/// How far a ray is followed at most, m.
 const FARTHEST_M: f64 = 60e3;
 
 /// How far the share of light that gets through is off in so many even steps, in the mean of rays.
@@ -131,7 +132,7 @@ pub fn layers(lab: &Lab, _options: &Options) -> Result<Map> {
     Ok(Map { title: "Layers seen level, error in luminance at 95 %", x, y, panels, tolerance: 0.3 })
 }
 
-/// Frames a second of a climb, and before the base from which it is drawn.
+/// Frames a second of a climb, and how many frames before the base it begins.
 const HZ: f64 = 60.0;
 const BEFORE: i32 = 24;
 
@@ -146,7 +147,6 @@ pub fn bases(lab: &Lab, _options: &Options) -> Result<Map> {
         let layer = CloudLayer::of(CloudKind::Stratocumulus, cover, BASE_M);
         let host = |device: &Arc<Device>| Host::under(device, Some(layer), SUN_DEG, SIZE);
         let (mut moving, mut by_itself) = (host(&lab.device)?, host(&lab.device)?);
-        moving.settle(CloudSettings::default())?;
         let mut cells = vec![Cell::Nothing; x.values.len() * y.values.len()];
         for (i, speed) in x.values.iter().enumerate() {
             // Half a frame's way off the base, so that none lies in its plane.
@@ -168,20 +168,11 @@ pub fn bases(lab: &Lab, _options: &Options) -> Result<Map> {
     Ok(Map { title: "A climb through a base at 60 Hz, error in luminance at 95 %", x, y, panels, tolerance: 0.5 })
 }
 
-/// Seed of the sky, and places from which it is looked at.
+/// Seed of the sky whose cover is looked at, and from how many places.
 const SEED: u64 = 7;
 const PLACES: usize = 40;
-
-/// What this share of the map lies below: numbers spread normally, by bisection.
-fn quantile(share: f64) -> f64 {
-    let below = |z: f64| 0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
-    let (mut low, mut high) = (-8.0, 8.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if below(middle) < share { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
+/// Cover up to which the normal distribution has a quantile.
+const CLOSED: f64 = 1.0 - 1e-9;
 
 /// Cover asked for and seen.
 ///
@@ -198,7 +189,7 @@ pub fn cover(_lab: &Lab, _options: &Options) -> Result<Map> {
         if slab.cover <= 0.0 {
             return Ok(Cell::Error(asked));
         }
-        let threshold = if by_area { quantile(1.0 - asked) } else { threshold(&slab) };
+        let threshold = if by_area { -normal_quantile(asked.min(CLOSED)) } else { threshold(&slab) };
         Ok(Cell::of(seen(&field(&slab, &grown, threshold), is_ice(&slab), PLACES) - asked))
     };
     let panel = |title: &str, ours, by_area| -> Result<Panel> {
